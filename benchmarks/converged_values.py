@@ -96,6 +96,8 @@ def print_table(case: Case, runs: Runs) -> None:
     """Print the table of a case for docs/second-formulation.md."""
     forces = ", ".join(f"{force:.3f}" for force in runs["uplift_forces"])
     print(f"\n### {case.id}\n" + (f"\nUplift force {forces} N.\n" if forces else ""))
+    row = f"library/{case.id}/{{pantograph}}/{{quantity}}"
+    print(f"<!-- guide-table: {row}; 0.5 m=value; converged=converged; extrapolated=second -->\n")
     columns = [*(f"{mesh[0]:g} m" for mesh in MESHES), "converged", "order", *(f"{h:g} m" for h in SPACINGS)]
     print(f"| pantograph | quantity | {' | '.join(columns)} | extrapolated | difference [%] |")
     print("| --: | :-- |" + " --: |" * (len(columns) + 2))
