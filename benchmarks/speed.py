@@ -96,7 +96,7 @@ def compare_general_engine() -> None:
     if importlib.util.find_spec("exudyn") is None:
         print("| Exudyn | not installed: `pip install 'pantocheck[peers]'` | |")
         return
-    from exudyn_engine import run_exudyn
+    from pantocheck.conformance.guide.peers.exudyn_engine import run_exudyn
 
     run_exudyn(line, replace(way, duration=0.01))
     theirs, spent, in_python = min((run_exudyn(line, way) for _ in range(2)), key=lambda result: result[1])

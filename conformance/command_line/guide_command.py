@@ -1,5 +1,6 @@
 """`pantocheck guide`: verification and validation guide from results of this version."""
 
+import json
 import time
 from pathlib import Path
 from typing import Annotated
@@ -11,11 +12,16 @@ from pantocheck.conformance.command_line.file_list import print_files
 from pantocheck.conformance.guide.guide_building import build_guide, guide_identity, list_deviations
 from pantocheck.conformance.guide.guide_driver import compute_parts
 from pantocheck.conformance.guide.guide_store import GuideStore
-from pantocheck.conformance.guide.guide_tasks import list_tasks
+from pantocheck.conformance.guide.guide_tasks import list_tasks, list_timings
+from pantocheck.conformance.guide.guide_values import list_guide_values
 from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.guide.guide_page import build_guide_page
+from pantocheck.conformance.results.guide_format import Guide
+
+VALUES_FILE = "guide-values.json"
+"""Numbers of the guide by name, which the documentation prints."""
 
 
 def guide_command(
@@ -24,22 +30,32 @@ def guide_command(
 ) -> None:
     """Write the verification and validation guide: every number is computed now, by this version.
 
-    Closed forms, second formulations, published cases and their uncertainty. Finished parts are stored; after an
-    interruption the same command continues, and another version computes all parts again.
+    Closed forms, second formulations, peers, published cases, uncertainty, self-test and computing times. Packages of
+    peers are compared where they are installed. Finished parts are stored: after an interruption the same command
+    continues, and another version computes all parts again.
 
     Example: pantocheck guide --out guide --jobs 2
     """
     check_writable(out)
     store = GuideStore(out, guide_identity())
-    guide = build_guide(compute_parts(list_tasks(), store, jobs, _print_progress))
+    parts = compute_parts(list_tasks(), store, jobs, _print_progress)
+    guide = build_guide(parts.join(compute_parts(list_timings(), store, 1, _print_progress)))
     write_model(out / "guide.json", guide)
+    write_atomically(out / VALUES_FILE, _encode_values(guide))
     page = build_guide_page(guide.model_dump(mode="json", by_alias=True))
     output = console()
-    print_files([*write_document(page, out / "guide"), out / "guide.json"])
+    print_files([*write_document(page, out / "guide"), out / "guide.json", out / VALUES_FILE])
     deviations = list_deviations(guide)
     for name in deviations:
         output.print(escape_text(f"outside its tolerance, or not computed: {name}"), soft_wrap=True)
     raise typer.Exit(1 if deviations else 0)
+
+
+def _encode_values(guide: Guide) -> bytes:
+    """Numbers of the guide for the documentation, with the stamps of suite and date."""
+    stamps = {"suite": guide.suite.model_dump(mode="json"), "created": guide.created}
+    content = {**stamps, "values": list_guide_values(guide)}
+    return (json.dumps(content, indent=1, allow_nan=False) + "\n").encode("ascii")
 
 
 def _print_progress(part: str, finished: int, total: int) -> None:

@@ -4,11 +4,22 @@ import platform as host
 from importlib.metadata import version
 from typing import TypeVar
 
+from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.guide.guide_driver import GuideParts
-from pantocheck.conformance.results.guide_format import Guide, LibraryCase, Topic
+from pantocheck.conformance.guide.known_limitations import read_limitations
+from pantocheck.conformance.results.guide_format import (
+    Guide,
+    LibraryCase,
+    PeerComparison,
+    Performance,
+    SelfTestSummary,
+    StoredEffect,
+    Topic,
+)
 from pantocheck.conformance.results.results_building import build_suite, utc_now
 from pantocheck.conformance.results.results_format import Platform
 from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.simulation.model_uncertainty import read_effects
 
 Part = TypeVar("Part", bound=ResultsPart)
 
@@ -39,8 +50,27 @@ def build_guide(parts: GuideParts) -> Guide:
         created=utc_now(),
         verification=_select(parts, "verification", Topic),
         library=list(_select(parts, "library", LibraryCase).values()),
+        effects=list_effects(),
+        peers=list(_select(parts, "peers", PeerComparison).values()),
+        self_test=_select(parts, "self-test", SelfTestSummary).get("all"),
+        performance=_select(parts, "performance", Performance).get("all"),
+        limitations=read_limitations(),
         failed=parts.failed,
     )
+
+
+def list_effects() -> list[StoredEffect]:
+    """Stored differences from the exact three-dimensional model."""
+    return [
+        StoredEffect(
+            effect=effect.effect,
+            compared=effect.compared,
+            source=source_text(effect.source),
+            relative_pct=effect.relative_pct,
+            absolute=effect.absolute,
+        )
+        for effect in read_effects()
+    ]
 
 
 def list_deviations(guide: Guide) -> list[str]:
@@ -55,6 +85,13 @@ def list_deviations(guide: Guide) -> list[str]:
         for row in case.converged
         if not row.inside
     ]
+    found += [f"peers/{peer.package}/{row.key}" for peer in guide.peers for row in peer.comparisons if not row.agrees]
+    if guide.self_test is not None:
+        faults = (*guide.self_test.records, *guide.self_test.numerical)
+        found += [f"self-test/{row.name}/{row.case}" for row in faults if row.must_be_detected and not row.detected]
+        found += [
+            f"self-test/reference/{name}" for name, verdict in guide.self_test.reference.items() if verdict != "pass"
+        ]
     return found + [part.part for part in guide.failed]
 
 

@@ -22,6 +22,10 @@ class GuideParts:
     contents: dict[str, ResultsPart] = field(default_factory=dict)
     failed: list[FailedPart] = field(default_factory=list)
 
+    def join(self, other: "GuideParts") -> "GuideParts":
+        """Parts of both."""
+        return GuideParts({**self.contents, **other.contents}, [*self.failed, *other.failed])
+
 
 def compute_parts(tasks: Sequence[GuideTask], store: GuideStore, jobs: int, report: Report) -> GuideParts:
     """Compute all parts that the store does not hold.

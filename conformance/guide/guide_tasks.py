@@ -7,6 +7,10 @@ from functools import partial
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.guide.library_values import compute_library_case
+from pantocheck.conformance.guide.peers.peer_list import PEERS
+from pantocheck.conformance.guide.peers.peer_package import run_peer
+from pantocheck.conformance.guide.performance import measure_performance
+from pantocheck.conformance.guide.self_test_summary import summarise_self_test
 from pantocheck.conformance.guide.verification.long_string_passage import study_long_string
 from pantocheck.conformance.guide.verification.moving_load import study_moving_load
 from pantocheck.conformance.guide.verification.passage_balance import study_balances
@@ -15,7 +19,7 @@ from pantocheck.conformance.guide.verification.time_integration import study_tim
 from pantocheck.conformance.guide.verification.wire_at_rest import study_elasticity, study_sag
 from pantocheck.conformance.guide.verification.wire_modes import study_frequencies
 from pantocheck.conformance.guide.verification.wire_waves import study_waves
-from pantocheck.conformance.results.guide_format import LibraryCase, Topic
+from pantocheck.conformance.results.guide_format import LibraryCase, PeerComparison, Performance, SelfTestSummary, Topic
 from pantocheck.conformance.results.results_part import ResultsPart
 
 TOPICS: dict[str, Callable[[], Topic]] = {
@@ -52,10 +56,21 @@ class GuideTask:
 
 
 def list_tasks() -> list[GuideTask]:
-    """All parts of the guide."""
+    """Parts of the guide that can be computed side by side, the longest first."""
     topics = [GuideTask(f"verification/{name}", Topic, study) for name, study in TOPICS.items()]
     cases = [
         GuideTask(f"library/{name}", LibraryCase, partial(compute_library_case, name))
         for name in list_library(library_folder())
     ]
-    return [*topics, *cases]
+    peers = [GuideTask(f"peers/{name}", PeerComparison, partial(run_installed_peer, name)) for name in PEERS]
+    return [GuideTask("self-test/all", SelfTestSummary, summarise_self_test), *topics, *cases, *peers]
+
+
+def run_installed_peer(name: str) -> PeerComparison:
+    """Comparison with a package of others by its name."""
+    return run_peer(PEERS[name])
+
+
+def list_timings() -> list[GuideTask]:
+    """Parts that are computed alone, because they measure times."""
+    return [GuideTask("performance/all", Performance, measure_performance)]

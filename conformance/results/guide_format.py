@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.results.results_format import Platform
@@ -101,6 +102,70 @@ class LibraryCase(ResultsPart):
     wall_s: Annotated[FiniteNumber | None, Field(description="computing time of the passage")]
 
 
+class PeerComparison(ResultsPart):
+    """Comparison with a package of others."""
+
+    package: Annotated[str, Field(description="name of the package in its registry")]
+    version: Annotated[str | None, Field(description="installed version; null: not installed, so not run")]
+    title: str
+    setting: Annotated[str, Field(description="computation, and parts that both programs share")]
+    comparisons: list[CheckedValue] = []
+
+
+class DetectedFault(ResultsPart):
+    """System with a known fault, and its verdict on a case."""
+
+    name: str
+    case: str
+    verdict: Verdict
+    detected_by: Annotated[str, Field(description="check that detects the fault; empty: none")]
+    must_be_detected: bool
+    detected: bool
+
+
+class SelfTestSummary(ResultsPart):
+    """Result of the self-test: faults of records, and numerical faults by the verification up to 50 Hz."""
+
+    reference: Annotated[dict[str, Verdict], Field(description="verdict of the unchanged simulator by case")]
+    records: list[DetectedFault]
+    numerical: list[DetectedFault]
+
+
+class Timing(ResultsPart):
+    """Computing time of a passage."""
+
+    case: str
+    pantographs: int
+    simulated_s: FiniteNumber
+    process_s: Annotated[FiniteNumber, Field(description="process time of passage and set-up, the better of two")]
+    ratio: Annotated[FiniteNumber, Field(description="process time over simulated time")]
+
+
+class Performance(ResultsPart):
+    """Computing times on this machine."""
+
+    processor: str
+    cores: int
+    timings: list[Timing]
+
+
+class StoredEffect(ResultsPart):
+    """Effect that the equations leave out: largest stored differences from the exact three-dimensional model."""
+
+    effect: str
+    compared: str
+    source: str
+    relative_pct: dict[str, FiniteNumber]
+    absolute: dict[str, FiniteNumber]
+
+
+class Limitation(ResultsPart):
+    """Known limitation of the suite."""
+
+    title: str
+    sentences: list[str]
+
+
 class FailedPart(ResultsPart):
     """Part of the guide that could not be computed."""
 
@@ -117,4 +182,9 @@ class Guide(ResultsPart):
     created: Annotated[str, Field(description="date and time of the guide")]
     verification: dict[str, Topic]
     library: Annotated[list[LibraryCase], Field(description="library cases, in the order of the library")]
+    effects: list[StoredEffect] = []
+    peers: list[PeerComparison] = []
+    self_test: SelfTestSummary | None = None
+    performance: Performance | None = None
+    limitations: list[Limitation] = []
     failed: list[FailedPart] = []

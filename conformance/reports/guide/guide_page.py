@@ -3,6 +3,15 @@
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.guide.confidence_sections import (
+    build_limitations_section,
+    build_performance_section,
+    build_self_test_section,
+    build_uncertainty_section,
+    mark_code,
+)
+from pantocheck.conformance.reports.guide.formulation_section import build_formulation_section
+from pantocheck.conformance.reports.guide.peer_section import build_peer_section
 from pantocheck.conformance.reports.guide.topic_section import build_topic_section
 from pantocheck.conformance.reports.guide.validation_section import build_validation_section
 from pantocheck.conformance.reports.page_text import clean_tree
@@ -19,11 +28,17 @@ def build_guide_page(guide: dict[str, Any]) -> doc.Document:
     guide = clean_tree(guide)
     sections = (
         _build_verification(guide["verification"]),
+        build_formulation_section(guide),
+        build_peer_section(guide["peers"]),
         build_validation_section(guide["library"]),
+        build_uncertainty_section(guide["library"]),
+        *build_self_test_section(guide["self_test"]),
+        *build_performance_section(guide["performance"]),
+        build_limitations_section(guide["limitations"]),
     )
     header = doc.PlainHeader("Verification and validation guide", _build_headline(guide))
     blocks: tuple[doc.Block, ...] = (
-        doc.Paragraph(GUIDE_SCOPE),
+        doc.Paragraph(mark_code(GUIDE_SCOPE)),
         doc.Facts(_list_facts(guide)),
         *_list_failures(guide["failed"]),
         *sections,

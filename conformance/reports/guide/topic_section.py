@@ -1,6 +1,5 @@
 """Sections of the verification against closed forms: comparisons, orders of convergence and figures."""
 
-from collections.abc import Callable
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
@@ -16,9 +15,9 @@ def build_topic_section(name: str, topic: dict[str, Any]) -> doc.Section:
     """Section of a topic."""
     blocks: list[doc.Block] = [doc.Paragraph(topic["theory"]), doc.Paragraph(topic["setting"])]
     if topic["comparisons"]:
-        blocks += [_build_comparisons(topic["comparisons"]), _list_reasons(topic["comparisons"])]
+        blocks += [build_value_table(topic["comparisons"]), list_tolerance_reasons(topic["comparisons"])]
     if topic["convergence"]:
-        blocks += [_build_orders(topic["convergence"]), _list_reasons(topic["convergence"])]
+        blocks += [_build_orders(topic["convergence"]), list_tolerance_reasons(topic["convergence"])]
     figures = [_draw_study(study) for study in topic["convergence"]]
     figures += [doc.Figure(draw_chart(chart), chart["alternative"], chart["caption"]) for chart in topic["charts"]]
     if figures:
@@ -26,16 +25,26 @@ def build_topic_section(name: str, topic: dict[str, Any]) -> doc.Section:
     return doc.Section(topic["title"], tuple(blocks), anchor=f"verification-{name}")
 
 
-def _build_comparisons(rows: list[dict[str, Any]]) -> doc.Table:
-    cells: dict[str, Callable[[Any], str]] = {
-        "Quantity": lambda row: f"{row['quantity']} [{row['unit']}]",
-        "Computed": lambda row: format_value(row["computed"], 6),
-        "Expected": lambda row: format_value(row["expected"], 6),
-        "Deviation": lambda row: format_deviation(row, row["deviation"]),
-        "Tolerance": lambda row: format_deviation(row, row["tolerance"]),
-        "Agrees": lambda row: AGREEMENT[row["agrees"]],
-    }
-    return doc.make_grid("", rows, cells)
+def build_value_table(rows: list[dict[str, Any]]) -> doc.Table:
+    """Computed values beside their expected values."""
+    numbers = ("Computed", "Expected", "Deviation", "Tolerance")
+    columns = (
+        doc.Column("Quantity", share=1),
+        *(doc.Column(name, number=True) for name in numbers),
+        doc.Column("Agrees"),
+    )
+    cells = tuple(
+        (
+            f"{row['quantity']} [{row['unit']}]",
+            format_value(row["computed"], 6),
+            format_value(row["expected"], 6),
+            format_deviation(row, row["deviation"]),
+            format_deviation(row, row["tolerance"]),
+            AGREEMENT[row["agrees"]],
+        )
+        for row in rows
+    )
+    return doc.Table(columns, cells, layout="grid")
 
 
 def format_deviation(row: dict[str, Any], value: float) -> str:
@@ -45,18 +54,23 @@ def format_deviation(row: dict[str, Any], value: float) -> str:
 
 
 def _build_orders(rows: list[dict[str, Any]]) -> doc.Table:
-    cells: dict[str, Callable[[Any], str]] = {
-        "Error of": lambda row: row["quantity"],
-        "Refined": lambda row: row["parameter"],
-        "Errors": lambda row: ", ".join(format_value(error, 3) for error in row["errors"]),
-        "Orders": lambda row: ", ".join(format_value(order, 3) for order in row["orders"]),
-        "Theory": lambda row: f"{format_value(row['theory'], 2)} ± {format_value(row['tolerance'], 2)}",
-        "Agrees": lambda row: AGREEMENT[row["agrees"]],
-    }
-    return doc.make_grid("", rows, cells)
+    names = ("Refined", "Errors", "Orders", "Theory", "Agrees")
+    columns = (doc.Column("Error of", share=1), *map(doc.Column, names))
+    cells = tuple(
+        (
+            row["quantity"],
+            row["parameter"],
+            ", ".join(format_value(error, 3) for error in row["errors"]),
+            ", ".join(format_value(order, 3) for order in row["orders"]),
+            f"{format_value(row['theory'], 2)} ± {format_value(row['tolerance'], 2)}",
+            AGREEMENT[row["agrees"]],
+        )
+        for row in rows
+    )
+    return doc.Table(columns, cells, layout="grid")
 
 
-def _list_reasons(rows: list[dict[str, Any]]) -> doc.Block:
+def list_tolerance_reasons(rows: list[dict[str, Any]]) -> doc.Block:
     """Reasons of the tolerances, each once."""
     return doc.SmallPrint(" ".join(dict.fromkeys(row["reason"] for row in rows)))
 

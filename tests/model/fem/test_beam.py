@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import eigh
 
 from helpers.lines import Array, bare_wire
+from pantocheck.conformance.guide.verification.closed_forms import wire_sag
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.fem import beam
@@ -45,18 +46,11 @@ def test_orders_of_the_pure_beam_and_the_pure_string(tension: float, bending_sti
     assert np.log2(coarse / fine) == pytest.approx(order_, abs=0.1)
 
 
-def sag(x: Array, length: float, bending_stiffness: float) -> Array:
-    """Deflection of a pinned tensioned beam under its weight; the cosh term is the bending near the ends."""
-    q, decay = MASS * GRAVITY, np.sqrt(TENSION / bending_stiffness)
-    ends = np.cosh(decay * (x - length / 2)) / np.cosh(decay * length / 2)
-    return np.asarray(-q * x * (length - x) / (2 * TENSION) + q * bending_stiffness / TENSION**2 * (1 - ends))
-
-
 @pytest.mark.parametrize("bending_stiffness", [195.0, 2e4])
 def test_sag_under_own_weight(bending_stiffness: float) -> None:
     """Elements of 0.25 m resolve the end layers (0.1 m and 1 m); the error is h^4 of their part of the sag."""
     line = discretise(bare_wire(20.0, TENSION, MASS, bending_stiffness), 0.25)
-    exact = sag(line.mesh.position, 20.0, bending_stiffness)
+    exact = wire_sag(line.mesh.position, 20.0, TENSION, MASS, bending_stiffness)
     np.testing.assert_allclose(line.state.deflection[0, :, 0], exact, rtol=0, atol=2e-5 * np.abs(exact).max())
 
 

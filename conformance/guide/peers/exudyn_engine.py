@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 from numpy.typing import NDArray
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Passage
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.simulation import start_motion
@@ -26,8 +27,6 @@ from pantocheck.model.fem.assembly import (
     stepping_mass,
 )
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
-
-Array = NDArray[np.float64]
 
 
 class DroppersAndContact:
@@ -83,7 +82,7 @@ class DroppersAndContact:
         self.dropper_damping = line.connectors.damping[unilateral]
         self.preload = line.connectors.preload[unilateral]
 
-    def force(self, t: float, q: Array, v: Array) -> Array:
+    def force(self, t: float, q: RealArray, v: RealArray) -> RealArray:
         """Forces beside the linear system [N]: the contact forces, and the compensation of slack droppers."""
         force = np.asarray(self.bars @ np.minimum(self._tension(q, v), 0.0))
         for p in range(len(self.own)):
@@ -91,12 +90,12 @@ class DroppersAndContact:
             force[touched] -= shares * stiffness * max(closing, 0.0)
         return force
 
-    def contact_force(self, t: float, q: Array) -> Array:
+    def contact_force(self, t: float, q: RealArray) -> RealArray:
         """Contact force of each pantograph [N]."""
         contacts = [self._contact(t, q, p) for p in range(len(self.own))]
         return np.array([stiffness * max(closing, 0.0) for _, _, stiffness, closing in contacts])
 
-    def tangent(self, t: float, q: Array, v: Array, on_q: float, on_v: float) -> sp.csr_matrix:
+    def tangent(self, t: float, q: RealArray, v: RealArray, on_q: float, on_v: float) -> sp.csr_matrix:
         """Negative derivative of `force`: `on_q` times the one by q, plus `on_v` times the one by v."""
         slack = self._tension(q, v) < 0.0
         loose = np.where(slack, -on_q * self.dropper_stiffness - on_v * self.dropper_damping, 0.0)
@@ -110,11 +109,11 @@ class DroppersAndContact:
         tangent.eliminate_zeros()
         return tangent
 
-    def _tension(self, q: Array, v: Array) -> Array:
+    def _tension(self, q: RealArray, v: RealArray) -> RealArray:
         elastic = self.preload + self.dropper_stiffness * (self.elongations @ q)
         return np.asarray(elastic + self.dropper_damping * (self.elongations @ v))
 
-    def _contact(self, t: float, q: Array, p: int) -> tuple[NDArray[np.int64], Array, float, float]:
+    def _contact(self, t: float, q: RealArray, p: int) -> tuple[NDArray[np.int64], RealArray, float, float]:
         """Unknowns of a contact, their shares in its closing, its stiffness [N/m] and its closing [m]."""
         model, x = self.passage.pantographs[p], self.passage.start[p] + self.passage.speed * t
         share = point_load(self.line, self.line.contact_rows[0], x)
@@ -129,7 +128,7 @@ class DroppersAndContact:
         return touched, shares, 1 / (1 / model.contact_stiffness + flexibility), closing
 
 
-def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, float]:
+def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[RealArray, float, float]:
     """Simulate a passage with Exudyn's implicit Newmark solver, sparse matrices and Newton's method.
 
     Parameters
@@ -145,17 +144,17 @@ def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[Array, float, f
         Contact force [N], process time of the solver [s], part of it in user functions [s].
     """
     model = DroppersAndContact(line, passage)
-    forces: list[Array] = []
+    forces: list[RealArray] = []
     in_user_functions = 0.0
 
-    def force(_system: object, t: float, _item: int, q: Array, v: Array) -> Array:
+    def force(_system: object, t: float, _item: int, q: RealArray, v: RealArray) -> RealArray:
         nonlocal in_user_functions
         begin = time.process_time()
         result = model.force(t, np.asarray(q), np.asarray(v))
         in_user_functions += time.process_time() - begin
         return result
 
-    def tangent(_system: object, t: float, _item: int, q: Array, v: Array, on_q: float, on_v: float) -> object:
+    def tangent(_system: object, t: float, _item: int, q: RealArray, v: RealArray, on_q: float, on_v: float) -> object:
         nonlocal in_user_functions
         begin = time.process_time()
         result = _sparse(model.tangent(t, np.asarray(q), np.asarray(v), on_q, on_v))
