@@ -26,7 +26,9 @@ def split_cells(line: str, separator: str) -> list[str]:
 
 def is_number(cell: str, decimal: DecimalSign | None) -> bool:
     """Whether a cell is a number; without a decimal mark, either mark is accepted."""
-    return any(_NUMBER[mark].fullmatch(cell) for mark in ((decimal,) if decimal else (".", ",")))
+    if decimal is None:
+        return any(number.fullmatch(cell) for number in _NUMBER.values())
+    return _NUMBER[decimal].fullmatch(cell) is not None
 
 
 def number_error(place: str, column: int, cell: str) -> InputError:

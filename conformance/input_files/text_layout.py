@@ -2,7 +2,7 @@
 
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.text_cells import is_thousands, thousands_error
-from pantocheck.conformance.input_files.text_reading import NumberedLine, TextLayout, TextReading
+from pantocheck.conformance.input_files.text_reading import NumberedLine, TextLayout, TextReading, split_lines
 from pantocheck.conformance.input_files.text_settings import DecimalSign, Separator, TextSettings
 
 SEPARATORS: tuple[Separator, ...] = (";", "\t", ",", "|", " ")
@@ -35,11 +35,9 @@ def find_text_layout(lines: list[NumberedLine], where: str, settings: TextSettin
     decimals: tuple[DecimalSign, ...] = (".", ",") if settings.decimal is None else (settings.decimal,)
     readings = [
         reading
-        for separator in separators
+        for separator, split in ((separator, split_lines(lines, separator)) for separator in separators)
         for decimal in decimals
-        if (
-            separator != decimal and (reading := TextReading(lines, separator, decimal, settings.header_lines)).is_valid
-        )
+        if separator != decimal and (reading := TextReading(split, separator, decimal, settings.header_lines)).is_valid
     ]
     best = max((reading.rank for reading in readings), default=None)
     readings = _drop_equal([reading for reading in readings if reading.rank == best])

@@ -12,6 +12,9 @@ from pantocheck.conformance.input_files.units import is_unit
 NumberedLine = tuple[int, str]
 """Line of a file with its number from 1."""
 
+SplitLine = tuple[int, str, list[str]]
+"""Line of a file with its number from 1 and its cells."""
+
 
 @dataclass(frozen=True)
 class TextLayout:
@@ -47,14 +50,18 @@ class TextLayout:
     preface: tuple[str, ...] = ()
 
 
+def split_lines(lines: list[NumberedLine], separator: Separator) -> list[SplitLine]:
+    """Lines with their cells under one separator."""
+    return [(number, text, split_cells(text, separator)) for number, text in lines]
+
+
 class TextReading:
     """Lines of a table under one separator and one decimal mark."""
 
     def __init__(
-        self, lines: list[NumberedLine], separator: Separator, decimal: DecimalSign, header_lines: int | None
+        self, lines: list[SplitLine], separator: Separator, decimal: DecimalSign, header_lines: int | None
     ) -> None:
-        self.separator, self.decimal, self.header_lines = separator, decimal, header_lines
-        self.lines = [(number, text, split_cells(text, separator)) for number, text in lines]
+        self.lines, self.separator, self.decimal, self.header_lines = lines, separator, decimal, header_lines
         below = [line for line in self.lines if line[0] > (header_lines or 0)]
         body = below[len(below) // 2 :]
         widths = Counter(len(cells) for _, _, cells in body)
@@ -62,19 +69,20 @@ class TextReading:
         self.body = [cells for _, _, cells in body if len(cells) == self.width]
 
     @cached_property
+    def counts(self) -> list[tuple[int, int]]:
+        """Number of numbers and of cells with content in the lower lines of each column."""
+        columns = [[cells[c] for cells in self.body if cells[c]] for c in range(self.width)]
+        return [(sum(is_number(cell, self.decimal) for cell in cells), len(cells)) for cells in columns]
+
+    @cached_property
     def numeric(self) -> frozenset[int]:
         """Columns with numbers in most of the lower lines; empty cells are missing values."""
-        filled = [[cells[c] for cells in self.body if cells[c]] for c in range(self.width)]
-        return frozenset(
-            c
-            for c, cells in enumerate(filled)
-            if cells and sum(is_number(cell, self.decimal) for cell in cells) >= len(cells) / 2
-        )
+        return frozenset(c for c, (numbers, filled) in enumerate(self.counts) if filled and numbers >= filled / 2)
 
     @cached_property
     def empty(self) -> frozenset[int]:
         """Columns without any content."""
-        return frozenset(c for c in range(self.width) if not any(cells[c] for cells in self.body))
+        return frozenset(c for c, (_, filled) in enumerate(self.counts) if not filled)
 
     @cached_property
     def first(self) -> int | None:
@@ -101,7 +109,7 @@ class TextReading:
         return len(self.numeric | self.empty) == self.width
 
     @cached_property
-    def above(self) -> list[tuple[int, str, list[str]]]:
+    def above(self) -> list[SplitLine]:
         """Lines above the numbers that are no comments; below the stated head lines also comments."""
         lines = self.lines[: self.first]
         if self.header_lines is not None:
@@ -111,9 +119,9 @@ class TextReading:
         return lines[begin:]
 
     @cached_property
-    def head(self) -> list[tuple[int, str, list[str]]]:
+    def head(self) -> list[SplitLine]:
         """Lines directly above the numbers with as many cells; a blank line ends them."""
-        head: list[tuple[int, str, list[str]]] = []
+        head: list[SplitLine] = []
         below = self.lines[self.first or 0][0]
         for number, text, cells in reversed(self.above):
             if len(cells) != self.width or (number != below - 1 and self.header_lines is None):
@@ -122,11 +130,10 @@ class TextReading:
             below = number
         return head
 
-    @property
+    @cached_property
     def rank(self) -> tuple[bool, float, float, bool, bool]:
         """Order of preference: columns of numbers, damaged cells, names, several columns."""
-        cells = [cells[c] for cells in self.body for c in self.numeric if cells[c]]
-        share = sum(is_number(cell, self.decimal) for cell in cells) / len(cells)
+        share = sum(self.counts[c][0] for c in self.numeric) / sum(self.counts[c][1] for c in self.numeric)
         named = bool(self.head)
         columns = 1.0 if self.is_full else len(self.numeric) / self.width
         return self.is_full, columns, share, named, named and self.width > 1
