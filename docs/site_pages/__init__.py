@@ -25,8 +25,8 @@ PAGES = {
 }
 """Builder of each page by its name."""
 
-TUTORIALS = sorted((DOCS / "tutorials").glob("*-*.md"))
-"""Pages of the tutorials: `ROLE-ROLE.md`."""
+TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
+"""Pages of the tutorials, one per role."""
 
 
 def write_generated_pages(folder: Path) -> None:

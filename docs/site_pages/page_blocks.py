@@ -10,7 +10,7 @@ FENCE = re.compile(
 FILE = re.compile(r"^(?:#|//) file: (?P<name>\S+)\n")
 PICTURE = re.compile(r"!\[[^\]]*\]\((?:\.\./)*generated/pictures/(?P<name>[^)\s]+)\)")
 
-RUN_LANGUAGES = ("sh", "console", "python")
+RUN_LANGUAGES = ("sh", "bash", "python")
 """Languages of the blocks that a reader runs."""
 
 

@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
-TUTORIALS = sorted((DOCS / "tutorials").glob("*-*.md"))
+TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 
 
 @pytest.fixture
