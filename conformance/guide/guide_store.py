@@ -33,7 +33,7 @@ class GuideStore:
         """Content of a finished part of this suite and platform; None if there is none."""
         try:
             stored = json.loads(self._path(task).read_text("utf-8"))
-            if stored["identity"] != self.identity:
+            if stored["identity"] != self._identify(task):
                 return None
             return task.content.model_validate(stored["content"])
         except (OSError, ValueError, KeyError, TypeError, ValidationError):
@@ -47,8 +47,11 @@ class GuideStore:
         InputError
             The file cannot be written.
         """
-        stored = {"identity": self.identity, "content": content.model_dump(mode="json", by_alias=True)}
+        stored = {"identity": self._identify(task), "content": content.model_dump(mode="json", by_alias=True)}
         write_atomically(self._path(task), json.dumps(stored, allow_nan=False).encode("ascii"))
+
+    def _identify(self, task: GuideTask) -> str:
+        return f"{self.identity} {task.subject}"
 
     def _path(self, task: GuideTask) -> Path:
         return self.folder / FOLDER_OF_PARTS / f"{task.name.replace('/', '--')}.json"

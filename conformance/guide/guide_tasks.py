@@ -8,8 +8,8 @@ from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.guide.library_values import compute_library_case
 from pantocheck.conformance.guide.peers.peer_list import PEERS
-from pantocheck.conformance.guide.peers.peer_package import run_peer
-from pantocheck.conformance.guide.performance import measure_performance
+from pantocheck.conformance.guide.peers.peer_package import find_version, run_peer
+from pantocheck.conformance.guide.performance import measure_performance, name_processor
 from pantocheck.conformance.guide.self_test_summary import summarise_self_test
 from pantocheck.conformance.guide.verification.long_string_passage import study_long_string
 from pantocheck.conformance.guide.verification.moving_load import study_moving_load
@@ -48,11 +48,14 @@ class GuideTask:
         Type of the content.
     compute : callable
         Computation of the content; it can be sent to another process.
+    subject : str
+        Further part of its identity, such as the installed version of a peer: with another one it is computed again.
     """
 
     name: str
     content: type[ResultsPart]
     compute: Callable[[], ResultsPart]
+    subject: str = ""
 
 
 def list_tasks() -> list[GuideTask]:
@@ -62,7 +65,10 @@ def list_tasks() -> list[GuideTask]:
         GuideTask(f"library/{name}", LibraryCase, partial(compute_library_case, name))
         for name in list_library(library_folder())
     ]
-    peers = [GuideTask(f"peers/{name}", PeerComparison, partial(run_installed_peer, name)) for name in PEERS]
+    peers = [
+        GuideTask(f"peers/{name}", PeerComparison, partial(run_installed_peer, name), find_version(peer.package) or "")
+        for name, peer in PEERS.items()
+    ]
     return [GuideTask("self-test/all", SelfTestSummary, summarise_self_test), *topics, *cases, *peers]
 
 
@@ -73,4 +79,4 @@ def run_installed_peer(name: str) -> PeerComparison:
 
 def list_timings() -> list[GuideTask]:
     """Parts that are computed alone, because they measure times."""
-    return [GuideTask("performance/all", Performance, measure_performance)]
+    return [GuideTask("performance/all", Performance, measure_performance, name_processor())]

@@ -27,11 +27,18 @@ class Peer:
     compare: Callable[[], list[CheckedValue]]
 
 
+def find_version(package: str) -> str | None:
+    """Installed version of a package; None if it is not installed."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
 def run_peer(peer: Peer) -> PeerComparison:
     """Run the comparison if its package is installed; otherwise state that it was not run."""
-    try:
-        installed = version(peer.package)
-    except PackageNotFoundError:
+    installed = find_version(peer.package)
+    if installed is None:
         return PeerComparison(package=peer.package, version=None, title=peer.title, setting=peer.setting)
     return PeerComparison(
         package=peer.package, version=installed, title=peer.title, setting=peer.setting, comparisons=peer.compare()

@@ -1,5 +1,6 @@
 """Driver of the guide: finished parts are kept, failed ones are named and repeated."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -38,6 +39,14 @@ def test_interrupted_guide_keeps_its_finished_parts(tmp_path: Path) -> None:
     assert log.read_text("utf-8").split() == ["first", "stop", "last"]
 
 
+def test_part_of_another_version_of_a_peer_is_computed_again(tmp_path: Path) -> None:
+    log, store = tmp_path / "log", GuideStore(tmp_path, "this suite")
+    for version in ("", "1.0", "1.0"):
+        tasks = [replace(task, subject=version) for task in _tasks(log, "first")]
+        compute_parts(tasks, store, 1, _ignore)
+    assert log.read_text("utf-8").split() == ["first", "first"]
+
+
 def test_parts_of_another_suite_and_damaged_parts_are_computed_again(tmp_path: Path) -> None:
     log = tmp_path / "log"
     for identity in ("one suite", "another suite", "another suite"):
@@ -48,7 +57,7 @@ def test_parts_of_another_suite_and_damaged_parts_are_computed_again(tmp_path: P
     assert log.read_text("utf-8").split() == ["first", "first", "first"]
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.thorough)])
 def test_failed_part_is_named_and_repeated(tmp_path: Path, jobs: int) -> None:
     log, store, seen = tmp_path / "log", GuideStore(tmp_path, "this suite"), []
     for _ in range(2):
