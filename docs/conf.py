@@ -42,6 +42,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "abort_on_example_error": True,
     "plot_gallery": "True",
+    "within_subsection_order": "site_pages.gallery_order.GalleryOrder",
     "show_memory": False,
     "remove_config_comments": True,
     "write_computation_times": False,

@@ -4,6 +4,7 @@ import ast
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -42,3 +43,12 @@ def test_example_uses_the_public_interface_only(path: Path) -> None:
     imported = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module is not None}
     imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
     assert {name for name in imported if name.startswith("pantocheck")} <= PUBLIC
+
+
+def test_gallery_begins_with_lines_and_ends_with_measurements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An example without a place in the order stands last."""
+    monkeypatch.syspath_prepend(str(GALLERY.parents[1] / "docs"))
+    order = import_module("site_pages.gallery_order").GalleryOrder(GALLERY)
+    names = [path.stem for path in sorted([*EXAMPLES, GALLERY / "aaa.py"], key=order)]
+    assert (names[0], names[-1]) == ("own_line", "aaa")
+    assert names.index("two_pantographs") < names.index("damping_fit")
