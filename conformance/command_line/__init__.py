@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.command_line.guard import FULL
+from pantocheck.conformance.command_line.output_encoding import accept_all_characters
 
 GARBAGE_THRESHOLD = 50_000
 """New objects between two searches for cycles of unused objects; with 700, they take 8 % of an identification."""
@@ -18,6 +19,7 @@ GARBAGE_THRESHOLD = 50_000
 def main() -> None:
     """Entry point of the `pantocheck` command."""
     gc.set_threshold(GARBAGE_THRESHOLD)
+    accept_all_characters()
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP

@@ -8,6 +8,7 @@ LONGEST_QUOTE = 80
 
 _PLACE = re.compile(r"\(at line (\d+), column \d+\)")
 _DECIMAL_COMMA = re.compile(r"=\s*([+-]?\d+,\d+)")
+_FOLDER_SEPARATOR = re.compile(r"""=\s*\[?\s*"[^"']*\\""")
 _NUMBER_WITH_UNIT = re.compile(r"[=\[,]\s*([+-]?\d[\d_]*(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*([A-Za-z%°µΩ][\w/%°²³]*)")
 
 
@@ -42,4 +43,6 @@ def _suggest_correction(line: str) -> str:
         return f"Write a decimal point: {found[1].replace(',', '.')} in place of {found[1]} ."
     if found := _NUMBER_WITH_UNIT.search(line):
         return f"Write {found[1]} without {found[2]!r}: the end of the key states the unit, e.g. _N or _m."
+    if _FOLDER_SEPARATOR.search(line):
+        return "Write a path with forward slashes, or in single quotes: 'C:\\records'."
     return "Correct this line; see toml.io."

@@ -1,5 +1,6 @@
 """Common tables and keys of sidecars and summaries: table, system, run and line."""
 
+from pathlib import PureWindowsPath
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -81,7 +82,8 @@ class LineTable(InputTable):
 
 def find_table_name_problems(name: str) -> Problems:
     """Problem of the name of a table that is a path."""
-    if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name:
+    # On Windows, `C:table.csv` is a path, too; the same record must be valid on all systems.
+    if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name or PureWindowsPath(name).drive:
         yield validation_problem(
             "file", f"found the path {name!r}", "Put the table beside its sidecar, and give its name only."
         )

@@ -16,11 +16,14 @@ from pathlib import Path
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER, _PR_GET_CHILD_SUBREAPER = 1, 36, 37  # linux/prctl.h
 _LIBRARY = ctypes.CDLL(None) if sys.platform == "linux" else None
 
+KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
+"""Signal that no process can ignore; Windows has none, and its functions end a process at once."""
+
 ROUNDS, PAUSE = 100, 0.02  # [s]
 """Number of rounds that end orphans, and pause between two rounds; an orphan that ends can leave further orphans."""
 
 
-def end_with_parent(number: int = signal.SIGKILL) -> None:
+def end_with_parent(number: int = KILL) -> None:
     """Let the kernel send a signal to this process when its parent ends, even if the parent is killed."""
     if _LIBRARY is not None:
         _LIBRARY.prctl(_PR_SET_PDEATHSIG, int(number), 0, 0, 0)
@@ -59,7 +62,7 @@ def _end_foreign_children(known: set[int]) -> None:
             return
         for process in children:
             with contextlib.suppress(ProcessLookupError, PermissionError, ChildProcessError):
-                os.kill(process, signal.SIGKILL)
+                os.kill(process, KILL)
                 os.waitpid(process, os.WNOHANG)
         time.sleep(PAUSE)
 
@@ -70,7 +73,7 @@ def _list_foreign_children() -> list[int]:
     for path in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError, ValueError):
             # The name of the program, in brackets, may contain spaces.
-            _, parent, _, sid = path.read_text(errors="replace").rpartition(")")[2].split()[:4]
+            _, parent, _, sid = path.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()[:4]
             if int(parent) == this_process and int(sid) != session:
                 children.append(int(path.parent.name))
     return children

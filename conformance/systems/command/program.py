@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from pantocheck.conformance.systems.process_control import adopt_orphans, end_with_parent
+from pantocheck.conformance.systems.process_control import KILL, adopt_orphans, end_with_parent
 
 LONGEST_LINE = 1_000_000
 """Largest size of an answer [bytes]; numbers belong in record files."""
@@ -167,11 +167,11 @@ class Program:
         if os.name == "posix":
             for _ in range(10):
                 with contextlib.suppress(ProcessLookupError, PermissionError):
-                    os.killpg(self._process.pid, signal.SIGKILL)
+                    os.killpg(self._process.pid, KILL)
                 children = _find_marked(self._mark)
                 for child in children:
                     with contextlib.suppress(ProcessLookupError, PermissionError):
-                        os.kill(child, signal.SIGKILL)
+                        os.kill(child, KILL)
                 if not children:
                     break
                 time.sleep(0.02)

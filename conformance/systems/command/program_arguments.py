@@ -7,6 +7,9 @@ from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
 
+ESCAPE = "" if os.name == "nt" else "\\"
+"""Character that takes the meaning from the next one; on Windows backslashes separate folders."""
+
 
 def split_arguments(text: str, base: Path) -> tuple[str, ...]:
     """Split a command by the quoting rules of a shell, without expansions, and resolve file names.
@@ -34,8 +37,7 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
     try:
         words = shlex.shlex(text, posix=True, punctuation_chars=False)
         words.whitespace_split, words.commenters = True, ""
-        if os.name == "nt":
-            words.escape = ""  # Backslashes separate folders.
+        words.escape = ESCAPE
         parts = list(words)
     except ValueError as error:
         raise InputError(where, f"cannot be split into arguments ({error})", hint) from None
