@@ -8,7 +8,7 @@ from pathlib import Path
 from site_pages.page_blocks import list_pictures, read_blocks
 from site_pages.page_run import PageRun, start_page_run
 from site_pages.picture_folder import draw_page
-from site_pages.unrun_blocks import is_run_by_hand
+from site_pages.unrun_blocks import find_reason
 
 PDF_PAGE = re.compile(r"(?P<file>.+\.pdf)-(?P<page>\d+)\.png")
 """Name of a picture that is a page of a PDF document: `certificate.pdf-1.png`."""
@@ -22,7 +22,7 @@ def run_tutorial(page: Path, folder: Path) -> PageRun:
     """Run every block of a page in a folder; raises `BlockFault`."""
     run = start_page_run(folder, whole=page.stem in WHOLE_CLONE)
     for block in read_blocks(page):
-        if not is_run_by_hand(block):
+        if find_reason(block) is None:
             run.take(block)
     return run
 

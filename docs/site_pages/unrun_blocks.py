@@ -1,25 +1,32 @@
-"""Blocks of the pages that neither the tests nor the site run, each with its reason."""
+"""Blocks of the pages that are not run as a part of their page, each with its reason."""
 
 import tomllib
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from site_pages.page_blocks import Block
 
+DOCS = Path(__file__).parents[1]
 LIST = Path(__file__).with_name("unrun_blocks.toml")
 
 
-def read_unrun_blocks() -> dict[tuple[str, str], str]:
-    """Reason for each block that is not run, by its page and its first line."""
-    entries = tomllib.loads(LIST.read_text(encoding="utf-8"))["block"]
-    return {(entry["page"], entry["begins"]): entry["reason"] for entry in entries}
+@cache
+def read_list() -> dict[str, Any]:
+    """Content of the list: `block` with page, begin and reason, and `tested_elsewhere` with the test of each page."""
+    return tomllib.loads(LIST.read_text(encoding="utf-8"))
 
 
-def is_run_by_hand(block: Block) -> bool:
-    """Whether a block is in the list of blocks that are not run."""
-    return block.runs and (name_page(block), block.first_line) in read_unrun_blocks()
+def find_reason(block: Block) -> str | None:
+    """Reason for which a block is not run; None for a block that is run."""
+    page = name_page(block.page)
+    if page in read_list()["tested_elsewhere"]:
+        return f"{read_list()['tested_elsewhere'][page]} runs it"
+    entries = read_list()["block"]
+    reasons = [entry["reason"] for entry in entries if entry["page"] == page and block.text.startswith(entry["begins"])]
+    return reasons[0] if block.runs and reasons else None
 
 
-def name_page(block: Block) -> str:
-    """Path of the page of a block as in the list: `README.md`, `systems.md`, `tutorials/assessor.md`."""
-    docs = Path(__file__).parents[1]
-    return block.page.relative_to(docs if block.page.is_relative_to(docs) else docs.parent).as_posix()
+def name_page(page: Path) -> str:
+    """Path of a page as in the list: `README.md`, `systems.md`, `tutorials/assessor.md`."""
+    return page.relative_to(DOCS if page.is_relative_to(DOCS) else DOCS.parent).as_posix()
