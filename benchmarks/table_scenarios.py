@@ -18,7 +18,7 @@ from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.simulation.case_run import run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_runs
+from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_damping_runs
 from pantocheck.model import discretise
 from pantocheck.model.failures import SimulationError
 
@@ -177,7 +177,7 @@ def run_settled_changes(run: InitialRun) -> ForceChanges:
     sections = [geometry.section(i, i + EVALUATED_SPANS - 1) for i in range(first - SHIFTED_SPANS, first + 1)]
     ((_, initial),) = case.dampings.items()
     signals = (_simulate(case, damping, run.uplift_forces) for damping in (initial, case.line.damping))
-    return compare_runs(*signals, sections)
+    return compare_damping_runs(*signals, sections)
 
 
 def _simulate(case: Case, damping: Damping, forces: Sequence[float]) -> RecordSignals:

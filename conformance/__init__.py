@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pantocheck.conformance.input_files.input_error import InputError
-    from pantocheck.conformance.interface.campaign_session import run_campaign
+    from pantocheck.conformance.interface.campaign_session import read_traces, run_campaign
+    from pantocheck.conformance.interface.compared_runs import ComparedRuns, compare_runs
     from pantocheck.conformance.interface.fitted_damping import FittedDamping
-    from pantocheck.conformance.interface.graded_results import GradedResults, assess_run, grade_cases, open_results
+    from pantocheck.conformance.interface.fitted_pantograph import FittedPantograph, fit_pantograph
+    from pantocheck.conformance.interface.graded_results import (
+        GradedResults,
+        assess_run,
+        grade_cases,
+        open_results,
+        validate_dossier,
+    )
     from pantocheck.conformance.interface.identified_lines import (
         IdentifiedLines,
         IdentifiedRecords,
@@ -21,9 +29,12 @@ if TYPE_CHECKING:
     from pantocheck.conformance.interface.opened_drop import OpenedDrop, open_drop
     from pantocheck.conformance.interface.opened_line import OpenedLine
     from pantocheck.conformance.interface.opened_run import OpenedRun, SimulatedRun, open_run
+    from pantocheck.conformance.interface.verified_report import VerifiedReport, verify_report
 
 __all__ = [
+    "ComparedRuns",
     "FittedDamping",
+    "FittedPantograph",
     "GradedResults",
     "IdentifiedLines",
     "IdentifiedRecords",
@@ -33,7 +44,10 @@ __all__ = [
     "OpenedLine",
     "OpenedRun",
     "SimulatedRun",
+    "VerifiedReport",
     "assess_run",
+    "compare_runs",
+    "fit_pantograph",
     "grade_cases",
     "identify_line",
     "list_cases",
@@ -42,11 +56,16 @@ __all__ = [
     "open_modes",
     "open_results",
     "open_run",
+    "read_traces",
     "run_campaign",
+    "validate_dossier",
+    "verify_report",
 ]
 
 _MODULES = {
+    "ComparedRuns": "interface.compared_runs",
     "FittedDamping": "interface.fitted_damping",
+    "FittedPantograph": "interface.fitted_pantograph",
     "GradedResults": "interface.graded_results",
     "IdentifiedLines": "interface.identified_lines",
     "IdentifiedRecords": "interface.identified_lines",
@@ -56,7 +75,10 @@ _MODULES = {
     "OpenedLine": "interface.opened_line",
     "OpenedRun": "interface.opened_run",
     "SimulatedRun": "interface.opened_run",
+    "VerifiedReport": "interface.verified_report",
     "assess_run": "interface.graded_results",
+    "compare_runs": "interface.compared_runs",
+    "fit_pantograph": "interface.fitted_pantograph",
     "grade_cases": "interface.graded_results",
     "identify_line": "interface.identified_lines",
     "list_cases": "interface.opened_case",
@@ -65,7 +87,10 @@ _MODULES = {
     "open_modes": "interface.identified_lines",
     "open_results": "interface.graded_results",
     "open_run": "interface.opened_run",
+    "read_traces": "interface.campaign_session",
     "run_campaign": "interface.campaign_session",
+    "validate_dossier": "interface.graded_results",
+    "verify_report": "interface.verified_report",
 }
 """Modules of the public names."""
 

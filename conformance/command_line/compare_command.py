@@ -1,7 +1,5 @@
 """`pantocheck compare`: records, results and systems side by side."""
 
-import csv
-import io
 from pathlib import Path
 from typing import Annotated
 
@@ -22,11 +20,10 @@ from pantocheck.conformance.comparison.compared_run import (
 )
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
 from pantocheck.conformance.comparison.run_comparison_format import RunComparison
-from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.comparison.run_comparison_page import build_run_comparison, format_compared
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.interface.compared_runs import write_comparison
+from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
 from pantocheck.conformance.reports.words import name_pantograph
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -74,7 +71,7 @@ def compare_command(
         with output.status(escape_text(subject)):
             runs.append(_load_subject(subject, simulated))
     comparison = compare_subjects(runs, simulated.id if simulated is not None else case)
-    files = [] if out is None else _write_comparison(comparison, out)
+    files = [] if out is None else write_comparison(comparison, out)
     _print_comparison(comparison)
     print_files(files)
 
@@ -96,35 +93,6 @@ def _load_subject(text: str, case: Case | None) -> list[ComparedRun]:
     if path.is_dir() or path.suffix == Path(RESULTS_FILE).suffix:
         return read_results_runs(path)
     return [read_record_run(path)]
-
-
-def _write_comparison(comparison: RunComparison, folder: Path) -> list[Path]:
-    """Write all files of a comparison; return their paths."""
-    data, values = folder / "comparison.json", folder / "comparison.csv"
-    write_model(data, comparison)
-    document = build_run_comparison(comparison.model_dump(mode="json", by_alias=True))
-    pages = write_document(document, folder / "comparison")
-    write_atomically(values, _list_values(comparison).encode())
-    return [data, *pages, values]
-
-
-def _list_values(comparison: RunComparison) -> str:
-    """Table of all values as comma-separated values; one row per quantity and subject."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(("case", "pantograph", "quantity", "subject", "item", "value", "uncertainty"))
-    for case in comparison.cases:
-        for owner in case.owners:
-            for quantity in owner.quantities:
-                for subject, value, width in zip(
-                    comparison.subjects, quantity.values, quantity.uncertainty, strict=True
-                ):
-                    numbers = value if isinstance(value, tuple) else (value,)
-                    widths = width if isinstance(width, tuple) else (width,) * len(numbers)
-                    for item, (number, half_width) in enumerate(zip(numbers, widths, strict=True), 1):
-                        place = item if isinstance(value, tuple) else ""
-                        writer.writerow((case.id, owner.number, quantity.name, subject.name, place, number, half_width))
-    return text.getvalue()
 
 
 def _print_comparison(comparison: RunComparison) -> None:

@@ -6,34 +6,19 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-import tomli_w
 import typer
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number
 from pantocheck.conformance.command_line.file_list import print_files
-from pantocheck.conformance.comparison.response_comparison import compare_responses
-from pantocheck.conformance.comparison.response_record import ResponseRecord, read_response
+from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
-from pantocheck.conformance.identification.pantograph_fit.fit_description import (
-    CHAIN_KEYS,
-    FileTexts,
-    build_pantograph_fit,
-    describe_pantograph,
-    name_parameter,
-)
+from pantocheck.conformance.identification.pantograph_fit.fit_description import CHAIN_KEYS, name_parameter
 from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
-from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.toml_file import validate_model
-from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
-from pantocheck.conformance.reports.formats.report_writers import write_document
-
-LONGEST_SOURCE = 500
-"""Largest number of characters of a source in a pantograph file."""
+from pantocheck.conformance.interface.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
 
 
 def fit_pantograph_command(
@@ -58,7 +43,7 @@ def fit_pantograph_command(
     title: Annotated[str, typer.Option(help="Title of the pantograph.")] = "Fitted pantograph",
     contact_stiffness: Annotated[
         float, typer.Option("--contact-stiffness-N-m", help="Contact of the file, not part of a response.", min=1.0)
-    ] = 50e3,
+    ] = CONTACT_STIFFNESS_N_M,
 ) -> None:
     """Fit a chain of lumped masses to frequency responses measured at a pantograph head.
 
@@ -67,22 +52,16 @@ def fit_pantograph_command(
 
     Example: pantocheck fit-pantograph at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
     """
-    records = [read_response(path) for path in responses]
+    records = tuple(read_response(path) for path in responses)
     _refuse_other_suffix(out)
     check_writable(out.parent)
     task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
     output = console()
     with output.status("fitting"):
         selection = fit_chains(records, task)
-        chosen = masses or selection.best
-        texts = FileTexts(title, _name_source(records))
-        tables = describe_pantograph(selection.fits[chosen], selection.intervals(chosen), texts, contact_stiffness)
-        pantograph = validate_model(tables, PantographFile, "fitted pantograph")
-        comparison = compare_responses(records, pantograph, None)
-        report = build_pantograph_fit(selection, chosen, title, comparison)
-        write_atomically(out, tomli_w.dumps(tables).encode())
-        files = [out, *_write_reports(report, out)]
-    _print_fit(report)
+        fit = build_fitted_pantograph(records, selection, masses or selection.best, title, contact_stiffness)
+        files = fit.write(out)
+    _print_fit(fit.report)
     print_files(files)
 
 
@@ -132,20 +111,6 @@ def _parse_value(name: str, text: str) -> float:
     if not (smallest_allowed and value < 1e9):
         raise InputError("--fix", f"{name} has the value {text[:40]!r}", "Give a number, e.g. masses_kg.3=7.5.")
     return value
-
-
-def _name_source(records: list[ResponseRecord]) -> str:
-    """Origin of the fitted values: tables and their sources."""
-    names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
-    return f"pantocheck fit-pantograph, from {names}"[:LONGEST_SOURCE]
-
-
-def _write_reports(report: PantographFit, out: Path) -> list[Path]:
-    """Write the reports beside the pantograph file; return their paths."""
-    data = out.with_name(f"{out.stem}-fit.json")
-    write_model(data, report)
-    document = build_pantograph_fit_document(report.model_dump(mode="json", by_alias=True))
-    return [data, *write_document(document, data.with_suffix(""))]
 
 
 def _print_fit(report: PantographFit) -> None:

@@ -8,16 +8,11 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
-from pantocheck.conformance.authenticity.origin_check import check_origin
-from pantocheck.conformance.authenticity.outside_check import check_outside_cases
-from pantocheck.conformance.authenticity.record_check import check_record_quantities
-from pantocheck.conformance.authenticity.rerun_check import check_rerun
-from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
-from pantocheck.conformance.authenticity.verification import Verification, verify_document
-from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.authenticity.verification import Verification
 from pantocheck.conformance.command_line.guard import strip_control_characters
 from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.interface.verified_report import verify_report
 
 WIDTH = 80
 """Columns of the output, so that it can be read in any terminal and mail."""
@@ -70,16 +65,10 @@ def verify_command(
 
     pantocheck verify report/results.json --record run.csv
     """
-    verification = verify_document(document)
-    report = check_signatures(document, trust_roots)
-    results, catalogue = verification.results, open_catalogue(folders or ())
-    outside = check_outside_cases(results, catalogue)
-    records = [check for path in record or () for check in check_record_quantities(results, path, catalogue)]
-    reruns = check_rerun(results, catalogue) if rerun else []
-    verification = verification.add_checks([*outside, *records, *reruns, *check_origin(report)])
+    report = verify_report(document, record or (), rerun, trust_roots, folders or ())
     word = "authentic" if report.authentic else "consistent"
-    typer.echo("\n".join(_describe(verification, word)))
-    raise typer.Exit(_exit_code(verification, any_verdict))
+    typer.echo("\n".join(_describe(report.verification, word)))
+    raise typer.Exit(_exit_code(report.verification, any_verdict))
 
 
 def _exit_code(verification: Verification, any_verdict: bool) -> int:

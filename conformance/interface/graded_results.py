@@ -9,6 +9,7 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
@@ -18,6 +19,7 @@ from pantocheck.conformance.reports.formats.report_writers import check_formats,
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.systems.system_choice import choose_system
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,15 @@ class GradedResults:
             for criterion in case.criteria
         ]
         return tabulate_rows(rows, ("case", *names))
+
+    def steps(self) -> Any:
+        """Steps of the EN 50318 procedure, one per row: a table of pandas, or columns of numpy.
+
+        Only results of `validate_dossier` have steps.
+        """
+        procedure = self.results.procedure
+        rows = [step.model_dump(mode="json") for step in procedure.steps] if procedure is not None else []
+        return tabulate_rows(rows, ("step", "required", "state", "verdict", "margin", "uncertainty", "reason"))
 
     def write(self, folder: str | Path, formats: Sequence[str] | None = None) -> list[Path]:
         """Write the report; returns the paths of its files.
@@ -140,3 +151,34 @@ def assess_run(record: str | Path, profile: str, measured: str | Path | None = N
     subject = load_assessed_record(Path(record), rules, LineTable())
     reference = None if measured is None else load_assessed_record(Path(measured), rules, LineTable())
     return GradedResults(assess_record(subject, rules, "secondary", reference))
+
+
+def validate_dossier(dossier: str | Path, folder: str | Path, jobs: int = 1) -> GradedResults:
+    """Validate a simulator for a line by a dossier, as `pantocheck validate` does.
+
+    Parameters
+    ----------
+    dossier : str or Path
+        Dossier file.
+    folder : str or Path
+        Folder of the records of the runs.
+    jobs : int
+        Number of reference models that run in parallel.
+
+    Returns
+    -------
+    GradedResults
+        Results with the steps of the procedure.
+
+    Raises
+    ------
+    InputError
+        The dossier or a file that it names is wrong.
+    """
+    from pantocheck.conformance.procedure.dossier_reading import read_dossier
+    from pantocheck.conformance.procedure.validation import Validation
+
+    content = read_dossier(Path(dossier))
+    system = choose_system(content.system, content.file.timeout_s)
+    check_writable(Path(folder))
+    return GradedResults(Validation(content, system, Path(folder), jobs).run())

@@ -10,10 +10,15 @@ from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
 from pantocheck.conformance.cases.library import load_case, load_entry
 from pantocheck.conformance.comparison.compared_run import deliver_case, describe_delivery
+from pantocheck.conformance.grading.case_selection import choose_verdicts
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.interface.graded_results import GradedResults
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.interface.opened_run import SimulatedRun
 from pantocheck.conformance.results.outcome import missing_record_reason
+from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -110,6 +115,27 @@ class OpenedCase:
             The system does not run the case, fails, or delivers no record.
         """
         return self._run_on(choose_system(system))
+
+    def grade(self, system: str = "builtin", trust: Trust = "secondary") -> GradedResults:
+        """Run the case on a system and grade it, as `pantocheck run` does.
+
+        A changed case of the library has no limits, because they hold for its own inputs.
+
+        Parameters
+        ----------
+        system : str
+            `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+        trust : Trust
+            Lowest trust of the limits that count.
+
+        Raises
+        ------
+        InputError
+            The system is wrong.
+        """
+        requested = choose_verdicts(None, system, [self.id])
+        participation = Participation(requested=requested)
+        return GradedResults(run_cases([self.case], choose_system(system), trust, participation=participation))
 
     def simulate_drop(self, number: int = 1) -> OpenedDrop:
         """Simulate a mass drop of the case with the reference simulator, as `pantocheck drop` does.

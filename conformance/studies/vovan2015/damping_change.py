@@ -22,7 +22,7 @@ from pantocheck.conformance.results.outcome import (
 from pantocheck.conformance.results.traces import thin_series
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.studies.vovan2015.change_tables import build_changes_table, build_values_table
-from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_runs, force_changes
+from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_damping_runs, force_changes
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 from pantocheck.conformance.systems.system import System
 
@@ -54,7 +54,7 @@ def run_damping_change(case: Case, study: DampingChange, system: System) -> Outc
             return failure(f"{model}: {missing_record_reason(outcome)}")
         runs[model], signals[model] = outcome, _build_signals(case, outcome.record)
     before, after = runs.values()
-    changes = compare_runs(signals[name], signals[study.after], case.shifted_sections)
+    changes = compare_damping_runs(signals[name], signals[study.after], case.shifted_sections)
     return replace(
         after,
         refined=_compare_runs(case, before.refined, after.refined),
@@ -95,7 +95,7 @@ def _add_changes(case: Case, before: Delivered, after: Delivered) -> Delivered:
     """Run after the change with the changes of the force."""
     if before.record is None or after.record is None:
         return after
-    changes = compare_runs(_build_signals(case, before.record), _build_signals(case, after.record))
+    changes = compare_damping_runs(_build_signals(case, before.record), _build_signals(case, after.record))
     return replace(after, study=StudyResult(changes.values))
 
 

@@ -41,7 +41,7 @@ class ForceChanges:
         return [value for value in found if isinstance(value, float)]
 
 
-def compare_runs(
+def compare_damping_runs(
     before: RecordSignals, after: RecordSignals, sections: Sequence[tuple[float, float]] = ()
 ) -> ForceChanges:
     """Changes between two runs of a case.

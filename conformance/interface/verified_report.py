@@ -1,0 +1,101 @@
+"""Verification of reports in Python: the checks of a certificate or a results.json."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck
+from pantocheck.conformance.authenticity.origin_check import check_origin
+from pantocheck.conformance.authenticity.outside_check import check_outside_cases
+from pantocheck.conformance.authenticity.record_check import check_record_quantities
+from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
+from pantocheck.conformance.authenticity.verification import DocumentState, Verification, verify_document
+from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.interface.column_table import tabulate_rows
+
+
+@dataclass(frozen=True)
+class VerifiedReport:
+    """Checks of a report.
+
+    Parameters
+    ----------
+    verification : Verification
+        Results inside the report, and the checks.
+    authentic : bool
+        Whether the report is consistent, and every signature leads to a trust root.
+    """
+
+    verification: Verification
+    authentic: bool
+
+    @property
+    def verdict(self) -> Verdict:
+        """Verdict that the report states."""
+        return self.verification.verdict
+
+    @property
+    def state(self) -> DocumentState:
+        """State: `consistent`, `incomplete` (of another version, compared in part) or `contradicted`."""
+        return self.verification.state
+
+    @property
+    def checks(self) -> tuple[DocumentCheck, ...]:
+        """Checks with `outcome`, `statement` and `details`, in the order of reports."""
+        return self.verification.checks
+
+    @property
+    def contradictions(self) -> tuple[str, ...]:
+        """Contradictions, one line each."""
+        return self.verification.discrepancies
+
+    def to_dataframe(self) -> Any:
+        """Checks, one per row: a table of pandas, or columns of numpy."""
+        rows = [{"outcome": check.outcome, "statement": check.statement} for check in self.checks]
+        return tabulate_rows(rows, ("outcome", "statement"))
+
+
+def verify_report(
+    report: str | Path,
+    records: Sequence[str | Path] = (),
+    rerun: bool = False,
+    trust_roots: str | Path | None = None,
+    cases: Sequence[str | Path] = (),
+) -> VerifiedReport:
+    """Verify a report, as `pantocheck verify` does.
+
+    The results in the report are graded again, its pages are made again, its cases are compared with the library, and
+    its signatures are checked.
+
+    Parameters
+    ----------
+    report : str or Path
+        certificate.pdf, certificate.html or results.json.
+    records : sequence of str or Path
+        Records of cases: their quantities are computed from the samples again.
+    rerun : bool
+        Whether the reference simulator runs the cases again.
+    trust_roots : str, Path or None
+        PEM file of the authorities whose signatures are trusted.
+    cases : sequence of str or Path
+        Folders with further cases, whose ids begin with `own/`.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read, is damaged, or is no report.
+    """
+    path, roots = Path(report), None if trust_roots is None else Path(trust_roots)
+    verification = verify_document(path)
+    signatures = check_signatures(path, roots)
+    results, catalogue = verification.results, open_catalogue(cases)
+    checks = check_outside_cases(results, catalogue)
+    checks += [check for record in records for check in check_record_quantities(results, Path(record), catalogue)]
+    if rerun:
+        from pantocheck.conformance.authenticity.rerun_check import check_rerun
+
+        checks += check_rerun(results, catalogue)
+    verification = verification.add_checks([*checks, *check_origin(signatures)])
+    return VerifiedReport(verification, signatures.authentic and verification.consistent)
