@@ -44,6 +44,7 @@ sphinx_gallery_conf = {
     "plot_gallery": "True",
     "within_subsection_order": "site_pages.gallery_order.GalleryOrder",
     "show_memory": False,
+    "capture_repr": (),
     "remove_config_comments": True,
     "write_computation_times": False,
 }
