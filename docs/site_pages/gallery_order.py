@@ -14,8 +14,8 @@ ORDER = (
         "irregular_wire",
     ),
     *("catenary_in_python", "waves_and_doppler"),
-    *("foreign_simulator", "line_test", "uncertainty", "tolerance_study"),
-    *("drop_and_identification", "damping_fit", "damping_study"),
+    *("foreign_simulator", "line_test", "uncertainty", "tolerance_study", "certificate"),
+    *("pantograph_response", "drop_and_identification", "damping_fit", "damping_study"),
 )
 """Names of the examples; others follow by name."""
 
