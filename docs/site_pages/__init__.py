@@ -7,6 +7,7 @@ from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
 from site_pages.format_pages import build_format_page
 from site_pages.interface_pages import build_interface_page
+from site_pages.limitations_page import build_limitations_page
 from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
@@ -21,6 +22,7 @@ PAGES = {
     "quantity-reference": build_quantity_page,
     "interface": build_interface_page,
     "contributing": build_contributing_page,
+    "known-limitations": build_limitations_page,
     "all-pages": build_page_list,
 }
 """Builder of each page by its name."""

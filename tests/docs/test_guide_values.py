@@ -15,7 +15,7 @@ import pytest
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs/tutorials").glob("*.md"))]
 INLINE = re.compile(r"([−+-]?[\d,.]*\d)(?: ?(?:%|mm/N|[a-zA-Z/²]+))?<!-- guide: ([^ ]+) -->")
 TABLE = re.compile(r"<!-- guide-table: (.+?) -->\n\n?((?:\|.*\n)+)")
 OWNERS = {"line": "0", "": "0"}

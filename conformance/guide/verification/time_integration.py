@@ -35,8 +35,8 @@ def study_time_integration() -> Topic:
     ratio = (_DAMPING.mass_coefficient / omega + _DAMPING.stiffness_coefficient * omega) / 2
     return Topic(
         title="Time integration of free vibrations",
-        theory="A string in a mode moves as cos(omega t), a line in its modes as the sum of their cosines. With "
-        "Rayleigh damping C = alpha M + beta K, mode n decays with the ratio (alpha / omega_n + beta omega_n) / 2.",
+        theory="A string in a mode moves as cos(ωt), a line in its modes as the sum of their cosines. With "
+        "Rayleigh damping C = αM + βK, a mode decays with the ratio (α/ω + βω) / 2.",
         setting=f"String of {_LENGTH:g} m in mode {_MODE} ({omega / 2 / np.pi:.2f} Hz); line of two spans with "
         f"droppers in its modes 3, 7 and 12; {_DURATION:g} s.",
         comparisons=[
@@ -46,13 +46,13 @@ def study_time_integration() -> Topic:
                 "-",
                 (_decay_ratio(omega), ratio),
                 2e-3,
-                "At 1 ms, (omega dt)^2 / 12 = 1e-4 of the frequency; the ratio is read from peaks of a parabola.",
+                "At 1 ms, (ω Δt)² / 12 is 1e-4 of the frequency; the ratio is read from peaks of a parabola.",
             )
         ],
         convergence=[
             build_study(
                 "string",
-                "deflection of a string (RMS), element length 3 c dt",
+                "deflection of a string (RMS), element length 3 c Δt",
                 "time step [ms]",
                 [(1e3 * dt, _string_error(dt, omega)) for dt in _TIME_STEPS],
                 (4.0, 0.2),

@@ -28,9 +28,9 @@ def study_sag() -> Topic:
     x = line.mesh.position
     return Topic(
         title="Sag of a wire under its weight",
-        theory="A string has the parabola m g x (L - x) / 2T. A pinned beam with tension solves EI w'''' - T w'' = "
-        "-m g; its end layers have the length sqrt(EI / T).",
-        setting=f"String of {_LENGTH:g} m with elements of 1 m. Beam of {_SHORT:g} m with EI = {_STIFF:g} N m2; end "
+        theory="A string has the parabola m g x (L − x) / 2T. A pinned beam with tension solves EI w'''' − T w'' = "
+        "−m g; its end layers have the length √(EI/T).",
+        setting=f"String of {_LENGTH:g} m with elements of 1 m. Beam of {_SHORT:g} m with EI = {_STIFF:g} N m²; end "
         "layers of 1 m.",
         comparisons=[
             compare_relative(
@@ -49,7 +49,7 @@ def study_sag() -> Topic:
                 "element length [m]",
                 [(h, _sag_error(h)) for h in _ELEMENTS],
                 (4.0, 0.3),
-                "Cubic shape functions; the end layers of a fourth-order equation converge with h^4.",
+                "Cubic shape functions; the end layers of a fourth-order equation converge with h⁴.",
             )
         ],
         charts=[
@@ -91,8 +91,8 @@ def study_elasticity() -> Topic:
     exact = point_flexibility(positions, _LENGTH, WIRE_TENSION, WIRE_BENDING)
     return Topic(
         title="Static elasticity of a wire",
-        theory="A unit force at x deflects a pinned beam with tension by [x (L - x) / L - sinh(kx) sinh(k(L - x)) / "
-        "(k sinh(kL))] / T with k = sqrt(T / EI).",
+        theory="A unit force at x deflects a pinned beam with tension by [x (L − x) / L − sinh(kx) sinh(k(L − x)) / "
+        "(k sinh(kL))] / T with k = √(T/EI).",
         setting=f"Contact wire of {_LENGTH:g} m, elements of 0.5 m; forces at stations and between them.",
         comparisons=[
             compare_relative(

@@ -13,8 +13,8 @@ _LENGTH, _MODE = 60.0, 10
 """Length of the wire [m], and mode of the convergence studies: half a wave is 6 m long."""
 
 _WIRES = {
-    "string": ("a string", WIRE_TENSION, 0.0, (2.0, 1.0, 0.5), (6.0, 0.15), "h^6: the cubic element of a string."),
-    "beam": ("a beam", 0.0, 2e4, (2.0, 1.0, 0.5), (4.0, 0.1), "h^4: the cubic element of a beam without tension."),
+    "string": ("a string", WIRE_TENSION, 0.0, (2.0, 1.0, 0.5), (6.0, 0.15), "h⁶: the cubic element of a string."),
+    "beam": ("a beam", 0.0, 2e4, (2.0, 1.0, 0.5), (4.0, 0.1), "h⁴: the cubic element of a beam without tension."),
 }
 """Wires without bending and without tension: words, tension [N], EI [N m2], elements [m], order, and its origin."""
 
@@ -26,7 +26,7 @@ def study_frequencies() -> Topic:
     reason = "At 12 elements per wave or more, the error of cubic elements is below 1e-6."
     return Topic(
         title="Natural frequencies of a wire",
-        theory="f_n = sqrt((T k^2 + EI k^4) / m) / 2 pi with k = n pi / L for a pinned beam with tension. The error of "
+        theory="f = √((T k² + EI k⁴) / m) / 2π with k = n π / L for a pinned beam with tension. The error of "
         "cubic elements is of order 6 where tension rules and of order 4 where bending rules.",
         setting=f"Contact wire of {_LENGTH:g} m, elements of 0.5 m; convergence in mode {_MODE}.",
         comparisons=[

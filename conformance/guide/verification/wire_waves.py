@@ -31,15 +31,15 @@ def study_waves() -> Topic:
     reason = "Largest waves of the pulse: 80 rad/s over 0.33 s at 0.25 ms; a few 1e-4 of them are late."
     return Topic(
         title="Waves on a wire",
-        theory="A pulse on a string travels with c = sqrt(T / m) without changing its shape (d'Alembert). With "
-        "bending, each wave number k travels with its own speed: omega^2 = (T k^2 + EI k^4) / m.",
+        theory="A pulse on a string travels with c = √(T/m) without changing its shape (d'Alembert). With "
+        "bending, each wave number k travels with its own speed: ω² = (T k² + EI k⁴) / m.",
         setting=f"Wire of {_LENGTH:g} m; a pulse with a standard deviation of 3 m travels {_DISTANCE:g} m; elements of "
         "0.25 m, 0.25 ms.",
         comparisons=[
             compare_relative("speed", "speed of a pulse on a string", "m/s", (travelled, speed), 3e-4, reason),
             compare_relative(
                 "dispersion",
-                f"height of the pulse after {_DISTANCE:g} m, EI = {_STIFF:g} N m2",
+                f"height of the pulse after {_DISTANCE:g} m, EI = {_STIFF:g} N m²",
                 "mm",
                 (1e3 * stiff_computed.max(), 1e3 * stiff_end.max()),
                 3e-4,
@@ -68,7 +68,7 @@ def _draw_pulses(line: DiscretisedLine, exact: RealArray, computed: RealArray, s
     x = line.mesh.position
     near = np.flatnonzero((x > _CENTRE + _DISTANCE - 20) & (x < _CENTRE + _DISTANCE + 20))
     return Chart(
-        caption=f"Pulse after {_DISTANCE:g} m on a wire with a bending stiffness of {_STIFF:g} N m2.",
+        caption=f"Pulse after {_DISTANCE:g} m on a wire with a bending stiffness of {_STIFF:g} N m².",
         alternative="The computed points lie on the exact pulse, which is lower and wider than the pulse on a string.",
         x_label="position [m]",
         y_label="deflection [mm]",

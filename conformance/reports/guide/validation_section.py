@@ -80,7 +80,7 @@ def _build_case(case: dict[str, Any]) -> doc.Section:
         (
             doc.Paragraph(f"{case['title']}.{edition}{superseded}"),
             doc.Table(columns, rows, layout="grid"),
-            doc.SmallPrint(f"Source of the ranges: {sources}."),
+            doc.SmallPrint(f"Source of the ranges: {sources}. Digest of the inputs: {case['input_digest']}."),
         ),
     )
 

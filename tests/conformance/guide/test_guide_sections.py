@@ -82,6 +82,7 @@ def test_page_states_the_numbers_of_every_section(data: dict[str, Any]) -> None:
         "Not run: exudyn is not installed. Install it with `pip install 'pantocheck[peers]'`",
         "Machine: Some processor, 2 cores.",
         "Records of other systems",
+        "Digest of the inputs: sha256:0.",
     ):
         assert sentence in text, sentence
     assert "| own/twin | 2 | 10.0 | 0.500 | 0.050 |" in text
