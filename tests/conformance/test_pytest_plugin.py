@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers.converged_fixtures import StateConverged
@@ -26,8 +27,16 @@ from pantocheck.conformance.grading.verification_limits import build_requirement
 from pantocheck.conformance.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
 from pantocheck.conformance.pytest_plugin.user_fixtures import GradedCase, criterion_line
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.model.dynamics.binary_search import search
 
 pytest_plugins = ["pytester"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _load_compiler() -> None:
+    """Load all of numba: pytester forgets what is loaded in one of its sessions, and numba cannot be loaded twice."""
+    search(np.arange(7.0), 0, 7, 0.5)
+
 
 SKIPPER = """
 import json, sys

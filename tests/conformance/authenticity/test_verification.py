@@ -14,7 +14,7 @@ from pypdf.errors import DependencyError, LimitReachedError
 from pypdf.generic import NameObject, StreamObject
 from typer.testing import CliRunner
 
-from pantocheck.conformance.authenticity import attachment, certificate_reading
+from pantocheck.conformance.authenticity import certificate_reading
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.authenticity.verification import verify_document
 from pantocheck.conformance.cases.case import Case
@@ -303,6 +303,6 @@ def test_every_exception_of_the_parser_is_a_message(
     def fail(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(attachment, "PdfReader", fail)
+    monkeypatch.setattr("pypdf.PdfReader", fail)
     with pytest.raises(InputError, match="a damaged PDF"):
         verify_document(certificate_file)
