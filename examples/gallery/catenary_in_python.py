@@ -2,12 +2,12 @@ r"""
 Catenary in Python
 ==================
 
-`pantocheck.model` describes a line with Python objects and simulates it, without files, cases or verdicts. This example
-builds a line of ten spans, looks at its modes, and drives a pantograph along it. All values are in SI units.
+``pantocheck.model`` describes a line with Python objects and simulates it, without files, cases or verdicts. This
+example builds a line of ten spans, looks at its modes, and drives a pantograph along it. All values are in SI units.
 """
 
 # %%
-# **Build the line.** A `Catenary` is a collection of wires and of the parts that join them. Droppers state the height
+# **Build the line.** A ``Catenary`` is a collection of wires and of the parts that join them. Droppers state the height
 # of the contact wire at their place; their lengths follow. Supports hold the messenger wire, arms the contact wire.
 
 import matplotlib.pyplot as plt

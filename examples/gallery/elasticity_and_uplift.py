@@ -32,9 +32,9 @@ ax.set(xlabel="position in the span [m]", ylabel="elasticity [mm/N]", ylim=0)
 ax.legend(loc="lower center")
 
 # %%
-# The contact wire also bends down from dropper to dropper and gives way at the supports, where the string does not. A
-# dropper carries about 60 N. A larger force makes it slack: the contact wire then is softer, and the dips at the
-# droppers vanish.
+# The contact wire also bends from dropper to dropper, and gives way at the supports, where the string does not. A
+# dropper in the middle of the span carries about 50 N. Under a larger force it becomes slack: the contact wire is
+# softer then, and the dips at the droppers vanish.
 #
 # Now drive a pantograph at several speeds, on the line of EN 50318:2002. A force that moves on a string lifts it by the
 # static uplift times :math:`1/(1 - v^2/c^2)`. The line has supports and droppers, so this is a trend and no more.

@@ -31,8 +31,9 @@ smooth_N, wavy_N = (np.array(run.signals()["force_N"]) for run in (smooth_run, w
 # contact, and the wire. A force at the circular frequency :math:`\omega` on an infinite string meets the impedance
 # :math:`2\sqrt{T m}`, and this does not change when the force moves. So
 #
-# .. math:: \left|\frac{F}{h}\right| = \frac{1}{\left|\alpha_\mathrm{head} + \dfrac1k +
-#           \dfrac{1}{2 i \omega \sqrt{T m}}\right|}, \qquad G_F(f) = \left|\frac{F}{h}\right|^2 \frac{S(f/v)}{v}
+# .. math:: \left|\frac{F}{h}\right| = \frac{1}{\left|\alpha_\mathrm{head} + 1/k + 1/(2 i \omega \sqrt{T m})\right|}
+#
+# .. math:: G_F(f) = \left|\frac{F}{h}\right|^2 \frac{S(f/v)}{v}
 #
 # with the density :math:`S` of the heights over the spatial frequency and :math:`G_F` of the force over the frequency.
 

@@ -2,13 +2,13 @@ r"""
 Own line
 ========
 
-A line of one's own, from three short files to its contact force. The files hold the data that a design office has:
+A line of one's own, from two short files to its contact force. The files hold the data that a design office has:
 spans, tensions, masses and the positions of the droppers. Then one input changes, and the force shows the effect.
 """
 
 # %%
 # **Write the line and the train.** Keys end with their unit. The pantograph is one of the library; a path to an own
-# file may stand in its place. `pantocheck new line my-line.toml` writes a longer file with comments.
+# file may stand in its place. ``pantocheck new line my-line.toml`` writes a longer file with comments.
 
 import tempfile
 from pathlib import Path

@@ -3,7 +3,7 @@ Waves and the Doppler effect
 ============================
 
 A pantograph sends waves along the contact wire in both directions. Waves ahead of the train are compressed, waves
-behind it are stretched, like the sound of a passing siren. This example uses `pantocheck.model` alone, with the
+behind it are stretched, as is the sound of a moving source. This example uses ``pantocheck.model`` alone, with the
 simplest line there is: one tensioned wire.
 """
 
@@ -53,7 +53,7 @@ history = simulate_passage(line, passage)
 # lines; the train is the solid line. With the frequency :math:`f_0 = v/\lambda` at the head, a point ahead of the train
 # and a point behind it vibrate with
 #
-# .. math:: f_\mathrm{ahead} = \frac{f_0}{1 - v/c}, \qquad f_\mathrm{behind} = \frac{f_0}{1 + v/c}
+# .. math:: f_\mathrm{ahead} = \frac{f_0}{1 - v/c}, \quad f_\mathrm{behind} = \frac{f_0}{1 + v/c}
 
 c = wave_speed(TENSION, MASS)
 velocity = history.motion[:, :, 1]
