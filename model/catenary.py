@@ -175,7 +175,13 @@ class Dropper:
     contact_wire_height: float | None = 0.0
 
     def taut_stiffness(self, length: float) -> float:
-        """Stiffness along the taut dropper with a length at rest [m]: as given, or EA / length [N/m]."""
+        """Stiffness along the taut dropper: as given, or EA / length [N/m].
+
+        Parameters
+        ----------
+        length : float
+            Length at rest [m].
+        """
         return (self.axial_stiffness or 0.0) / length if self.stiffness is None else self.stiffness
 
 
@@ -216,7 +222,13 @@ class SteadyArm:
     height: float = 0.0
 
     def transverse_stiffness(self, tension: float) -> float:
-        """Stiffness across a hinged bar with a tension [N]: tension / length, 0 beside a vertical stiffness [N/m]."""
+        """Stiffness across a hinged bar: tension / length, 0 beside a vertical stiffness [N/m].
+
+        Parameters
+        ----------
+        tension : float
+            Axial force of the bar [N].
+        """
         return 0.0 if self.vertical_stiffness is not None or self.length is None else tension / self.length
 
 
@@ -311,8 +323,16 @@ class Catenary:
 
     Parameters
     ----------
-    wires, droppers, steady_arms, messenger_supports, clamps : tuple of Wire, tuple of Dropper, ...
-        Parts of the line.
+    wires : tuple of Wire
+        Wires of the line.
+    droppers : tuple of Dropper
+        Droppers between messenger or stitch wire and contact wire.
+    steady_arms : tuple of SteadyArm
+        Arms that hold the contact wire.
+    messenger_supports : tuple of MessengerSupport
+        Supports of the messenger wire.
+    clamps : tuple of Clamp
+        Rigid joints of two wires.
     damping : dict of Kind to Rayleigh
         Damping of each kind of component; a missing kind is undamped.
     modal_damping : tuple of ModalBand
@@ -344,9 +364,26 @@ class Catenary:
         return any(wire.stagger is not None for wire in self.wires)
 
     def rayleigh(self, kind: Kind) -> Rayleigh:
-        """Damping of a kind of component."""
+        """Damping of a kind of component.
+
+        Parameters
+        ----------
+        kind : Kind
+            Kind of component; one without a value is undamped.
+        """
         return self.damping.get(kind, Rayleigh())
 
     def wire(self, name: str) -> Wire:
-        """Wire with a name; KeyError if there is none."""
+        """Wire with a name.
+
+        Parameters
+        ----------
+        name : str
+            Name of the wire.
+
+        Raises
+        ------
+        KeyError
+            There is no such wire.
+        """
         return {wire.name: wire for wire in self.wires}[name]

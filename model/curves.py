@@ -30,7 +30,13 @@ class TrackCurve:
     cant: float = 0.0
 
     def share(self, position: Array) -> Array:
-        """Curvature and cant as a share of those of the full curve, at positions [m]; 0 outside of the curve."""
+        """Curvature and cant as a share of those of the full curve; 0 outside of the curve.
+
+        Parameters
+        ----------
+        position : (n,) ndarray
+            Positions along the track [m].
+        """
         inside = (self.start < position) & (position < self.end)
         to_end = np.minimum(position - self.start, self.end - position)
         return np.where(inside, np.minimum(to_end / max(self.transition, 1e-9), 1.0), 0.0)

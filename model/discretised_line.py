@@ -102,7 +102,13 @@ def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> Dis
 
 
 def make_droppers_bilateral(line: DiscretisedLine) -> DiscretisedLine:
-    """Make the droppers bilateral, so that they push as well as pull: the difference is the effect of slackening."""
+    """Make the droppers bilateral, so that they push as well as pull: the difference is the effect of slackening.
+
+    Parameters
+    ----------
+    line : DiscretisedLine
+        Line with unilateral droppers; it is not changed.
+    """
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)
 

@@ -80,7 +80,13 @@ class FittedDamping:
         return tabulate_columns({name: np.array(values) for name, values in columns.items()})
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot the damping ratios over the frequency, identified and of the models; returns matplotlib axes."""
+        """Plot the damping ratios over the frequency, identified and of the models; returns matplotlib axes.
+
+        Parameters
+        ----------
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         axes, comparison = provide_axes(axes), self.results.comparison
         measured = comparison.measured
         axes.errorbar(
@@ -100,6 +106,11 @@ class FittedDamping:
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write damping.toml, damping_with_modal.toml, damping.json and the report; returns the paths of the files.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Folder of the files.
 
         Raises
         ------

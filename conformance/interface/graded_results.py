@@ -81,6 +81,11 @@ class GradedResults:
 def open_results(path: str | Path) -> GradedResults:
     """Read a results.json.
 
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file, or of its folder.
+
     Raises
     ------
     InputError
@@ -101,7 +106,7 @@ def grade_cases(
 
     Parameters
     ----------
-    cases : str or Path
+    *cases : str or Path
         Ids, globs or paths of cases.
     system : str
         `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.

@@ -65,7 +65,13 @@ class IdentifiedLines:
         return tabulate_rows([mode.model_dump(mode="json") for mode in self.modes], MODE_KEYS)
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes."""
+        """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes.
+
+        Parameters
+        ----------
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         axes = provide_axes(axes)
         certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
         axes.errorbar(
@@ -108,6 +114,11 @@ class IdentifiedLines:
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json; returns the paths of the files.
 
+        Parameters
+        ----------
+        folder : str or Path
+            Folder of the files.
+
         Raises
         ------
         InputError
@@ -124,6 +135,8 @@ class IdentifiedRecords(IdentifiedLines):
 
     Parameters
     ----------
+    modes : tuple of Mode
+        Modes of all lines, in the order of frequency within a line.
     lines : tuple of IdentifiedLine
         Content of identification.json, line by line.
     """
@@ -132,6 +145,11 @@ class IdentifiedRecords(IdentifiedLines):
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json, identification.json and the report as HTML and PDF; returns the paths of the files.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Folder of the files.
 
         Raises
         ------
@@ -189,6 +207,11 @@ def _list_records(drop: str | Path | OpenedDrop) -> Iterator[DropRecord]:
 
 def open_modes(path: str | Path) -> IdentifiedLines:
     """Read a modes.json.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
 
     Raises
     ------

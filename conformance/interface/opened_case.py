@@ -109,6 +109,11 @@ class OpenedCase:
     def run(self, system: str = "builtin") -> SimulatedRun:
         """Run the case on a system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
+        Parameters
+        ----------
+        system : str
+            Kind of system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+
         Raises
         ------
         InputError

@@ -64,6 +64,11 @@ class OpenedDrop:
     def write(self, path: str | Path) -> Path:
         """Write the drop as a record, `.csv`, `.uff` or `.h5` by its suffix; returns the path.
 
+        Parameters
+        ----------
+        path : str or Path
+            Path of the record; its suffix chooses the format.
+
         Raises
         ------
         InputError

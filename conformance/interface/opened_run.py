@@ -78,6 +78,11 @@ class OpenedRun:
         Columns are `position_m`, `force_N` (as delivered), `force_20_N` (filtered as graded) and, if it is known,
         `contact_height_m`.
 
+        Parameters
+        ----------
+        pantograph : int
+            Number of the pantograph, from 1 in running order.
+
         Raises
         ------
         KeyError
@@ -96,7 +101,15 @@ class OpenedRun:
         return tabulate_columns(columns)
 
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
-        """Plot the force over the position, as delivered and as graded; returns matplotlib axes."""
+        """Plot the force over the position, as delivered and as graded; returns matplotlib axes.
+
+        Parameters
+        ----------
+        pantograph : int
+            Number of the pantograph, from 1 in running order.
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         signals = self.run.signals[pantograph]
         axes = provide_axes(axes)
         position = signals.position[signals.inside]
@@ -107,7 +120,15 @@ class OpenedRun:
         return axes
 
     def plot_spectrum(self, pantograph: int = 1, axes: Any = None) -> Any:
-        """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes."""
+        """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes.
+
+        Parameters
+        ----------
+        pantograph : int
+            Number of the pantograph, from 1 in running order.
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         signals: PantographSignals = self.run.signals[pantograph]
         axes = provide_axes(axes)
         axes.plot(*amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency), color="0.1")
@@ -124,6 +145,8 @@ class SimulatedRun(OpenedRun):
 
     Parameters
     ----------
+    run : ComparedRun
+        Quantities and signals of the passage.
     case : Case
         Case of the run.
     system : System
@@ -138,6 +161,11 @@ class SimulatedRun(OpenedRun):
 
     def write(self, path: str | Path) -> Path:
         """Write the run as a record, CSV or HDF5 by its suffix, with a sidecar; returns the sidecar.
+
+        Parameters
+        ----------
+        path : str or Path
+            Path of the table; its suffix chooses CSV or HDF5.
 
         Raises
         ------

@@ -109,5 +109,13 @@ def pinned_frequencies(
 
 
 def wave_speed(tension: float, mass_per_length: float) -> float:
-    """Speed sqrt(T / m) of transverse waves on a wire without bending stiffness [m/s]; T in [N], m in [kg/m]."""
+    """Speed sqrt(T / m) of transverse waves on a wire without bending stiffness [m/s].
+
+    Parameters
+    ----------
+    tension : float
+        Tension T [N].
+    mass_per_length : float
+        Mass per length m [kg/m].
+    """
     return float(np.sqrt(tension / mass_per_length))

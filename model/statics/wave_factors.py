@@ -15,7 +15,15 @@ def impedance(wires: Iterable[Wire]) -> float:
 
 
 def doppler_factor(speed: float, wave_speed: float) -> float:
-    """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train."""
+    """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train.
+
+    Parameters
+    ----------
+    speed : float
+        Speed v of the train [m/s].
+    wave_speed : float
+        Wave speed c of the contact wire [m/s].
+    """
     return (wave_speed - speed) / (wave_speed + speed)
 
 
@@ -30,7 +38,7 @@ def reflection_coefficient(contact_wires: Iterable[Wire], messenger_wires: Itera
     Returns
     -------
     float
-        sqrt(T_m m_m) / (sqrt(T_m m_m) + sqrt(T_c m_c)) [-].
+        Coefficient sqrt(T_m m_m) / (sqrt(T_m m_m) + sqrt(T_c m_c)) [-].
     """
     upper = impedance(messenger_wires)
     return upper / (upper + impedance(contact_wires))

@@ -7,15 +7,39 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
+from pantocheck.conformance.grading.discretisation import observed_order
 from pantocheck.conformance.identification.decay_kernel import decay_kernel
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.model.fem import beam
+from pantocheck.model.fem.exact_beam import exact_stiffness
 from pantocheck.model.fem.residual_flexibility import in_series
 from pantocheck.model.statics.wave_factors import doppler_factor
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+SECTIONS = {
+    "Line": "tests/model/fem/test_beam.py",
+    "Initial state": "tests/model/statics/test_initial_state.py",
+    "Connectors": "tests/model/fem/test_held_stretches.py",
+    "Residual flexibility": "tests/model/fem/test_residual_flexibility.py",
+    "Damping": "tests/model/modal/test_modal_damping.py",
+    "Pantograph and contact": "tests/model/test_pantograph.py",
+    "Time integration": "tests/model/dynamics/test_newmark.py",
+    "Active window": "tests/model/dynamics/test_active_window.py",
+    "Quantities and filters": "tests/conformance/quantities/test_filters.py",
+    "Uncertainty": "tests/conformance/grading/test_discretisation.py",
+    "Identification of modes from a mass drop": "tests/conformance/identification/test_output_error.py",
+    "Fit of a damping model": "tests/conformance/identification/damping/test_damping_model.py",
+}
+"""Sections of the page, and the test of the equations of each beside those of this file."""
+
+
+def test_sections_are_complete_and_tested() -> None:
+    assert re.findall(r"^## (.+)$", PAGE, re.MULTILINE) == list(SECTIONS)
+    assert [test for test in SECTIONS.values() if not (ROOT / test).is_file()] == []
 
 
 def test_every_section_ends_in_files_that_exist() -> None:
@@ -111,3 +135,36 @@ def test_transform_of_a_decay() -> None:
     np.testing.assert_allclose(decay_kernel(np.array([pole]), omega, dt, n).ravel(), part(1, pole), rtol=1e-12)
     expected = part(0.7 - 0.2j, pole) + part(0.7 + 0.2j, np.conj(pole))
     np.testing.assert_allclose(np.fft.rfft(samples), expected, rtol=1e-9, atol=1e-9)
+
+
+def test_exact_deflection_under_end_forces() -> None:
+    """Forces of shear and tension, and moments, at the ends of w = a + b x + c cosh(kx) + d sinh(kx)."""
+    h, tension, bending = 1.3, 20e3, 195.0
+    k = np.sqrt(tension / bending)
+
+    def derivatives(x: float) -> np.ndarray:
+        c, s = np.cosh(k * x), np.sinh(k * x)
+        return np.array([[1, x, c, s], [0, 1, k * s, k * c], [0, 0, k**2 * c, k**2 * s], [0, 0, k**3 * s, k**3 * c]])
+
+    start, end = derivatives(0), derivatives(h)
+    forces = np.vstack(
+        [
+            bending * start[3] - tension * start[1],
+            -bending * start[2],
+            tension * end[1] - bending * end[3],
+            bending * end[2],
+        ]
+    )
+    expected = forces @ np.linalg.inv(np.vstack([start[:2], end[:2]]))
+    stiffness = exact_stiffness(np.array(h), np.array(tension), np.array(bending))
+    # The inverse loses six digits, because cosh(kh) is 2e5.
+    np.testing.assert_allclose(stiffness, expected, rtol=1e-8, atol=1e-8 * tension)
+
+
+def test_extrapolation_of_three_meshes() -> None:
+    """Values f + C h^p at h = 2, 1 and 1/2: the order is p, and e is the error of the middle one."""
+    value, constant, order = 26.6, 0.3, 1.7
+    coarse, middle, fine = (value + constant * h**order for h in (2, 1, 0.5))
+    found = observed_order(coarse, middle, fine)
+    assert found == pytest.approx(order, rel=1e-9)
+    assert (middle - fine) * 2**order / (2**order - 1) == pytest.approx(constant, rel=1e-9)
