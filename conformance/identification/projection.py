@@ -27,6 +27,7 @@ from pantocheck.conformance.identification.decay_kernel import (
     real_columns,
     stack_real_imaginary,
 )
+from pantocheck.conformance.input_files.input_error import InputError
 
 DRIFT_DEGREE = 4
 """Degree of the polynomial in time for the drift of the offset."""
@@ -118,8 +119,20 @@ def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
 
 
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
-    """Solve for the residues of known poles, (m,) [1/s], by least squares."""
+    """Solve for the residues of known poles, (m,) [1/s], by least squares.
+
+    Raises
+    ------
+    InputError
+        The block has fewer equations than unknowns, so that the residues are not determined.
+    """
     columns = np.hstack([pole_columns(poles, data), data.residual_terms])
+    if columns.shape[0] < columns.shape[1]:
+        raise InputError(
+            f"record of {data.n * data.dt:.3g} s",
+            f"has {data.lines.size} spectral lines in the band, too few for {poles.size} modes",
+            "Record the whole decay, or lower the highest frequency.",
+        )
     coefficients, residual = solve_least_squares(columns, stack_real_imaginary(data.spectrum))
     m, k = poles.size, data.lines.size
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])

@@ -10,6 +10,7 @@ from pantocheck.conformance.identification.projection import (
     solve_residues,
     whiten,
 )
+from pantocheck.conformance.input_files.input_error import InputError
 
 DT, N = 0.05, 400
 
@@ -53,3 +54,14 @@ def test_spread_of_residues_is_that_of_repeated_noise() -> None:
     residues = solve_residues(poles, block).residues
     measured = np.sqrt((np.var(residues.real, axis=1) + np.var(residues.imag, axis=1)) / 2)
     assert measured == pytest.approx(residue_spread(poles, block), rel=0.08)
+
+
+def test_too_few_lines_for_the_modes_are_refused() -> None:
+    """Residues of 3 poles and 12 residual terms are 18 unknowns; 8 lines give 16 equations, and 9 lines give 18."""
+    samples = np.random.default_rng(4).standard_normal((N, 2))
+    poles = np.array([-0.02 + 3.0j, -0.02 + 5.0j, -0.02 + 7.0j])
+    enough = build_block(samples, DT, 0.3, 0.701)
+    assert (enough.lines.size, enough.residual_terms.shape[1]) == (9, 12)
+    solve_residues(poles, enough)
+    with pytest.raises(InputError, match="8 spectral lines in the band, too few for 3 modes"):
+        solve_residues(poles, build_block(samples, DT, 0.3, 0.651))
