@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field
 
 from pantocheck.conformance.cases.finding import PublishedFinding
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
@@ -17,13 +18,18 @@ from pantocheck.conformance.input_files.sourced_table import (
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.plug_in_quantity import OWN
+from pantocheck.conformance.quantities.registry import QUANTITIES, find_quantity
 
 FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]
 
 
 def _check_quantity(name: str) -> str:
-    if name not in QUANTITIES:
+    try:
+        known = find_quantity(name)
+    except InputError as error:
+        raise validation_problem("", f"{error.where}: {error.found}", error.hint) from None
+    if known is None:
         raise validation_problem("", f"there is no quantity {name[:80]!r}", suggest_names(name[:80], list(QUANTITIES)))
     return name
 
@@ -31,9 +37,17 @@ def _check_quantity(name: str) -> str:
 QuantityName = Annotated[
     str,
     AfterValidator(_check_quantity),
-    Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)}),
+    Field(
+        description="name of a quantity; that of another distribution begins with own_",
+        json_schema_extra={"anyOf": [{"enum": list(QUANTITIES)}, {"pattern": f"^{OWN}"}]},
+    ),
 ]
-"""Name of a quantity of the suite."""
+"""Name of a quantity of the suite or of another distribution."""
+
+
+def is_per_pantograph(name: str) -> bool:
+    """Whether a known quantity has one value for each pantograph."""
+    return name not in QUANTITIES or QUANTITIES[name].scope == "pantograph"
 
 
 class Limit(InputTable):
@@ -74,7 +88,7 @@ class Limit(InputTable):
             yield validation_problem(
                 "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
             )
-        if QUANTITIES[self.quantity].scope != "pantograph" and self.pantograph is not None:
+        if not is_per_pantograph(self.quantity) and self.pantograph is not None:
             yield validation_problem(
                 "pantograph", f"{self.quantity} is not a quantity of a pantograph", "Leave the key pantograph out."
             )
@@ -82,7 +96,7 @@ class Limit(InputTable):
     @property
     def owner(self) -> int:
         """Number of the pantograph of this limit, from 1; 0 for the line. A limit of every pantograph counts as 1."""
-        if QUANTITIES[self.quantity].scope != "pantograph":
+        if not is_per_pantograph(self.quantity):
             return 0
         return self.pantograph or 1
 

@@ -88,7 +88,7 @@ class Rule(InputTable):
     @cross_check
     def _consistent(self) -> Problems:
         yield from find_missing_source(self.trust, self.source)
-        if QUANTITIES[self.quantity].scope == "mass_drop":
+        if self.quantity in QUANTITIES and QUANTITIES[self.quantity].scope == "mass_drop":
             yield validation_problem(
                 "quantity", f"{self.quantity} is not a quantity of a run", "Give a quantity of a contact-force record."
             )

@@ -13,7 +13,7 @@ from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
 from pantocheck.conformance.input_files.trust import Computed, Trust, limit_counts
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.finding_format import IMPOSED_REASON, count_verdict, grade_finding
 
@@ -144,8 +144,7 @@ def build_criterion(
         Errors of the value.
     """
     name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
-    known = QUANTITIES[name].unit if name in QUANTITIES else ""  # a baseline can have quantities of an older registry
-    unit = known if requirement.unit is None else requirement.unit
+    unit = unit_of(name) if requirement.unit is None else requirement.unit
     verdict: Verdict = "skip"
     reason, distance = missing, None
     if value is not None and (lower is not None or upper is not None):

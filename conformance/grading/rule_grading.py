@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.library import source_text
-from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.limits import Limit, is_per_pantograph
 from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
@@ -14,7 +14,7 @@ from pantocheck.conformance.grading.criterion_grading import GradedValues, Requi
 from pantocheck.conformance.grading.uncertainty import combine_half_widths
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.criterion_format import Criterion
 
 
@@ -66,7 +66,7 @@ class RuleGrading:
     def _pair_owners(self, profile: Profile) -> Iterator[tuple[Rule, int]]:
         """Every rule with every pantograph that it applies to."""
         for rule in profile.rule:
-            owners = self.subject.pantographs if QUANTITIES[rule.quantity].scope == "pantograph" else (LINE,)
+            owners = self.subject.pantographs if is_per_pantograph(rule.quantity) else (LINE,)
             yield from ((rule, owner) for owner in owners)
 
     def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
@@ -105,7 +105,7 @@ class RuleGrading:
         source = source_text(rule.source)
         if not rule.compares or compared is None or self.measured is None:
             return source
-        unit = QUANTITIES[rule.quantity].unit
+        unit = unit_of(rule.quantity)
         tolerance = f"{rule.tolerance:g} {unit}" if rule.tolerance else f"{rule.tolerance_pct:g} %"
         return f"{source}; tolerance {tolerance} around the measured value {compared:.4g} of {self.measured.name}"
 

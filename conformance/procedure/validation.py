@@ -18,8 +18,8 @@ from pantocheck.conformance.procedure.step_result import StepInterrupted, StepRe
 from pantocheck.conformance.procedure.validity_step import list_claims
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure, StepName
 from pantocheck.conformance.results.results_building import build_results, utc_now
-from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
-from pantocheck.conformance.runner import Progress, RunInterrupted
+from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.runner import Progress, RunInterrupted, identify_system
 from pantocheck.conformance.systems.process_control import interruption_exit_code
 from pantocheck.conformance.systems.system import System
 
@@ -123,6 +123,6 @@ class Validation:
             evidence=[item for step in steps for item in step.evidence],
             claims=[item for step in steps for item in step.claims],
         )
-        identity = SystemIdentity(name=self.system.name, version=self.system.version, kind=self.system.kind)
+        identity = identify_system(self.system)
         cases = [case for step in steps for case in step.cases]
         return build_results(cases, identity, file.trust, started, self.participation, procedure)

@@ -48,6 +48,7 @@ class RecordFolder:
             notes=note_case_version(sidecar.case_digest),
             case_digest=sidecar.case_digest,
             digest=record_digest(path, path.parent / sidecar.file),
+            table=sidecar.file,
         )
 
 
