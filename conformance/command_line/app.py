@@ -16,7 +16,7 @@ COMMANDS = {
     "campaign": "Run cases with varied inputs, and write a table of all runs.",
     "assess": "Assess a simulated or measured record by the rules of a profile.",
     "validate": "Validate a simulator for a line by a dossier: the EN 50318 procedure in one certificate.",
-    "cases": "List the cases of the library with the number and the trust of their limits.",
+    "cases": "List the cases of the library, of folders and of installed distributions.",
     "show": "Show the inputs, the limits and the notes of a case with their trust and source.",
     "new": "Write a commented, valid line, case, pantograph, response, administration or dossier file.",
     "describe": "Describe a measured file: channels, rates, ranges, gaps and suspicious contents.",

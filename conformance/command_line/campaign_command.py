@@ -21,9 +21,10 @@ from pantocheck.conformance.campaigns.executor_choice import choose_executor
 from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.case_completion import complete_case
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.file_list import print_files
-from pantocheck.conformance.command_line.options import CasesOption, SetOption, TrustOption
+from pantocheck.conformance.command_line.options import SetOption, TrustOption
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model

@@ -7,15 +7,15 @@ import typer
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import CaseEntry, open_catalogue
 from pantocheck.conformance.cases.library import load_entry
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.console import build_table, console, escape_text
 from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
-from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import LEVELS
 
 
 def cases_command(folders: CasesOption = None) -> None:
-    """List the cases of the library, of folders and of installed distributions, with the trust of their limits.
+    """List the cases of the library, of folders and of installed distributions.
 
     Examples:
 

@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
-from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.own_files.file_check import check_input_file
 from pantocheck.conformance.own_files.folder_search import list_input_files

@@ -27,14 +27,6 @@ SetOption = Annotated[
         help="Change an input of the case, its line or its pantographs; repeat the option for several.",
     ),
 ]
-CasesOption = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--cases",
-        metavar="DIR",
-        help="Folder with further cases, whose ids begin with own/; repeat the option for several.",
-    ),
-]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
 FormatsOption = Annotated[
     str | None,

@@ -6,11 +6,11 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
     BaselineOption,
-    CasesOption,
     DriftOption,
     FormatsOption,
     OutOption,

@@ -15,9 +15,9 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_files import recognise_named_file
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.case_tables import build_case_tables
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.console import console, escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
-from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError

@@ -8,8 +8,9 @@ import typer
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.case_completion import complete_case
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.options import CasesOption, SetOption, choose_case
+from pantocheck.conformance.command_line.options import SetOption, choose_case
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import check_record_path, write_record

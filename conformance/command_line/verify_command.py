@@ -9,8 +9,8 @@ import typer
 
 from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
 from pantocheck.conformance.authenticity.verification import Verification
+from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.guard import strip_control_characters
-from pantocheck.conformance.command_line.options import CasesOption
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.interface.verified_report import verify_report
 
