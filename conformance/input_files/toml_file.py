@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pantocheck.conformance.input_files.bounded_file import read_text
+from pantocheck.conformance.input_files.format_versions import update_content
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_syntax import explain_syntax_error
 from pantocheck.conformance.input_files.validation_messages import build_input_error
@@ -78,9 +79,27 @@ def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Read a TOML file without validation; parameters and errors as in `read_model`."""
+    """Read a TOML file without validation, in the current version of its format; see `read_model`."""
     where = f"{kind} '{path.name}'"
-    text = read_text(path, where, MAX_TOML_BYTES)
+    tree: dict[str, Any] = update_content(parse_toml(read_text(path, where, MAX_TOML_BYTES), where), where)
+    return tree
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Parse the text of a TOML file, in its own version.
+
+    Parameters
+    ----------
+    text : str
+        Text of the file.
+    where : str
+        Name of the file in messages.
+
+    Raises
+    ------
+    InputError
+        It is not TOML, or too long in a part.
+    """
     if (long := _LONG_KEY.search(text)) is not None:
         line = text.count("\n", 0, long.start()) + 1
         raise InputError(

@@ -90,7 +90,7 @@ class LineTests:
         table = self.dossier.file.line_test
         return Profile.model_validate(
             {
-                "schema": "pantocheck.profile/1",
+                "schema": "pantocheck.profile/2",
                 "name": "dossier",
                 "title": "Line test",
                 "speed_tolerance_pct": table.speed_tolerance_pct,
