@@ -16,6 +16,7 @@ pytest_plugins = [
     "helpers.case_fixtures",
     "helpers.converged_fixtures",
     "helpers.example_results",
+    "helpers.fake_distribution",
     "helpers.graded_wave",
     "helpers.record_fixtures",
     "helpers.signer_fixtures",

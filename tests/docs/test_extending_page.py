@@ -48,10 +48,8 @@ def test_programs_of_the_page_are_those_of_the_example() -> None:
     assert set(programs) <= files
 
 
-def test_command_for_a_system_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "site").mkdir()
-    install_example(tmp_path / "site")
-    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+def test_command_for_a_system_runs(site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    install_example(site)
     monkeypatch.chdir(tmp_path)
     (command,) = find_blocks("A system", "bash")
     done = CliRunner().invoke(app, [*shlex.split(command)[1:], "--formats", "json,md"])

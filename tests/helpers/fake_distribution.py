@@ -1,7 +1,25 @@
 """Installed distribution without an installation: a package and its metadata in a folder on `sys.path`."""
 
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+
+import pytest
+
+from pantocheck.conformance.quantities import plug_in_quantity
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Folder of installed packages; modules that a test imports from it are forgotten."""
+    folder = tmp_path / "site"
+    folder.mkdir()
+    monkeypatch.syspath_prepend(str(folder))
+    yield folder
+    for name, module in [*sys.modules.items()]:
+        if str(folder) in str(getattr(module, "__file__", "")):
+            del sys.modules[name]
+    plug_in_quantity._load_quantity.cache_clear()
 
 
 def write_distribution(

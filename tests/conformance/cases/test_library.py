@@ -8,6 +8,7 @@ import pytest
 from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import Catalogue
 from pantocheck.conformance.cases.library import (
     list_library,
     load_case,
@@ -118,9 +119,11 @@ def test_required_cases_come_first(edited_case: EditedCase) -> None:
 
 def test_circular_requirement_is_refused(edited_case: EditedCase, monkeypatch: pytest.MonkeyPatch) -> None:
     path = edited_case("250.toml", {"requires": ["en50318-2002/250"]})
-    monkeypatch.setattr("pantocheck.conformance.cases.library.list_library", lambda folder: {"en50318-2002/250": path})
+    monkeypatch.setattr(
+        "pantocheck.conformance.cases.catalogue.list_library", lambda folder: {"en50318-2002/250": path}
+    )
     with pytest.raises(InputError, match="requires itself"):
-        select_cases(["en50318-2002/250"])
+        select_cases(["en50318-2002/250"], (), Catalogue())  # another catalogue than the cached one
 
 
 @pytest.mark.parametrize(

@@ -18,15 +18,6 @@ from pantocheck.conformance.input_files.input_error import InputError
 GROUP = "pantocheck.cases"
 
 
-@pytest.fixture
-def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Folder of installed packages."""
-    folder = tmp_path / "site"
-    folder.mkdir()
-    monkeypatch.syspath_prepend(str(folder))
-    return folder
-
-
 def install_cases(site: Path, package: str, *names: str, version: str = "1.0") -> None:
     files = {f"{package}/cases/{i}.toml": outside_case(name) for i, name in enumerate(names)}
     code = {f"{package}/__init__.py": "raise RuntimeError('cases are data: the package is not imported')"}

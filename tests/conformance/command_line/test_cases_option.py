@@ -91,9 +91,8 @@ def test_check_refuses_ids_of_the_library(folder: Path) -> None:
     assert "is the id of the library file" in done.stderr
 
 
-def test_a_broken_distribution_does_not_hide_the_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_distribution(tmp_path, "broken", "2.0", {"pantocheck.cases": {"x": "no_such_package"}}, {})
-    monkeypatch.syspath_prepend(str(tmp_path))
+def test_a_broken_distribution_does_not_hide_the_cases(site: Path) -> None:
+    write_distribution(site, "broken", "2.0", {"pantocheck.cases": {"x": "no_such_package"}}, {})
     done = pantocheck("cases")
     assert done.exit_code == 2
     assert "en50318-2002/250" in done.output
@@ -131,12 +130,10 @@ def test_verify_contradicts_other_limits_than_those_of_the_folder(results: Resul
     assert "folder lines" in check.details[0]
 
 
-def test_verify_names_another_version_of_a_distribution(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    site = tmp_path / "site"
+def test_verify_names_another_version_of_a_distribution(site: Path) -> None:
     name = "own/acme-lines/fast"
     files = {"acme_lines/__init__.py": "", "acme_lines/fast.toml": outside_case(name)}
     write_distribution(site, "acme-lines", "1.1", {"pantocheck.cases": {"lines": "acme_lines"}}, files)
-    monkeypatch.syspath_prepend(str(site))
     graded = grade_cases(name, system="record:en50318-2002/known-passing-code").results
     assert graded.cases[0].origin is not None
     (same,) = check_outside_cases(graded, LIBRARY)

@@ -2,7 +2,6 @@
 
 import pickle
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +22,6 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.plug_in_reader import PlugInFormat
 from pantocheck.conformance.input_files.table_formats import find_plug_in_reader, read_tables
 from pantocheck.conformance.plug_ins.plug_in import GROUPS, find_plug_in
-from pantocheck.conformance.quantities import plug_in_quantity
 from pantocheck.conformance.quantities.plug_in_quantity import OWN
 from pantocheck.conformance.quantities.registry import QUANTITIES, find_quantity
 from pantocheck.conformance.records.record_writing import write_record
@@ -36,20 +34,6 @@ from pantocheck.conformance.systems.system_choice import choose_system
 FAST = "own/acme-lines/fast"
 BAND = "own_rms_5_10_N"
 RAISES = "raise RuntimeError('loaded')\n"
-
-
-@pytest.fixture
-def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Folder of installed packages; modules that a test imports from it are forgotten."""
-    folder = tmp_path / "site"
-    folder.mkdir()
-    monkeypatch.syspath_prepend(str(folder))
-    before = {*sys.modules}
-    yield folder
-    for name in {*sys.modules} - before:
-        if str(folder) in str(getattr(sys.modules[name], "__file__", "")):
-            del sys.modules[name]
-    plug_in_quantity._load_quantity.cache_clear()
 
 
 @pytest.fixture
