@@ -25,7 +25,7 @@ def study_dropper_lengths() -> Topic:
     inside = [k for k, dropper in enumerate(catenary.droppers) if first < dropper.position < last]
     x = np.array([catenary.droppers[k].position for k in inside])
     strings = compute_string_state(catenary).dropper_length[inside]
-    exact = _string_lengths(catenary, (first, last), x, strings)
+    exact = _string_lengths(catenary, (first, last), x)
     bending = discretise(catenary, 0.25).state.dropper_length[inside]
     return Topic(
         title="Dropper lengths of AC simple",
@@ -45,25 +45,32 @@ def study_dropper_lengths() -> Topic:
         ],
         charts=[
             Chart(
-                caption="Lengths of the droppers of the middle span: strings, and wires with bending stiffness.",
-                alternative="Both curves fall towards mid-span; bending makes every dropper 4 to 5 mm longer.",
+                caption="Additional length of each dropper by the bending stiffness of the wires.",
+                alternative="Bending makes every dropper of the span longer by about four millimetres. The line is the "
+                "part of the messenger wire, which is rounded at its supports; the rest is due to the contact wire.",
                 x_label="position in the span [m]",
-                y_label="length [m]",
+                y_label="additional length [mm]",
                 series=[
-                    Series(label="loaded strings, closed form", style="line", x=(x - first).tolist(), y=exact.tolist()),
-                    Series(label="strings", style="points", x=(x - first).tolist(), y=strings.tolist()),
-                    Series(label="with bending", style="points", x=(x - first).tolist(), y=bending.tolist()),
+                    Series(
+                        label="weight of a span √(EI/T) / 2T",
+                        style="line",
+                        x=[0.0, last - first],
+                        y=[1e3 * _rounding_of_supports(catenary, (first, last))] * 2,
+                    ),
+                    Series(
+                        label="elements of 0.25 m",
+                        style="points",
+                        x=(x - first).tolist(),
+                        y=(1e3 * (bending - strings)).tolist(),
+                    ),
                 ],
             )
         ],
     )
 
 
-def _string_lengths(catenary: Catenary, span: tuple[float, float], x: RealArray, lengths: RealArray) -> RealArray:
-    """Dropper lengths of one of many equal spans, by the statics of loaded strings [m].
-
-    The weights of the droppers need their lengths; those of the finite elements serve for them.
-    """
+def _string_lengths(catenary: Catenary, span: tuple[float, float], x: RealArray) -> RealArray:
+    """Dropper lengths of one of many equal spans, by the statics of loaded strings [m]."""
     first, length = span[0], span[1] - span[0]
     droppers = [dropper for dropper in catenary.droppers if span[0] < dropper.position < span[1]]
     contact, messenger = catenary.contact_wires[0], catenary.wire(droppers[0].upper)
@@ -79,3 +86,12 @@ def _string_lengths(catenary: Catenary, span: tuple[float, float], x: RealArray,
     weight = messenger.mass_per_length * GRAVITY * place * (length - place) / 2
     drop = (weight + (low * (length - high) / length) @ load) / messenger.tension
     return np.asarray(support - drop - height)
+
+
+def _rounding_of_supports(catenary: Catenary, span: tuple[float, float]) -> float:
+    """Height by which bending lifts the messenger wire between its supports: its slope there times √(EI/T) [m]."""
+    droppers = [dropper for dropper in catenary.droppers if span[0] < dropper.position < span[1]]
+    contact, messenger = catenary.contact_wires[0], catenary.wire(droppers[0].upper)
+    wires = (span[1] - span[0]) * (contact.mass_per_length + messenger.mass_per_length)
+    load = GRAVITY * (wires + sum(d.mass + d.upper_clamp_mass + d.lower_clamp_mass for d in droppers))
+    return float(load / 2 / messenger.tension * np.sqrt(messenger.bending_stiffness / messenger.tension))

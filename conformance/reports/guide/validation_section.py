@@ -122,6 +122,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
     rows = [row for family in families.values() for row in family]
     ends = [row[key] for row in rows for key in ("value", "lower", "upper")]
     low, high = min(ends), max(ends)
+    margin = 0.05 * (high - low)
     series = [
         {
             "label": family,
@@ -146,7 +147,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
     }
     inside = sum(row["inside"] is True for row in rows)
     return doc.Figure(
-        draw_chart(chart),
+        draw_chart(chart, (low - margin, high + margin)),
         f"{inside} of {len(rows)} published ranges in {unit} contain the computed value, from {format_value(low, 3)} "
         f"to {format_value(high, 3)} {unit}.",
         f"Published against computed values [{unit}].",
