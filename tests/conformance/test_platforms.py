@@ -200,3 +200,19 @@ def test_backslashes_in_texts_are_explained(tmp_path: Path) -> None:
 
 def test_library_files_have_line_feeds_only() -> None:
     assert not [path for path in library_folder().rglob("*.toml") if b"\r" in path.read_bytes()]
+
+
+def test_worker_processes_start_as_on_windows() -> None:
+    """Without a stated method, Linux would fork and the other systems would spawn: two behaviours for one command."""
+    methods = []
+    for path in sorted((ROOT / "conformance").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            text = ast.unparse(node.func)
+            assert text not in ("multiprocessing.Process", "multiprocessing.Pool", "os.fork"), path
+            if text == "multiprocessing.get_context":
+                methods += [ast.literal_eval(argument) for argument in node.args] or [None]
+            if text == "ProcessPoolExecutor":
+                assert "get_context" in ast.unparse(node), path
+    assert set(methods) == {"spawn"}
