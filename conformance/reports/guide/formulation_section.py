@@ -5,7 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_plain, format_value
-from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+from pantocheck.conformance.reports.words import quantity_label, quantity_unit
 
 FORMULATION_SCOPE = (
     "Two formulations of the equations share no code: finite elements with the method of Fox and Goodwin, and explicit "
@@ -60,7 +60,7 @@ def _difference_pct(row: dict[str, Any]) -> float:
 def _build_case_table(case: dict[str, Any]) -> doc.Section:
     columns = (
         doc.Column("Quantity", share=2.0),
-        doc.Column("Of"),
+        doc.Column("Pantograph"),
         doc.Column("This version", number=True),
         doc.Column("Extrapolated", number=True),
         doc.Column("Second formulation", number=True),
@@ -71,7 +71,7 @@ def _build_case_table(case: dict[str, Any]) -> doc.Section:
     rows = tuple(
         (
             _name_quantity(row),
-            name_pantograph(row["pantograph"]),
+            str(row["pantograph"] or "line"),
             *(format_value(row[key], 5) for key in ("value", "first", "second")),
             format_value(row["value"] - row["second"], 2),
             f"{format_value(row['lower'], 5)} to {format_value(row['upper'], 5)}",
