@@ -1,5 +1,6 @@
 """Runner: runs cases on a system, in sequence or in parallel. An exception ends only the case that raised it."""
 
+import logging
 import multiprocessing
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
@@ -12,6 +13,7 @@ from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.plug_in_format import describe_plug_in
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.step_log import report_remote
 from pantocheck.conformance.studies.study_dispatch import run_study
 from pantocheck.conformance.systems.plug_in_system import PlugInSystem
 from pantocheck.conformance.systems.process_control import (
@@ -20,6 +22,8 @@ from pantocheck.conformance.systems.process_control import (
 )
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
+
+_LOGGER = logging.getLogger(__name__)
 
 PROCESS_DIED = "the process of this case, or of a parallel case, ended unexpectedly"
 """Reason of a case that was running when a process died."""
@@ -84,6 +88,7 @@ def run_cases(
 
     def keep(result: CaseResult) -> None:
         finished[result.id] = result
+        _LOGGER.info("%s: %s", result.id, result.verdict)
         if progress is not None:
             progress(result)
 
@@ -184,6 +189,7 @@ def _run_in_parallel(
                     break
                 else:
                     running[future] = case
+                    report_remote(_LOGGER, case.id)
                 waiting.remove(case)
             lost = _keep_finished(running, keep) if running else []
             if lost or broken:

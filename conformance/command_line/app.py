@@ -9,6 +9,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from pantocheck.conformance.command_line.guard import guard_command
+from pantocheck.conformance.command_line.output_settings import add_flags, list_given
 from pantocheck.conformance.input_files.extras import refuse_missing_package
 
 COMMANDS = {
@@ -46,6 +47,9 @@ COMMANDS = {
 """Name and summary of each command; the summary is the first line of its docstring, too."""
 
 
+OUTPUT_EPILOG = "Options of the output, for every command: see `pantocheck --help`."
+
+
 class LazyGroup(TyperGroup):
     """Group of commands that knows their names and summaries, and imports a command when it is called."""
 
@@ -66,11 +70,13 @@ def _import_command(name: str, name_in_code: str) -> ModuleType:
 
 
 def load_command(name: str) -> Any:
-    """Command of a name, imported from its file."""
+    """Command of a name, imported from its file, with the options of the output."""
     name_in_code = f"{name.replace('-', '_')}_command"
-    module = guard_command(_import_command)(name, name_in_code)
+    function = getattr(guard_command(_import_command)(name, name_in_code), name_in_code)
+    # Tables and JSON would slow the help down.
+    execution = import_module("pantocheck.conformance.command_line.command_execution")
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
-    single.command(name)(guard_command(getattr(module, name_in_code)))
+    single.command(name, epilog=OUTPUT_EPILOG)(execution.build_executable(name, function))
     return get_command(single)
 
 
@@ -92,10 +98,14 @@ def _print_version(requested: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def _options(
+    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True)
     ] = False,
+    **flags: bool,
 ) -> None:
-    pass
+    context.obj = list_given(flags)
+
+
+app.callback()(add_flags(_options, "shown"))

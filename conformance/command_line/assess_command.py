@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import Limit, spread_limits
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -22,7 +23,7 @@ from pantocheck.conformance.command_line.options import (
     build_options,
     state_administration,
 )
-from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results
+from pantocheck.conformance.command_line.results_output import EXIT_CODES, build_results_output
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_verdict import Participation
@@ -32,7 +33,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan_places import locate_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import check_formats, remark_missing_formats, write_all
 
 
 def assess_command(
@@ -63,7 +64,7 @@ def assess_command(
     drift: DriftOption = None,
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
-) -> None:
+) -> CommandOutput:
     """Assess a simulated or measured record by the rules of a profile.
 
     Examples:
@@ -97,8 +98,9 @@ def assess_command(
     if earlier is not None and baseline is not None:
         write_all(results, folder, ("json",))  # kept if the comparison fails
         results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    print_results(results, write_all(results, folder, report_formats, places), options.formats)
-    raise typer.Exit(EXIT_CODES[results.verdict])
+    files = write_all(results, folder, report_formats, places)
+    remarks = remark_missing_formats(options.formats)
+    return build_results_output(results, files, EXIT_CODES[results.verdict], remarks)
 
 
 def _build_line_table(**values: float | None) -> LineTable:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
@@ -22,14 +23,13 @@ from pantocheck.conformance.campaigns.short_form import parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
-from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.options import SetOption, TrustOption
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
 from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
 from pantocheck.conformance.systems.process_control import interruption_exit_code
 
@@ -90,7 +90,7 @@ def campaign_command(
         ),
     ] = None,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Repeat the failed runs.")] = False,
-) -> None:
+) -> CommandOutput:
     """Run cases with varied inputs, and write a table of all runs.
 
     Every finished run is stored at once. After an interruption, the same command goes on with the open runs.
@@ -124,7 +124,7 @@ def campaign_command(
     if compare is not None:
         with read_store(compare):
             pass  # a wrong folder is refused before the first run
-    output, interrupted = console(), 0
+    interrupted = 0
     with open_store(out, prepared.identity) as store:
         if retry_failed:
             store.forget_failed()
@@ -136,9 +136,14 @@ def campaign_command(
         results = evaluate_campaign(prepared, store, ending, pairs)
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
-    output.print(escape_text(STOPPED[ending] + counts))
-    print_files(files)
-    raise typer.Exit(interrupted or int(results.finished < results.total or results.failed > 0))
+    exit_code = interrupted or int(results.finished < results.total or results.failed > 0)
+    return CommandOutput(
+        Text(STOPPED[ending] + counts),
+        results,
+        files=files,
+        exit_code=exit_code,
+        remarks=remark_missing_formats(),
+    )
 
 
 def _prepare(

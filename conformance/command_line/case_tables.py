@@ -6,12 +6,12 @@ from typing import Any
 
 from rich.console import RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
+from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
@@ -49,17 +49,30 @@ def build_case_tables(case: Case) -> list[RenderableType]:
     return [*parts, *(Padding(block, (1, 0, 0, 0)) for block in blocks), Text(), *_list_sources(case)]
 
 
-def _build_input_table(case: Case) -> Table:
+def describe_case(case: Case) -> dict[str, object]:
+    """Inputs, limits, notes and digest of a case for a program."""
+    return {
+        "id": case.id,
+        "title": case.file.title,
+        "digest": case.digest,
+        "analysis_section_m": None if case.is_static else list(case.analysis_section),
+        "inputs": {name: table.model_dump(mode="json") for name, table in case.sourced_tables.items()},
+        "limits": [limit.model_dump(mode="json") for limit in case.limits],
+        "notes": list(case.notes),
+    }
+
+
+def _build_input_table(case: Case) -> FittedTable:
     """Inputs by table of the files; the row of a table states the source of its keys."""
-    table = build_table("input", "value", "trust", "source", title="Inputs", unbroken=("input", "trust"))
+    table = build_table("input", "value", "trust", title="Inputs", unbroken=("input", "trust"))
     for name, sourced in case.sourced_tables.items():
-        source = escape_text(", ".join(_source_keys(sourced.source)))
+        source = escape_text(f"source: {', '.join(_source_keys(sourced.source))}")
         excluded = {*PROVENANCE, *OTHER_TABLES, "discretisation"}
         excluded |= {key for key, content in sourced if isinstance(content, SourcedTable)}
         # Defaults have no source, so only the keys that the file gives are shown.
         values = sourced.model_dump(mode="json", exclude=excluded, exclude_unset=True)
         for path, inputs in _split_tables(name, values):
-            table.add_row(escape_text(path), "", "", source if path == name else "")
+            table.add_row(escape_text(path), source if path == name else "", "")
             for key, value in inputs.items():
                 top_key = key if path == name else path.removeprefix(f"{name}.").split(".")[0]
                 trust = "provisional" if top_key in sourced.provisional else sourced.trust
@@ -97,7 +110,7 @@ def _split_tables(path: str, values: dict[str, Any]) -> Iterator[tuple[str, dict
             yield from _split_tables(f"{path}.{key}", value)
 
 
-def _build_limit_table(case: Case) -> Table:
+def _build_limit_table(case: Case) -> FittedTable:
     numbers = ("lower", "upper")
     table = build_table(
         "limit", *numbers, "trust", "source", title="Limits", unbroken=(*numbers, "trust"), right=numbers

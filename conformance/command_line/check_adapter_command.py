@@ -1,11 +1,16 @@
 """`pantocheck check-adapter`: the adapter of a simulator, with a short case."""
 
+from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
+from rich.text import Text
 
-from pantocheck.conformance.command_line.console import build_table, console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import build_table, escape_text
 from pantocheck.conformance.self_test.adapter_check import AdapterCheck, check_adapter
 from pantocheck.conformance.systems.command.command_system import parse_command
 
@@ -16,7 +21,7 @@ ADAPTER_TIMEOUT_S = 600.0
 def check_adapter_command(
     command: Annotated[str, typer.Argument(help="Program and arguments in quotes, as after `command:` of `run`.")],
     timeout: Annotated[float, typer.Option(help="Time limit of the short case [s].")] = ADAPTER_TIMEOUT_S,
-) -> None:
+) -> CommandOutput:
     """Check the adapter of a simulator with a short case.
 
     The program is started, receives a case of a few seconds, and its record is checked. The output names all that is
@@ -26,28 +31,27 @@ def check_adapter_command(
     Example: pantocheck check-adapter 'python3 adapter.py'
     """
     system = parse_command(command.removeprefix("command:"), Path.cwd(), timeout)
-    output = console()
-    if system.start_failure is None:
-        output.print(escape_text(f"{system.name} {system.version} started and answered."))
     check = check_adapter(system)
-    _print(check)
-    raise typer.Exit(0 if check.passed else 1)
+    gaps = sum(finding.state in ("missing", "wrong") for finding in check.findings)
+    text = "Nothing is missing." if check.passed else f"{gaps} of {len(check.findings)} findings need a correction."
+    started = f"{system.name} {system.version} started and answered."
+    return CommandOutput(
+        Text(text),
+        asdict(check),
+        [*([escape_text(started)] if system.start_failure is None else []), *_build_tables(check)],
+        exit_code=0 if check.passed else 1,
+    )
 
 
-def _print(check: AdapterCheck) -> None:
-    output = console()
+def _build_tables(check: AdapterCheck) -> Iterator[RenderableType]:
     table = build_table("", "subject", "finding", unbroken=("", "subject"))
     for finding in check.findings:
         table.add_row(finding.state, finding.subject, escape_text(finding.text))
-    output.print(table)
+    yield table
     if check.values:
         values = build_table(
             "quantity", "adapter", "reference", "difference", right=("adapter", "reference", "difference")
         )
         for value in check.values:
             values.add_row(value.name, f"{value.value:.4g}", f"{value.reference:.4g}", f"{value.difference:+.1%}")
-        output.print(values)
-    gaps = sum(finding.state in ("missing", "wrong") for finding in check.findings)
-    output.print(
-        "Nothing is missing." if check.passed else f"{gaps} of {len(check.findings)} findings need a correction."
-    )
+        yield values

@@ -4,10 +4,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.command_line.cases_option import CasesOption
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput, list_problems
+from pantocheck.conformance.command_line.console import indent_text
 from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.own_files.file_check import check_input_file
@@ -24,7 +26,7 @@ def check_command(
         typer.Option(help=f"Kind of the files: {', '.join(READ_FORMATS)}.", show_default="recognised by the keys"),
     ] = None,
     folders: CasesOption = None,
-) -> None:
+) -> CommandOutput:
     """Check input files and report all their problems at once.
 
     Examples:
@@ -35,21 +37,25 @@ def check_command(
 
     pantocheck check --cases my-cases
     """
-    output, problems, faulty = console(), 0, 0
     if not (files or folders):
         raise InputError("command line", "no file is named", "Name files or folders, or a folder of cases by --cases.")
     open_catalogue(folders or ())  # refuses ids and names of the library
     files = [*(files or ()), *(folders or ())]
+    checked: list[dict[str, object]] = []
+    problems = faulty = 0
     # A folder without input files stays in the list, so that it is reported like a faulty file.
     paths = [file for name in files for file in ([*list_input_files(name)] or [name] if name.is_dir() else [name])]
     for path in paths:
         try:
-            output.print(escape_text(f"{path}: valid {check_input_file(path, kind)}"), soft_wrap=True)
+            checked.append({"file": str(path), "kind": check_input_file(path, kind), "problems": []})
         except InputError as error:
             typer.echo(strip_control_characters(str(error)), err=True)
             problems, faulty = problems + len(error.problems), faulty + 1
+            checked.append({"file": str(path), "kind": None, "problems": list_problems(error)})
+    lines = [indent_text(f"{item['file']}: valid {item['kind']}", "") for item in checked if item["kind"] is not None]
     if faulty:
-        typer.echo(f"{problems} problem(s) in {faulty} of {len(paths)} file(s)", err=True)
-        raise typer.Exit(BAD_INPUT)
-    if any(name.is_dir() for name in files):
-        output.print(f"{len(paths)} file(s) checked, all valid")
+        conclusion = Text(f"{problems} problem(s) in {faulty} of {len(paths)} file(s)")
+        return CommandOutput(conclusion, checked, lines, exit_code=BAD_INPUT)
+    if len(lines) == 1 and not files[0].is_dir():
+        return CommandOutput(lines[0].text, checked)
+    return CommandOutput(Text(f"{len(paths)} file(s) checked, all valid"), checked, lines)

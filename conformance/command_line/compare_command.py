@@ -1,16 +1,20 @@
 """`pantocheck compare`: records, results and systems side by side."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
+from rich.text import Text
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import build_table, console, escape_text
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import build_table, escape_text
 from pantocheck.conformance.command_line.options import SetOption, choose_case
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.comparison.compared_run import (
     RESULTS_FILE,
     ComparedRun,
@@ -24,6 +28,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.compared_runs import write_comparison
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 from pantocheck.conformance.reports.words import name_pantograph
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -45,7 +50,7 @@ def compare_command(
         Path | None, typer.Option(help="Folder for comparison.json, .html, .pdf and .csv.", show_default="none")
     ] = None,
     changed: SetOption = None,
-) -> None:
+) -> CommandOutput:
     """Compare records, results or systems with the first of them.
 
     Quantities stand side by side with their differences. Of records and systems, the forces are compared at the same
@@ -65,15 +70,19 @@ def compare_command(
     simulated = _choose_simulated_case(subjects, case, changed)
     if out is not None:
         check_writable(out)
-    output = console()
     runs = []
     for subject in subjects:
-        with output.status(escape_text(subject)):
+        with follow_steps(subject):
             runs.append(_load_subject(subject, simulated))
     comparison = compare_subjects(runs, simulated.id if simulated is not None else case)
     files = [] if out is None else write_comparison(comparison, out)
-    _print_comparison(comparison)
-    print_files(files)
+    return CommandOutput(
+        escape_text(" beside ".join(subject.name for subject in comparison.subjects)),
+        comparison,
+        [*_list_tables(comparison)],
+        files=files,
+        remarks=remark_missing_formats() if files else (),
+    )
 
 
 def _choose_simulated_case(subjects: list[str], case: str | None, changed: list[str] | None) -> Case | None:
@@ -95,13 +104,12 @@ def _load_subject(text: str, case: Case | None) -> list[ComparedRun]:
     return [read_record_run(path)]
 
 
-def _print_comparison(comparison: RunComparison) -> None:
-    """Print one table per case and pantograph; quantities with several numbers are left to the files."""
-    output = console()
+def _list_tables(comparison: RunComparison) -> Iterator[RenderableType]:
+    """One table per case and pantograph; quantities with several numbers are left to the files."""
     names = [subject.name for subject in comparison.subjects]
     for case in comparison.cases:
         for note in case.notes:
-            output.print(escape_text(note))
+            yield escape_text(note)
         for owner in case.owners:
             rows = [row for row in owner.quantities if not any(isinstance(value, tuple) for value in row.values)]
             if not rows:
@@ -113,13 +121,11 @@ def _print_comparison(comparison: RunComparison) -> None:
                 table.add_row(
                     escape_text(row.name), *(escape_text(format_compared(values, i)) for i in range(len(names)))
                 )
-            output.print(table)
+            yield table
             for agreement in owner.agreements:
-                output.print(
-                    escape_text(
-                        f"{agreement.subject}: correlation {agreement.correlation:.3f}, RMS of the difference "
-                        f"{agreement.rms_difference_N:.3g} N up to {agreement.highest_Hz:g} Hz"
-                    )
+                yield escape_text(
+                    f"{agreement.subject}: correlation {agreement.correlation:.3f}, RMS of the difference "
+                    f"{agreement.rms_difference_N:.3g} N up to {agreement.highest_Hz:g} Hz"
                 )
-            output.print()
-    output.print("* beyond the joint 95 % uncertainty of both values")
+            yield Text()
+    yield Text("* beyond the joint 95 % uncertainty of both values")

@@ -1,17 +1,26 @@
 """`pantocheck compare-drop`: a recorded mass drop beside its simulation under one or more damping models."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 
 from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import (
+    build_table,
+    escape_text,
+    format_number,
+    indent_text,
+    style_verdict,
+)
 from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
 from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
@@ -28,7 +37,7 @@ from pantocheck.conformance.reports.comparison.drop_comparison_page import (
     build_drop_comparison,
     name_criterion,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
 
 DEFAULT_WINDOWS = ((0.0, 10.0), (60.0, 70.0))
 """Windows after the release [s]: the first ten seconds, and ten seconds a minute later."""
@@ -63,7 +72,7 @@ def compare_drop_command(
     ] = 0.0,
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
     time_step: Annotated[float, typer.Option(help="Time step [s].", min=1e-5, max=0.005)] = 0.001,
-) -> None:
+) -> CommandOutput:
     """Compare a recorded mass drop with its simulation under one or more damping models.
 
     The record states mass, wire and position; the release is found in the record. Limits make criteria; without them,
@@ -83,14 +92,17 @@ def compare_drop_command(
     )
     drop = _choose_run(record, run)
     check_writable(out)
-    output = console()
-    with output.status("simulating the drop"):
+    with follow_steps("simulating the drop"):
         comparison = compare_drop(drop, task)
         files = _write(comparison, out)
-    output.print(style_verdict(comparison.verdict), escape_text(f" {DROP_HEADLINES[comparison.verdict]}"))
-    _print_agreement(comparison)
-    print_files(files)
-    raise typer.Exit(EXIT_CODES[comparison.verdict])
+    return CommandOutput(
+        style_verdict(comparison.verdict) + escape_text(f" {DROP_HEADLINES[comparison.verdict]}"),
+        comparison,
+        [*_describe_agreement(comparison)],
+        files=files,
+        remarks=remark_missing_formats(),
+        exit_code=EXIT_CODES[comparison.verdict],
+    )
 
 
 def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
@@ -137,13 +149,10 @@ def _write(comparison: DropComparison, folder: Path) -> list[Path]:
     return files
 
 
-def _print_agreement(comparison: DropComparison) -> None:
-    """Print the agreement of velocity and acceleration below 20 Hz, the criteria and the warnings."""
-    output = console()
+def _describe_agreement(comparison: DropComparison) -> Iterator[RenderableType]:
+    """Agreement of velocity and acceleration below 20 Hz, criteria and warnings."""
     drop = comparison.drop
-    output.print(
-        escape_text(f"{comparison.record}: {drop.mass_kg:g} kg on {drop.wire}, released at {drop.release_s:.4f} s")
-    )
+    yield escape_text(f"{comparison.record}: {drop.mass_kg:g} kg on {drop.wire}, released at {drop.release_s:.4f} s")
     numbers = ("RMS ratio", "correlation")
     table = build_table("motion", "window", "place", "model", *numbers, title=f"{GRAPHIC_BAND.text}", right=numbers)
     for row in comparison.statistics:
@@ -158,16 +167,16 @@ def _print_agreement(comparison: DropComparison) -> None:
                     format_number(model.rms_ratio),
                     format_number(model.correlation),
                 )
-    output.print(table)
+    yield table
     if comparison.criteria:
         criteria = build_table("criterion", "value", "limits", "verdict", right=("value",))
         for item in comparison.criteria:
             bounds = f"{format_number(item.lower)} to {format_number(item.upper)}"
             name = name_criterion(item.model_dump(mode="json"))
             criteria.add_row(name, format_number(item.value), bounds, style_verdict(item.verdict))
-        output.print(criteria)
+        yield criteria
     for item in comparison.criteria:
         for remark in filter(None, (item.reason, *item.close)):
-            output.print(escape_text(f"  {name_criterion(item.model_dump(mode='json'))}: {remark}"))
+            yield indent_text(f"{name_criterion(item.model_dump(mode='json'))}: {remark}")
     for warning in comparison.warnings:
-        output.print(escape_text(f"warning: {warning}"))
+        yield indent_text(warning, "warning: ")

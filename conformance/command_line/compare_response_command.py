@@ -1,13 +1,22 @@
 """`pantocheck compare-response`: frequency responses measured at a pantograph head beside those of its model."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import (
+    build_table,
+    escape_text,
+    format_number,
+    indent_text,
+    style_verdict,
+)
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
@@ -23,7 +32,7 @@ from pantocheck.conformance.reports.comparison.response_comparison_page import (
     list_response_remarks,
     name_response_criterion,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
 
 PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
     "modulus_deviation_pct",
@@ -40,7 +49,7 @@ def compare_response_command(
     pantograph: Annotated[Path, typer.Option(help="Pantograph file.")],
     out: Annotated[Path, typer.Option(help="Folder for response_comparison.json, .html and .pdf.")],
     limits: Annotated[Path | None, typer.Option(help="File of limits (docs/pantograph-response.md).")] = None,
-) -> None:
+) -> CommandOutput:
     """Compare frequency responses measured at a pantograph head with its model.
 
     A table holds frequency, modulus and phase of one measurement; give one per static force and height. Limits make
@@ -52,14 +61,17 @@ def compare_response_command(
     model = read_model(pantograph, PantographFile, "pantograph")
     graded = None if limits is None else read_response_limits(limits)
     check_writable(out)
-    output = console()
-    with output.status("comparing"):
+    with follow_steps("comparing"):
         comparison = compare_responses(records, model, graded)
         files = _write(comparison, out)
-    output.print(style_verdict(comparison.verdict), escape_text(f" {RESPONSE_HEADLINES[comparison.verdict]}"))
-    _print_deviations(comparison)
-    print_files(files)
-    raise typer.Exit(EXIT_CODES[comparison.verdict])
+    return CommandOutput(
+        style_verdict(comparison.verdict) + escape_text(f" {RESPONSE_HEADLINES[comparison.verdict]}"),
+        comparison,
+        [*_describe_deviations(comparison)],
+        files=files,
+        remarks=remark_missing_formats(),
+        exit_code=EXIT_CODES[comparison.verdict],
+    )
 
 
 def _write(comparison: ResponseComparison, folder: Path) -> list[Path]:
@@ -71,9 +83,8 @@ def _write(comparison: ResponseComparison, folder: Path) -> list[Path]:
     return files
 
 
-def _print_deviations(comparison: ResponseComparison) -> None:
-    """Print the RMS deviations of every band, the criteria and the warnings."""
-    output = console()
+def _describe_deviations(comparison: ResponseComparison) -> Iterator[RenderableType]:
+    """RMS deviations of every band, criteria and warnings."""
     numbers = ("modulus %", "phase °", "complex %")
     table = build_table("response", "band", *numbers, title="RMS deviation of the model", right=numbers)
     for response in comparison.responses:
@@ -81,15 +92,15 @@ def _print_deviations(comparison: ResponseComparison) -> None:
             if band.deviations:
                 values = (format_number(band.deviations[key], 3) for key in PRINTED_DEVIATIONS)
                 table.add_row(escape_text(response.name), f"{band.band_Hz[0]:g} to {band.band_Hz[1]:g} Hz", *values)
-    output.print(table)
+    yield table
     if comparison.criteria:
         criteria = build_table("criterion", "value", "limit", "verdict", right=("value", "limit"))
         for item in comparison.criteria:
             name, verdict = name_response_criterion(item.model_dump(mode="json")), style_verdict(item.verdict)
             criteria.add_row(escape_text(name), format_number(item.value), format_number(item.upper), verdict)
-        output.print(criteria)
+        yield criteria
     for item in comparison.criteria:
         if item.reason:
-            output.print(escape_text(f"  {name_response_criterion(item.model_dump(mode='json'))}: {item.reason}"))
+            yield indent_text(f"{name_response_criterion(item.model_dump(mode='json'))}: {item.reason}")
     for remark in list_response_remarks(comparison.model_dump(mode="json")):
-        output.print(escape_text(f"warning: {remark}"))
+        yield indent_text(remark, "warning: ")

@@ -1,15 +1,24 @@
 """`pantocheck compare-statics`: elasticities and contact wire heights measured along a line beside its model."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
+from rich.console import RenderableType
 
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import (
+    build_table,
+    escape_text,
+    format_number,
+    indent_text,
+    style_verdict,
+)
 from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.comparison.static_comparison import compare_statics
 from pantocheck.conformance.comparison.static_comparison_format import ComparedValues, StaticComparison
@@ -22,7 +31,7 @@ from pantocheck.conformance.reports.comparison.static_comparison_page import (
     build_static_comparison,
     list_remarks,
 )
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
 
 ToleranceOption = float | None
 
@@ -47,7 +56,7 @@ def compare_statics_command(
         typer.Option("--height-tolerance-mm", help="Largest accepted difference of the contact wire height.", min=0.0),
     ] = None,
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
-) -> None:
+) -> CommandOutput:
     """Compare elasticities and contact wire heights measured along a line with its model.
 
     A tolerance makes a criterion; without one, the differences are shown and not graded. No standard states a
@@ -63,15 +72,18 @@ def compare_statics_command(
     line_file = read_line(line)
     record = read_static_record(table, line_file.geometry)
     check_writable(out)
-    output = console()
-    with output.status("line at rest"):
+    with follow_steps("line at rest"):
         given = {name: tolerance for name, tolerance in tolerances.items() if tolerance is not None}
         comparison = compare_statics(record, line_file, element, given)
         files = _write(comparison, out)
-    output.print(style_verdict(comparison.verdict), escape_text(f" {HEADLINES[comparison.verdict]}"))
-    _print_differences(comparison)
-    print_files(files)
-    raise typer.Exit(EXIT_CODES[comparison.verdict])
+    return CommandOutput(
+        style_verdict(comparison.verdict) + escape_text(f" {HEADLINES[comparison.verdict]}"),
+        comparison,
+        [*_describe_differences(comparison)],
+        files=files,
+        remarks=remark_missing_formats(),
+        exit_code=EXIT_CODES[comparison.verdict],
+    )
 
 
 def _write(comparison: StaticComparison, folder: Path) -> list[Path]:
@@ -93,9 +105,8 @@ def _write_differences(values: ComparedValues, path: Path) -> None:
     produce_atomically(path, lambda temporary: write_csv_table(temporary, names, np.column_stack(columns), 8))
 
 
-def _print_differences(comparison: StaticComparison) -> None:
-    """Print the criteria, and the differences of all values."""
-    output = console()
+def _describe_differences(comparison: StaticComparison) -> Iterator[RenderableType]:
+    """Differences of all values, and criteria."""
     numbers = ("mean", "RMS", "outliers", "missing")
     table = build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers)
     for values in comparison.values:
@@ -107,15 +118,15 @@ def _print_differences(comparison: StaticComparison) -> None:
             str(len(values.outlier_rows)),
             str(len(values.missing_rows)),
         )
-    output.print(table)
+    yield table
     if comparison.criteria:
         criteria = build_table("criterion", "value", "tolerance", "verdict", right=("value", "tolerance"))
         for item in comparison.criteria:
             verdict = style_verdict(item.verdict)
             criteria.add_row(item.quantity, format_number(item.value), format_number(item.tolerance), verdict)
-        output.print(criteria)
+        yield criteria
     for item in comparison.criteria:
         if item.reason:
-            output.print(escape_text(f"  {item.quantity}: {item.reason}"))
+            yield indent_text(f"{item.quantity}: {item.reason}")
     for remark in list_remarks(comparison.model_dump(mode="json")):
-        output.print(escape_text(f"  {remark}"))
+        yield indent_text(remark)

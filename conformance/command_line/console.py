@@ -1,18 +1,15 @@
 """Terminal output: width, tables, verdicts and numbers."""
 
-import os
 from collections.abc import Collection
-from typing import Literal
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
+from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.hanging_text import HangingText
+from pantocheck.conformance.command_line.output_settings import current_settings
 from pantocheck.conformance.grading.verdicts import Verdict
-
-FILE_WIDTH = 140
-"""Columns of output that goes to a file, where a table must not be squeezed."""
 
 _STYLES: dict[Verdict, str] = {
     "pass": "bold green",
@@ -26,39 +23,25 @@ _STYLES: dict[Verdict, str] = {
 
 def console() -> Console:
     """Standard output, as wide as the terminal or the variable COLUMNS."""
-    output = Console(highlight=False, soft_wrap=False)
-    if output.is_terminal or "COLUMNS" in os.environ:
-        return output
-    return Console(highlight=False, width=FILE_WIDTH)
+    return _open_console(stderr=False)
+
+
+def error_console() -> Console:
+    """Standard error, for progress and messages."""
+    return _open_console(stderr=True)
+
+
+def _open_console(stderr: bool) -> Console:
+    if current_settings().colour == "none":
+        return Console(stderr=stderr, highlight=False, color_system=None)  # `no_color` of rich keeps bold text
+    return Console(stderr=stderr, highlight=False)
 
 
 def build_table(
     *headings: str, title: str | None = None, unbroken: Collection[str] = (), right: Collection[str] = ()
-) -> Table:
-    """Table without lines.
-
-    Parameters
-    ----------
-    headings : str
-        One per column.
-    title : str or None
-        Text above the table.
-    unbroken : collection of str
-        Headings of columns that are never wrapped.
-    right : collection of str
-        Headings of columns that are aligned to the right.
-    """
-    table = Table(
-        title=None if title is None else Text(title),
-        title_justify="left",
-        box=None,
-        pad_edge=False,
-        header_style="bold",
-    )
-    for heading in headings:
-        justify: Literal["left", "right"] = "right" if heading in right else "left"
-        table.add_column(Text(heading), no_wrap=heading in unbroken, overflow="fold", justify=justify)
-    return table
+) -> FittedTable:
+    """Table that fits the width of the output; parameters as in `FittedTable`."""
+    return FittedTable(headings, title, unbroken, right)
 
 
 def style_verdict(verdict: Verdict) -> Text:
@@ -69,6 +52,11 @@ def style_verdict(verdict: Verdict) -> Text:
 def escape_text(text: str) -> Text:
     """Text of a file without markup and control characters."""
     return Text(strip_control_characters(text))
+
+
+def indent_text(text: str, mark: str = "  ") -> HangingText:
+    """Paragraph of a file below a heading, without markup and control characters."""
+    return HangingText(mark, escape_text(text))
 
 
 def format_number(value: float | None, digits: int = 4) -> str:

@@ -1,13 +1,16 @@
 """`pantocheck describe`: channels, rates, ranges and gaps of a measured file, and a sidecar to complete."""
 
-import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
-from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.command_output import CommandOutput, Unwrapped
+from pantocheck.conformance.command_line.console import build_table, escape_text, indent_text
+from pantocheck.conformance.command_line.fitted_table import FittedTable
+from pantocheck.conformance.command_line.hanging_text import HangingText
 from pantocheck.conformance.input_files.formats.csv_table import open_text_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL, MeasuredTable
@@ -27,9 +30,6 @@ from pantocheck.conformance.own_files.channel_guess import guess_channels, is_ac
 from pantocheck.conformance.own_files.new_files import write_new_file
 from pantocheck.conformance.own_files.sidecar_draft import draft_drop_sidecar, draft_record_sidecar
 
-TEXT_WIDTH = 80
-NAME_WIDTH = 26
-
 
 def describe_command(
     file: Annotated[Path, typer.Argument(help="File of a measurement: CSV, HDF5, MATLAB, UFF, TDMS or MDF.")],
@@ -44,7 +44,7 @@ def describe_command(
     decimal: Annotated[str | None, typer.Option(help="Decimal mark of a text table.")] = None,
     header_lines: Annotated[int | None, typer.Option(help="Lines above the names of a text table.")] = None,
     encoding: Annotated[str | None, typer.Option(help="Encoding of a text table.")] = None,
-) -> None:
+) -> CommandOutput:
     """Describe a measured file: channels, rates, ranges, gaps and suspicious contents.
 
     Examples:
@@ -64,20 +64,41 @@ def describe_command(
     tables = _read(file, layout)
     facts, time = list_channel_facts(tables[0]), find_time(tables[0])
     drop = kind == "mass-drop" or (kind is None and is_drop(facts))
-    lines = [f"{file.name}: {file.stat().st_size / 1e6:.3g} MB", *_describe_layout(file, layout)]
-    lines += [f"{len(tables)} runs; the first one is described"] if len(tables) > 1 else []
-    lines += [*_describe_table(tables[0], facts, time)]
-    for line in lines:
-        typer.echo(strip_control_characters(line))
+    runs = [f"{len(tables)} runs; the first one is described"] if len(tables) > 1 else []
+    size = f"{len(facts)} columns, {tables[0].values.shape[0]} samples"
+    lines = [*_describe_layout(file, layout), *runs, size, *_describe_time(time)]
     if sidecar is not None:
         draft = draft_drop_sidecar if drop else draft_record_sidecar
         write_new_file(sidecar, draft(file.name, facts, time, layout))
         follow = "identify" if drop else "assess"
-        typer.echo(f"written: {sidecar}")
-        typer.echo(f"Complete it, then: pantocheck check {sidecar}, and pantocheck {follow}")
+        next_step = [f"Complete it, then: pantocheck check {sidecar}, and pantocheck {follow}"]
     else:
-        typer.echo("A sidecar to complete:")
-        typer.echo(f"  pantocheck describe {file} --sidecar {file.with_suffix('.toml')}")
+        next_step = ["A sidecar to complete:", f"  pantocheck describe {file} --sidecar {file.with_suffix('.toml')}"]
+    return CommandOutput(
+        escape_text(f"{file.name}: {file.stat().st_size / 1e6:.3g} MB"),
+        {"time": None if time is None else _list_facts(time), "channels": [_list_facts(fact) for fact in facts]},
+        [
+            *(HangingText(*_split_indent(line)) for line in lines),
+            Text(),
+            _build_channel_table(facts),
+            *(indent_text(remark, f"{fact.column.label}: ") for fact in facts for remark in fact.remarks),
+            Text(),
+            *(Unwrapped(escape_text(line).plain) for line in next_step),
+        ],
+        files=[] if sidecar is None else [sidecar],
+    )
+
+
+def _list_facts(facts: ChannelFacts | TimeFacts) -> dict[str, object]:
+    """Facts for a program; a column is given by its name."""
+    column = None if facts.column is None else facts.column.label
+    return {"column": column, **{key: value for key, value in vars(facts).items() if key != "column"}}
+
+
+def _split_indent(line: str) -> tuple[str, Text]:
+    """Indent and text of a line."""
+    text = line.lstrip(" ")
+    return line[: len(line) - len(text)], escape_text(text)
 
 
 def _read(file: Path, layout: TextSettings) -> list[MeasuredTable]:
@@ -109,30 +130,30 @@ def _describe_layout(file: Path, settings: TextSettings) -> Iterator[str]:
             f"numbers from line {layout.first}",
             *(["a line of units"] if layout.units else []),
         ]
-        yield from textwrap.wrap(", ".join(parts), TEXT_WIDTH, subsequent_indent="  ")
-        for line in layout.preface[:5]:
-            yield f"  | {line}"[:TEXT_WIDTH]
+        yield ", ".join(parts)
+        yield from (f"  | {line}" for line in layout.preface[:5])
         if len(layout.preface) > 5:
             yield f"  | ... {len(layout.preface)} lines above the names"
 
 
-def _describe_table(table: MeasuredTable, facts: list[ChannelFacts], time: TimeFacts | None) -> Iterator[str]:
-    yield f"{len(facts)} columns, {table.values.shape[0]} samples"
+def _describe_time(time: TimeFacts | None) -> Iterator[str]:
+    """Source, rate and duration of the time, and remarks on it."""
     if time is None:
         yield "time: not found; give its column, or the rate"
     else:
         yield f"time: {time.source}, {time.rate:.6g} Hz, {time.duration:.6g} s"
         yield from (f"  {remark}" for remark in time.remarks)
-    yield ""
-    yield f"{'name':{NAME_WIDTH}} {'unit':6} {'from':>11} {'to':>11} missing"
+
+
+def _build_channel_table(facts: Sequence[ChannelFacts]) -> FittedTable:
+    """Unit, range and missing values of every channel."""
+    numbers = ("from", "to", "missing")
+    table = build_table("name", "unit", *numbers, unbroken=("unit", *numbers), right=numbers)
     for fact in facts:
-        name = fact.column.label or "(no name)"
-        short = name if len(name) <= NAME_WIDTH else name[: NAME_WIDTH - 3] + "..."
+        name, unit = escape_text(fact.column.label or "(no name)"), escape_text(fact.unit or "")
         if fact.missing == 1:
-            yield f"{short:{NAME_WIDTH}} {fact.unit or '':6.6} text or empty"
+            table.add_row(name, unit, "", "", "text or empty")
             continue
         missing = f"{100 * fact.missing:.2g} %" if fact.missing else ""
-        numbers = f"{fact.smallest:11.5g} {fact.largest:11.5g}"
-        yield f"{short:{NAME_WIDTH}} {fact.unit or '':6.6} {numbers} {missing}".rstrip()
-        yield from (f"    {remark}"[:TEXT_WIDTH] for remark in fact.remarks)
-    yield ""
+        table.add_row(name, unit, f"{fact.smallest:.5g}", f"{fact.largest:.5g}", missing)
+    return table

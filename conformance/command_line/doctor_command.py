@@ -1,18 +1,18 @@
 """`pantocheck doctor`: report on the installation."""
 
-import json
+from collections.abc import Iterator
 from itertools import groupby
-from typing import Annotated
 
-import typer
+from rich.console import RenderableType
+from rich.padding import Padding
+from rich.text import Text
 
-from pantocheck.conformance.command_line.console import build_table, console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import build_table, escape_text
 from pantocheck.conformance.command_line.environment_facts import DeclaredPackage, list_environment, list_requirements
 
 
-def doctor_command(
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, to attach to a report of a fault.")] = False,
-) -> None:
+def doctor_command() -> CommandOutput:
     """Show versions, extras, caches and folders of this installation.
 
     Exit code 0: every dependency is installed in a sufficient version. Exit code 1: one is missing or too old. Packages
@@ -22,38 +22,39 @@ def doctor_command(
     """
     facts, requirements = list_environment(), list_requirements()
     faulty = [requirement for requirement in requirements if not requirement.extra and requirement.state != "installed"]
-    if as_json:
-        packages = [
-            {
-                "name": requirement.name,
-                "extra": requirement.extra,
-                "lowest": requirement.lowest,
-                "installed": requirement.installed,
-                "state": requirement.state,
-            }
-            for requirement in requirements
-        ]
-        typer.echo(json.dumps({"environment": facts, "packages": packages}, indent=1))
-    else:
-        _print_report(facts, requirements)
-    raise typer.Exit(1 if faulty else 0)
+    packages = [
+        {
+            "name": requirement.name,
+            "extra": requirement.extra,
+            "lowest": requirement.lowest,
+            "installed": requirement.installed,
+            "state": requirement.state,
+        }
+        for requirement in requirements
+    ]
+    names = ", ".join(requirement.name for requirement in faulty)
+    conclusion = Text(f"Missing or too old: {names}" if faulty else "Every dependency is installed.")
+    return CommandOutput(
+        conclusion,
+        {"environment": facts, "packages": packages},
+        [*_build_tables(facts, requirements)],
+        exit_code=1 if faulty else 0,
+    )
 
 
-def _print_report(facts: dict[str, str], requirements: tuple[DeclaredPackage, ...]) -> None:
-    output = console()
+def _build_tables(facts: dict[str, str], requirements: tuple[DeclaredPackage, ...]) -> Iterator[RenderableType]:
     table = build_table("fact", "value", unbroken=("fact",))
     for name, value in facts.items():
         table.add_row(name, escape_text(value))
-    output.print(table)
+    yield table
     for extra, group in groupby(requirements, lambda requirement: requirement.extra):
         members = list(group)
-        output.print()
         title = f"extra {extra}: {_describe_extra(extra, members)}" if extra else "packages of every installation"
-        output.print(escape_text(title), soft_wrap=True)  # a title of the table would be as narrow as the table
+        yield Padding(escape_text(title), (1, 0, 0, 0))
         table = build_table("package", "installed", "lowest", "state")
         for member in members:
             table.add_row(member.name, member.installed or "-", member.lowest, member.state)
-        output.print(table)
+        yield table
 
 
 def _describe_extra(extra: str, members: list[DeclaredPackage]) -> str:

@@ -1,17 +1,19 @@
 """`pantocheck drop-campaign`: simulated mass drops of several masses, places and tensions."""
 
-from functools import partial
+import logging
 from pathlib import Path
 from typing import Annotated, get_args
 
 import typer
-from rich.progress import Progress
+from rich.text import Text
 
 from pantocheck.conformance.cases.drop_test import WireName
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.drop_command import advance_bar
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import indent_text
+from pantocheck.conformance.command_line.drop_command import begin_drop
 from pantocheck.conformance.command_line.options import choose_case
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import Axis
@@ -26,6 +28,8 @@ from pantocheck.conformance.simulation.drop_campaign import (
     simulate_records,
 )
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
+
+_LOGGER = logging.getLogger(__name__)
 
 TENSION_HELP = "Tension of {} [N]; repeat the option for several. Default: that of the case."
 
@@ -54,7 +58,7 @@ def drop_campaign_command(
         typer.Option(help="RMS of the noise of a channel [SI unit]. Default: that of the case.", min=0, max=10),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the noise.", min=0)] = 1,
-) -> None:
+) -> CommandOutput:
     """Simulate a campaign of mass drops: every combination of masses, places and tensions.
 
     Example: pantocheck drop-campaign vovan2015/mass-drop/stand-in --mass 20 --mass 40 --out drops/drop.csv
@@ -79,16 +83,23 @@ def drop_campaign_command(
     drops = [(each, drop) for each in cases for drop in list_drops(each, campaign)]
     width = len(str(len(drops) * repeats))
     check_writable(out.parent)
-    output = console()
-    with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
+    written: dict[Path, str] = {}
+    with follow_steps("mass drops", len(drops)) as progress:
         for n, (drop_case, drop) in enumerate(drops):
-            task = bar.add_task(f"drop {n + 1} of {len(drops)}", total=1.0)
+            begin = begin_drop(_LOGGER, f"drop {n + 1} of {len(drops)}")
             numbers = range(n * repeats, (n + 1) * repeats)
-            records = simulate_records(drop_case, drop, sensors, numbers, partial(advance_bar, bar, task))
+            records = simulate_records(drop_case, drop, sensors, numbers, begin)
             for number, (record, _) in zip(numbers, records, strict=True):
                 path = out.with_name(f"{out.stem}-{number + 1:0{width}d}{out.suffix}")
                 write(record, path)
-                output.print(escape_text(f"{path}: {record.name}"), soft_wrap=True)
+                written[path] = record.name
+            progress.finish_task()
+    return CommandOutput(
+        Text(f"{len(drops)} drops, {len(written)} records"),
+        [{"file": str(path), "record": name} for path, name in written.items()],
+        [indent_text(name, f"{path.name}: ") for path, name in written.items()],
+        files=[*written],
+    )
 
 
 def _parse_place(text: str) -> tuple[WireName, float]:

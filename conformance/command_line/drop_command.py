@@ -1,19 +1,23 @@
 """`pantocheck drop`: simulated mass drops as records that can be identified like measured ones."""
 
-from functools import partial
+import logging
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import Progress, TaskID
 
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text, indent_text
 from pantocheck.conformance.command_line.options import choose_case
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
+from pantocheck.conformance.step_log import ShareCallback, StepSequence
+
+_LOGGER = logging.getLogger(__name__)
 
 
 def drop_command(
@@ -23,7 +27,7 @@ def drop_command(
         int | None,
         typer.Option("--drop", help="Number of the drop, from 1. Default: all drops, as NAME-1, NAME-2, ...", min=1),
     ] = None,
-) -> None:
+) -> CommandOutput:
     """Simulate the mass drops of a case and write their records.
 
     Example: pantocheck drop vovan2015/mass-drop/stand-in --drop 1 --out drop.uff
@@ -36,21 +40,26 @@ def drop_command(
     if number is not None and number > drops:
         raise InputError("--drop", f"there is no drop {number}", f"Case {drop_case.id} has {drops}, numbered from 1.")
     check_writable(out.parent)
-    output = console()
-    with Progress(console=output, transient=True, disable=not output.is_terminal) as bar:
-        for n in range(1, drops + 1) if number is None else [number]:
-            task = bar.add_task(f"drop {n} of {drops}", total=1.0)
-            simulation = simulate_drop(drop_case, n, partial(advance_bar, bar, task))
+    files, facts, lines = [], [], []
+    numbers = range(1, drops + 1) if number is None else [number]
+    with follow_steps("mass drops", len(numbers)) as progress:
+        for n in numbers:
+            simulation = simulate_drop(drop_case, n, begin_drop(_LOGGER, f"drop {n} of {drops}"))
+            progress.finish_task()
             several = number is None and drops > 1
             path = out.with_name(f"{out.stem}-{n}{out.suffix}") if several else out
             record = simulation.record
             write(record, path)
             slack = simulation.decay.last_slack
             droppers = "no slack dropper after the release" if slack is None else f"last slack dropper at {slack:.2f} s"
-            text = f"{path}: {record.duration:g} s, {len(record.channels)} sensors, {droppers}"
-            output.print(escape_text(text), soft_wrap=True)
+            files.append(path)
+            facts.append({"drop": n, "duration_s": record.duration, "last_slack_s": slack})
+            lines.append(
+                indent_text(f"{record.duration:g} s, {len(record.channels)} sensors, {droppers}", f"drop {n}: ")
+            )
+    return CommandOutput(escape_text(f"{drop_case.id}: {len(files)} drop(s)"), facts, lines, files=files)
 
 
-def advance_bar(bar: Progress, task: TaskID, share: float) -> None:
-    """Show the completed share of a drop, 0 to 1."""
-    bar.update(task, completed=share)
+def begin_drop(logger: logging.Logger, drop: str) -> ShareCallback:
+    """Report the begin of a drop; returns the callback of its simulation."""
+    return StepSequence(logger, drop, {"simulation": 1.0}).begin("simulation")

@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.line_tables.line_export import DecimalMark, export_droppers, export_supports
@@ -20,7 +21,7 @@ def export_line_command(
     decimal: Annotated[
         DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
     ] = "point",
-) -> None:
+) -> CommandOutput:
     """Write the supports and droppers of a line as tables for a spreadsheet.
 
     `pantocheck import-line` turns the tables, with the same line file as base, into the same line.
@@ -29,7 +30,9 @@ def export_line_command(
     """
     line_file = read_line(line)
     check_writable(out)
-    for name, export in (("supports.csv", export_supports), ("droppers.csv", export_droppers)):
+    files = [out / "supports.csv", out / "droppers.csv"]
+    for path, export in zip(files, (export_supports, export_droppers), strict=True):
         # Spreadsheets recognise UTF-8 by the byte order mark.
-        write_atomically(out / name, export(line_file, decimal).encode("utf-8-sig"))
-        console().print(escape_text(str(out / name)), soft_wrap=True)
+        write_atomically(path, export(line_file, decimal).encode("utf-8-sig"))
+    spans = line_file.geometry.spans
+    return CommandOutput(escape_text(f"{line_file.title}: {spans} spans"), {"spans": spans}, files=files)

@@ -6,9 +6,10 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput, Unwrapped
+from pantocheck.conformance.command_line.console import escape_text, indent_text
 from pantocheck.conformance.command_line.options import read_line
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.identification.damping.damping_model import MODAL_GROUPS
 from pantocheck.conformance.identification.damping.damping_results import (
     FitOptions,
@@ -21,6 +22,7 @@ from pantocheck.conformance.identification.damping.mode_matching import select_u
 from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.interface.fitted_damping import write_damping_fit
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 
@@ -48,7 +50,7 @@ def fit_damping_command(
         bool,
         typer.Option("--other-line", help="Permit a line that differs from that of the record; the result is marked."),
     ] = False,
-) -> None:
+) -> CommandOutput:
     """Fit a damping model of a line to identified modes.
 
     The model is Rayleigh damping per component, with and without modal damping. The report states which coefficients
@@ -61,12 +63,18 @@ def fit_damping_command(
     if not other_line:
         refuse_other_line(compare_line(select_usable(identified, modes.name), catenary), modes.name)
     check_writable(out)
-    output = console()
-    with output.status("modes of the line"):
+    with follow_steps("damping fit", 2) as progress:
+        progress.begin_task("modes of the line")
         results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
+        progress.begin_task("report")
         document, files = write_damping_fit(results, out)
-    output.print(escape_text(document.header.headline))
-    for text in results.warnings:
-        output.print(escape_text(f"warning: {text}"))
-    output.print(escape_text(write_damping_toml(results)))
-    print_files(files)
+    return CommandOutput(
+        escape_text(document.header.headline),
+        results,
+        [
+            *(indent_text(text, "warning: ") for text in results.warnings),
+            Unwrapped(escape_text(write_damping_toml(results)).plain),
+        ],
+        files=files,
+        remarks=remark_missing_formats(),
+    )

@@ -2,15 +2,19 @@
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
+from rich.console import RenderableType
+from rich.text import Text
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import build_table, format_number, indent_text
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
 from pantocheck.conformance.identification.pantograph_fit.fit_description import CHAIN_KEYS, name_parameter
@@ -19,6 +23,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.interface.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 
 
 def fit_pantograph_command(
@@ -44,7 +49,7 @@ def fit_pantograph_command(
     contact_stiffness: Annotated[
         float, typer.Option("--contact-stiffness-N-m", help="Contact of the file, not part of a response.", min=1.0)
     ] = CONTACT_STIFFNESS_N_M,
-) -> None:
+) -> CommandOutput:
     """Fit a chain of lumped masses to frequency responses measured at a pantograph head.
 
     Chains of two, three and four masses are fitted. The report shows intervals and states which parameters the band
@@ -56,13 +61,13 @@ def fit_pantograph_command(
     _refuse_other_suffix(out)
     check_writable(out.parent)
     task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
-    output = console()
-    with output.status("fitting"):
+    with follow_steps("fitting"):
         selection = fit_chains(records, task)
         fit = build_fitted_pantograph(records, selection, masses or selection.best, title, contact_stiffness)
         files = fit.write(out)
-    _print_fit(fit.report)
-    print_files(files)
+    conclusion = f"Chain of {fit.report.masses} masses fitted to {len(records)} response(s)"
+    details = [*_describe_fit(fit.report)]
+    return CommandOutput(Text(conclusion), fit.report, details, files=files, remarks=remark_missing_formats())
 
 
 def _refuse_other_suffix(path: Path) -> None:
@@ -113,21 +118,20 @@ def _parse_value(name: str, text: str) -> float:
     return value
 
 
-def _print_fit(report: PantographFit) -> None:
-    """Print the candidates, the parameters and the caveats."""
-    output = console()
+def _describe_fit(report: PantographFit) -> Iterator[RenderableType]:
+    """Candidates, parameters and caveats."""
     numbers = ("RMS deviation %", "variance ratio", "BIC")
     candidates = build_table("masses", *numbers, title="Chains", right=numbers)
     for item in report.candidates:
         values = (item.complex_deviation_pct, item.variance_ratio, item.information_criterion)
         mark = " (chosen)" if item.masses == report.masses else ""
         candidates.add_row(f"{item.masses}{mark}", *(format_number(value) for value in values))
-    output.print(candidates)
+    yield candidates
     parameters = build_table("parameter", "value", "± 95 %", "", right=("value", "± 95 %"))
     for parameter in report.parameters:
         state = parameter.determination.replace("_", " ")
         name = name_parameter(parameter.key, parameter.number)
         parameters.add_row(name, format_number(parameter.value), format_number(parameter.half_width, 2), state)
-    output.print(parameters)
+    yield parameters
     for warning in report.warnings:
-        output.print(escape_text(f"warning: {warning}"))
+        yield indent_text(warning, "warning: ")

@@ -25,13 +25,17 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def guard_command(command: Callable[P, R]) -> Callable[P, R]:
+def guard_command(
+    command: Callable[P, R], report: Callable[[str, Exception | None, int], None] = lambda *failure: None
+) -> Callable[P, R]:
     """Wrap a command so that failures end with one message: no traceback reaches the user.
 
     Parameters
     ----------
     command : callable
         Function of a command.
+    report : callable
+        Also receives the message, the failure and the exit code.
 
     Returns
     -------
@@ -44,22 +48,26 @@ def guard_command(command: Callable[P, R]) -> Callable[P, R]:
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
         """Run the command; every failure ends with a message and an exit code."""
+
+        def end(message: str, error: Exception | None, exit_code: int) -> NoReturn:
+            typer.echo(strip_control_characters(message), err=True)
+            report(message, error, exit_code)
+            raise typer.Exit(exit_code) from None
+
         try:
             return command(*args, **kwargs)
         except (typer.Exit, BrokenPipeError):
             raise
         except InputError as error:
-            _end(str(error), BAD_INPUT)
+            end(str(error), error, BAD_INPUT)
         except SimulationError as error:
-            _end(f"{error}\n  Check the data of the line and of the pantographs.", BAD_INPUT)
+            end(f"{error}\n  Check the data of the line and of the pantographs.", error, BAD_INPUT)
         except KeyboardInterrupt as interruption:
-            _end("Interrupted.", interruption_exit_code(interruption))
-        except OSError as error:
-            if error.errno in FULL:
-                raise  # the standard output; files end as `InputError`
-            _end_internal(error)
+            end("Interrupted.", None, interruption_exit_code(interruption))
         except Exception as error:
-            _end_internal(error)
+            if isinstance(error, OSError) and error.errno in FULL:
+                raise  # the standard output; files end as `InputError`
+            end(_describe_defect(error), error, BAD_INPUT)
 
     return run
 
@@ -69,17 +77,12 @@ def strip_control_characters(text: str) -> str:
     return "".join(character if character.isprintable() or character == "\n" else "?" for character in text)
 
 
-def _end_internal(error: Exception) -> NoReturn:
+def _describe_defect(error: Exception) -> str:
+    """Message of an internal error; prints the traceback on request."""
     if os.environ.get(TRACEBACK_VARIABLE):
         traceback.print_exc()
-    _end(
+    return (
         f"internal error: {type(error).__name__}: {error}\n"
         "  This is a defect of Pantocheck. Please report it with the command and its input files.\n"
-        f"  Set {TRACEBACK_VARIABLE}=1 to print the traceback.",
-        BAD_INPUT,
+        f"  Set {TRACEBACK_VARIABLE}=1 to print the traceback."
     )
-
-
-def _end(message: str, exit_code: int) -> NoReturn:
-    typer.echo(strip_control_characters(message), err=True)
-    raise typer.Exit(exit_code) from None

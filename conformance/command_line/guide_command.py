@@ -1,14 +1,15 @@
 """`pantocheck guide`: verification and validation guide from results of this version."""
 
 import json
-import time
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
-from pantocheck.conformance.command_line.console import console, escape_text
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import indent_text
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.guide.guide_building import build_guide, guide_identity, list_deviations
 from pantocheck.conformance.guide.guide_driver import compute_parts
 from pantocheck.conformance.guide.guide_store import GuideStore
@@ -16,7 +17,7 @@ from pantocheck.conformance.guide.guide_tasks import list_tasks, list_timings
 from pantocheck.conformance.guide.guide_values import list_guide_values
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
-from pantocheck.conformance.reports.formats.report_writers import write_document
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.reports.guide.guide_page import build_guide_page
 from pantocheck.conformance.results.guide_format import Guide
 
@@ -27,7 +28,7 @@ VALUES_FILE = "guide-values.json"
 def guide_command(
     out: Annotated[Path, typer.Option(help="Folder for guide.html, guide.pdf and guide.json.")],
     jobs: Annotated[int, typer.Option(min=1, max=256, help="Number of parallel processes.")] = 1,
-) -> None:
+) -> CommandOutput:
     """Write the verification and validation guide: every number is computed now, by this version.
 
     Closed forms, second formulations, peers, published cases, uncertainty, self-test and computing times. Packages of
@@ -38,17 +39,24 @@ def guide_command(
     """
     check_writable(out)
     store = GuideStore(out, guide_identity())
-    parts = compute_parts(list_tasks(), store, jobs, _print_progress)
-    guide = build_guide(parts.join(compute_parts(list_timings(), store, 1, _print_progress)))
+    tasks, timings = list_tasks(), list_timings()
+    with follow_steps("guide", len(tasks) + len(timings)) as progress:
+        parts = compute_parts(tasks, store, jobs, lambda part, done, _: progress.reach(part, done))
+        timed = compute_parts(timings, store, 1, lambda part, done, _: progress.reach(part, len(tasks) + done))
+    guide = build_guide(parts.join(timed))
     write_model(out / "guide.json", guide)
     write_atomically(out / VALUES_FILE, _encode_values(guide))
     page = build_guide_page(guide.model_dump(mode="json", by_alias=True))
-    output = console()
-    print_files([*write_document(page, out / "guide"), out / "guide.json", out / VALUES_FILE])
     deviations = list_deviations(guide)
-    for name in deviations:
-        output.print(escape_text(f"outside its tolerance, or not computed: {name}"), soft_wrap=True)
-    raise typer.Exit(1 if deviations else 0)
+    text = f"{len(deviations)} results outside their tolerance, or not computed" if deviations else "All parts hold."
+    return CommandOutput(
+        Text(text),
+        guide,
+        [indent_text(name) for name in deviations],
+        files=[*write_document(page, out / "guide"), out / "guide.json", out / VALUES_FILE],
+        exit_code=1 if deviations else 0,
+        remarks=remark_missing_formats(),
+    )
 
 
 def _encode_values(guide: Guide) -> bytes:
@@ -56,8 +64,3 @@ def _encode_values(guide: Guide) -> bytes:
     stamps = {"suite": guide.suite.model_dump(mode="json"), "created": guide.created}
     content = {**stamps, "values": list_guide_values(guide)}
     return (json.dumps(content, indent=1, allow_nan=False) + "\n").encode("ascii")
-
-
-def _print_progress(part: str, finished: int, total: int) -> None:
-    """One line per finished part, on standard error."""
-    typer.echo(f"{time.strftime('%H:%M:%S')} {finished} of {total} parts{f': {part}' if part else ''}", err=True)

@@ -1,16 +1,20 @@
 """`pantocheck identify`: modes of a line from mass-drop records."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
+from rich.console import RenderableType
 
-from pantocheck.conformance.command_line.console import console, escape_text, format_number
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text, format_number, indent_text
 from pantocheck.conformance.command_line.population_output import write_population
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.identification.hand_placed_poles import read_poles
 from pantocheck.conformance.identification.identification_analysis import analyse_identification
-from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.identification.identification_format import IdentificationFile, IdentifiedLine
+from pantocheck.conformance.identification.identify import group_by_line, identify_modes
 from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.identification.mode_export import MODE_FORMATS, select_mode_writer
 from pantocheck.conformance.identification.population import identify_population
@@ -19,6 +23,8 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS, list_suffixes
 from pantocheck.conformance.interface.identified_lines import write_identification
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
+from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 from pantocheck.conformance.reports.mass_drop.identification_report import collect_warnings
 
 
@@ -42,7 +48,7 @@ def identify_command(
     each: Annotated[
         bool, typer.Option("--each", help="Also identify every record on its own, and compare the tests: population.*")
     ] = False,
-) -> None:
+) -> CommandOutput:
     """Identify frequencies, damping ratios and mode shapes from mass-drop records.
 
     Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared.
@@ -57,17 +63,17 @@ def identify_command(
 
     pantocheck identify T1.h5 T2.csv T3.uff --out all --each
     """
-    output = console()
     exports = [(path, select_mode_writer(path)) for path in export or ()]
     start_poles = None if poles is None else read_poles(poles)
     drop_records = tuple(record for path in records for record in read_drop_records(path))
     for folder in (out, *(path.parent for path, _ in exports)):
         check_writable(folder)
-    with output.status("reading") as status:
-        inputs = (drop_records, highest, start_poles, lambda text: status.update(escape_text(text)))
+    tasks = count_tasks(drop_records, "each" if each else "joint")
+    with follow_steps("identification", tasks) as progress:
+        inputs = (drop_records, highest, start_poles, progress.begin_task)
         population = identify_population(*inputs) if each else None
         identifications = identify_modes(*inputs) if population is None else population.joint
-        status.update("writing the report")
+        progress.begin_task("report")
         lines = tuple(analyse_identification(identification) for identification in identifications)
         data = [line.model_dump(mode="json", by_alias=True) for line in lines]
         modes = tuple(mode for line in lines for mode in line.modes)
@@ -75,18 +81,33 @@ def identify_command(
         for path, write_modes in exports:
             write_modes(modes, path)
         document, files = write_identification(lines, out)
-        population_lines = () if population is None else tuple(write_population(population, out))
-    output.print(escape_text(document.header.headline))
+        population_lines, population_files = ((), ()) if population is None else write_population(population, out)
+    return CommandOutput(
+        escape_text(document.header.headline),
+        IdentificationFile(lines=lines),
+        [
+            *_list_groups(lines),
+            *(indent_text(text, "warning: ") for text in collect_warnings(data)),
+            *map(escape_text, population_lines),
+        ],
+        files=[out / "modes.json", *files, *(path for path, _ in exports), *population_files],
+        remarks=remark_missing_formats(),
+    )
+
+
+def count_tasks(records: Sequence[DropRecord], extent: Literal["each", "joint"]) -> int:
+    """Number of tasks that an identification reports: preparation of records, poles, uncertainty, and the report."""
+    lines = [len(line) for line in group_by_line(tuple(records))]
+    if extent == "joint":
+        return sum(line + 2 for line in lines) + 1
+    return sum(3 * line + (2 if line > 1 else 0) for line in lines) + 1
+
+
+def _list_groups(lines: Sequence[IdentifiedLine]) -> Iterator[RenderableType]:
+    """Modes and median damping of every group."""
     for group in (group for line in lines for group in line.groups):
         median = None if group.median_damping_ratio is None else 100 * group.median_damping_ratio
-        output.print(
-            escape_text(
-                f"group {group.group}: {group.certain} of {group.modes} modes certain, "
-                f"{group.from_Hz:.3f}-{group.to_Hz:.3f} Hz, median damping ratio {format_number(median)} %"
-            )
+        yield escape_text(
+            f"group {group.group}: {group.certain} of {group.modes} modes certain, "
+            f"{group.from_Hz:.3f}-{group.to_Hz:.3f} Hz, median damping ratio {format_number(median)} %"
         )
-    for text in collect_warnings(data):
-        output.print(escape_text(f"warning: {text}"))
-    print_files([out / "modes.json", *files, *(path for path, _ in exports)])
-    for text in population_lines:
-        output.print(escape_text(text), soft_wrap=True)

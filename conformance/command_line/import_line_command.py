@@ -6,7 +6,8 @@ from typing import Annotated
 import tomli_w
 import typer
 
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.line_tables.dropper_rows import LengthMeaning
@@ -29,7 +30,7 @@ def import_line_command(
             "the contact wire follow from the lengths."
         ),
     ] = "published",
-) -> None:
+) -> CommandOutput:
     """Write a line file from tables of its supports and droppers.
 
     All problems of all files are reported at once, with file, row and column.
@@ -47,5 +48,8 @@ def import_line_command(
     head = f"# Written by `pantocheck import-line` from {names}.\n"
     write_atomically(out, (head + tomli_w.dumps(tree)).encode())
     geometry = tree["geometry"]
-    text = f"{out}: {len(geometry['span_list'])} spans, {sum(span['length_m'] for span in geometry['span_list']):g} m"
-    console().print(escape_text(text), soft_wrap=True)
+    facts = {
+        "spans": len(geometry["span_list"]),
+        "length_m": sum(span["length_m"] for span in geometry["span_list"]),
+    }
+    return CommandOutput(escape_text(f"{facts['spans']} spans, {facts['length_m']:g} m"), facts, files=(out,))

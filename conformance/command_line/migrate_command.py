@@ -4,20 +4,22 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput, Unwrapped
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.own_files.migrated_file import migrate_file
 
 
 def migrate_command(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="TOML or JSON files with the key schema.")],
     out: Annotated[Path, typer.Option(help="Folder of the new files; no file is overwritten.")],
-) -> None:
+) -> CommandOutput:
     """Write files in the current version of their format into a folder.
 
     The suite reads earlier versions without this command. Comments of TOML files are not kept.
 
     Example: pantocheck migrate my-profile.toml --out migrated
     """
-    for path in files:
-        console().print(escape_text(migrate_file(path, out)), soft_wrap=True)
+    lines = [escape_text(migrate_file(path, out)).plain for path in files]
+    return CommandOutput(Text(f"{len(files)} file(s)"), lines, [Unwrapped(line) for line in lines])

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.own_files.new_files import (
@@ -30,7 +31,7 @@ def new_command(
             help="Pantograph of a new case.", show_default="pantograph.toml beside the case, or one of the library"
         ),
     ] = None,
-) -> None:
+) -> CommandOutput:
     """Write a commented, valid line, case, pantograph, response, administration or dossier file.
 
     Examples:
@@ -43,13 +44,12 @@ def new_command(
     if chosen is None:
         raise InputError(f"kind '{kind}'", "there is no template of this kind", suggest_names(kind, NEW_KINDS))
     path = file or Path(f"{kind}.toml")
-    output = console()
     if chosen == "case":
         parts = choose_parts(path, {"line": line, "pantograph": pantograph})
         write_new_file(path, fill_case_template(path, parts))
-        output.print(escape_text(f"{path} with {parts['line']} and {parts['pantograph']}"), soft_wrap=True)
-        return
+        text = f"new case with {parts['line']} and {parts['pantograph']}"
+        return CommandOutput(escape_text(text), {"kind": kind, **parts}, files=(path,))
     if line is not None or pantograph is not None:
         raise InputError("options --line and --pantograph", f"given for a {kind}", "Only a case names other files.")
     write_new_file(path, read_template(chosen))
-    output.print(escape_text(str(path)), soft_wrap=True)
+    return CommandOutput(escape_text(f"new {kind}"), {"kind": kind}, files=(path,))

@@ -1,6 +1,5 @@
 """Output of `pantocheck identify --each`: population.json, its pages, and lines for the terminal."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 from pantocheck.conformance.command_line.console import format_number
@@ -12,8 +11,15 @@ from pantocheck.conformance.reports.formats.report_writers import write_document
 from pantocheck.conformance.reports.mass_drop.population_report import build_population_document
 
 
-def write_population(population: Population, out: Path) -> Iterator[str]:
-    """Write population.json, .html and .pdf to a folder; return the lines for the terminal.
+def write_population(population: Population, out: Path) -> tuple[tuple[str, ...], list[Path]]:
+    """Write population.json, .html and .pdf to a folder.
+
+    Returns
+    -------
+    tuple of str
+        Lines for the terminal.
+    list of Path
+        Written files.
 
     Raises
     ------
@@ -24,10 +30,9 @@ def write_population(population: Population, out: Path) -> Iterator[str]:
     document = build_population_document(content.model_dump(mode="json", by_alias=True))
     write_model(out / "population.json", content)
     pages = write_document(document, out / "population")
-    yield document.header.headline
-    yield from map(_format_group, content.groups)
-    yield from (f"warning: {text}" for text in content.warnings)
-    yield from map(str, (out / "population.json", *pages))
+    warnings = (f"warning: {text}" for text in content.warnings)
+    lines = (document.header.headline, *map(_format_group, content.groups), *warnings)
+    return lines, [out / "population.json", *pages]
 
 
 def _format_group(group: PooledGroup) -> str:

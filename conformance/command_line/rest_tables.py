@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from rich.console import RenderableType
 from rich.padding import Padding
-from rich.table import Table
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
+from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -46,7 +46,7 @@ def build_rest_tables(case: Case) -> list[RenderableType]:
     return [Padding(table, (1, 0, 0, 0)) for table in tables]
 
 
-def _build_quantity_table(quantities: dict[str, Value]) -> Table:
+def _build_quantity_table(quantities: dict[str, Value]) -> FittedTable:
     title = "Line at rest, middle span"
     table = build_table("quantity", "value", "unit", "definition", title=title, unbroken=("quantity", "unit"))
     for name, value in quantities.items():
@@ -57,7 +57,7 @@ def _build_quantity_table(quantities: dict[str, Value]) -> Table:
     return table
 
 
-def _build_elasticity_table(case: Case, quantities: dict[str, Value]) -> Table:
+def _build_elasticity_table(case: Case, quantities: dict[str, Value]) -> FittedTable:
     table = _build_number_table(
         "Elasticity along the span", "position in the span [m]", "small load [mm/N]", "200 N [mm/N]"
     )
@@ -68,7 +68,7 @@ def _build_elasticity_table(case: Case, quantities: dict[str, Value]) -> Table:
     return table
 
 
-def _build_span_tables(case: Case, along_line: dict[str, Value]) -> Iterator[Table]:
+def _build_span_tables(case: Case, along_line: dict[str, Value]) -> Iterator[FittedTable]:
     """Elasticity of every span, if the spans of the line are listed."""
     if not along_line:
         return
@@ -82,7 +82,7 @@ def _build_span_tables(case: Case, along_line: dict[str, Value]) -> Iterator[Tab
     yield table
 
 
-def _build_apparent_mass_table(model: PantographFile) -> Table:
+def _build_apparent_mass_table(model: PantographFile) -> FittedTable:
     title = f"Apparent mass at the head: {model.title}"
     table = _build_number_table(title, "frequency [Hz]", "magnitude [kg]", "phase [deg]")
     masses = apparent_mass(build_pantograph(model, 0.0, 0.0), np.array(FREQUENCIES_Hz))
@@ -91,7 +91,7 @@ def _build_apparent_mass_table(model: PantographFile) -> Table:
     return table
 
 
-def _build_number_table(title: str, *headings: str) -> Table:
+def _build_number_table(title: str, *headings: str) -> FittedTable:
     return build_table(*headings, title=title, right=headings)
 
 

@@ -7,6 +7,7 @@ import typer
 
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
+from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -21,12 +22,13 @@ from pantocheck.conformance.command_line.options import (
     build_options,
     state_administration,
 )
-from pantocheck.conformance.command_line.results_output import EXIT_CODES, print_results, report_progress
+from pantocheck.conformance.command_line.progress_display import report_cases
+from pantocheck.conformance.command_line.results_output import EXIT_CODES, build_results_output
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan
 from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.reference_run import add_reference
-from pantocheck.conformance.reports.formats.report_writers import write_all
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 
 
@@ -74,7 +76,7 @@ def run_command(
     timeout: Annotated[
         float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
     ] = None,
-) -> None:
+) -> CommandOutput:
     """Run cases on a system, grade them, and write the results and the certificate.
 
     Examples:
@@ -122,10 +124,10 @@ def run_command(
     interrupted = 0
     jobs = min(options.jobs, len(cases))
     try:
-        with report_progress(len(cases)) as progress:
+        with report_cases(len(cases)) as progress:
             results = run_cases(cases, system_under_test, options.trust, jobs, progress, prepared.participation)
         if with_reference:
-            with report_progress(len(cases), "reference simulator") as progress:
+            with report_cases(len(cases), "reference simulator") as progress:
                 results = add_reference(results, cases, jobs, progress)
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, interruption.exit_code
@@ -134,8 +136,9 @@ def run_command(
     if prepared.baseline is not None:
         write_all(results, prepared.out, ("json",))  # kept if the comparison fails
         results = prepared.compare(results)
-    print_results(results, write_all(results, prepared.out, prepared.formats, places), options.formats)
-    raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
+    files = write_all(results, prepared.out, prepared.formats, places)
+    remarks = remark_missing_formats(options.formats)
+    return build_results_output(results, files, interrupted or EXIT_CODES[results.verdict], remarks)
 
 
 def _refuse_reference_beside_itself(system: str) -> None:

@@ -4,7 +4,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from pantocheck.conformance.command_line.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -16,7 +18,7 @@ def schema_command(
         str | None, typer.Argument(help=f"Format: {', '.join(FORMAT_NAMES)}; all if omitted.", show_default=False)
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Write NAME.schema.json to this folder instead of printing.")] = None,
-) -> None:
+) -> CommandOutput:
     """Print or write the JSON Schema of a file format, for editors and validators.
 
     Example: pantocheck schema case > case.schema.json
@@ -25,7 +27,9 @@ def schema_command(
         raise InputError(f"schema '{name}'", "there is no such format", suggest_names(name, FORMAT_NAMES))
     schemas = {each: build_schema(each) for each in (FORMAT_NAMES if name is None else (name,))}
     if out is None:
-        typer.echo(format_schema(schemas if name is None else schemas[name]), nl=False)
-        return
-    for each, schema in schemas.items():
-        write_atomically(out / f"{each}.schema.json", format_schema(schema).encode())
+        shown = schemas if name is None else schemas[name]
+        return CommandOutput(Text(), shown, [Unwrapped(format_schema(shown).rstrip("\n"))])
+    files = [out / f"{each}.schema.json" for each in schemas]
+    for path, schema in zip(files, schemas.values(), strict=True):
+        write_atomically(path, format_schema(schema).encode())
+    return CommandOutput(Text(f"{len(files)} schemas"), schemas, files=files)

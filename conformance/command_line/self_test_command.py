@@ -1,21 +1,27 @@
 """`pantocheck self-test`: systems with known faults must not pass."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
+from rich.console import RenderableType
+from rich.padding import Padding
+from rich.text import Text
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, style_verdict
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import build_table, escape_text, style_verdict
+from pantocheck.conformance.command_line.fitted_table import FittedTable
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.self_test.bench import MutantResult, SelfTest, run_self_test
-from pantocheck.conformance.self_test.numerical_faults import NumericalResult, run_numerical_faults
+from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
+from pantocheck.conformance.self_test.numerical_faults import FAULTS, NumericalResult, run_numerical_faults
 from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
 DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
@@ -32,7 +38,7 @@ def self_test_command(
         ),
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="Markdown file to write the tables to.")] = None,
-) -> None:
+) -> CommandOutput:
     """Test the suite with faulty systems: each fault must be detected.
 
     The reference simulator itself must pass. A fault (mutant) is detected if the check that it should violate fails.
@@ -44,46 +50,55 @@ def self_test_command(
         raise InputError("case", "no case with a train is selected", "Select cases such as en50318-2002/250.")
     if markdown is not None:
         check_writable(markdown.parent)
-    output = console()
-    with output.status("testing the suite") as status:
-
-        def progress(name: str) -> None:
-            status.update(f"testing the suite: {name}")
-
-        further = () if case else select_cases(NUMERICAL_CASES)
-        numerical = run_numerical_faults([*cases, *(extra for extra in further if not extra.is_static)], progress)
-        self_test = replace(run_self_test(cases, progress), numerical=numerical)
-    _print(self_test)
+    further = () if case else select_cases(NUMERICAL_CASES)
+    with follow_steps("self-test", len((*FAULTS, *MUTANTS, *MILD, *cases))) as progress:
+        numerical = run_numerical_faults(
+            [*cases, *(extra for extra in further if not extra.is_static)], progress.begin_task
+        )
+        self_test = replace(run_self_test(cases, progress.begin_task), numerical=numerical)
     if markdown is not None:
         write_report(build_self_test_page(self_test), markdown)
-        output.print(escape_text(str(markdown)), soft_wrap=True)
-    raise typer.Exit(0 if self_test.passed else 1)
-
-
-def _print(self_test: SelfTest) -> None:
-    output = console()
-    missed = [result for result in self_test.severe if not result.detected]
-    detected = len(self_test.severe) - len(missed)
-    output.print(
-        style_verdict("pass" if self_test.passed else "fail"),
-        escape_text(f" {detected} of {len(self_test.severe)} mutants detected by the expected check"),
+    detected = sum(result.detected for result in self_test.severe)
+    text = f" {detected} of {len(self_test.severe)} mutants detected by the expected check"
+    return CommandOutput(
+        style_verdict("pass" if self_test.passed else "fail") + Text(text),
+        _list_detections(self_test),
+        [*_describe(self_test)],
+        files=[] if markdown is None else [markdown],
+        exit_code=0 if self_test.passed else 1,
     )
-    for result in missed:
-        text = f"NOT DETECTED: {result.mutant.name} on {result.case}, expected check: {result.mutant.expected_check}"
-        output.print(escape_text(text), soft_wrap=True)
+
+
+def _list_detections(self_test: SelfTest) -> dict[str, object]:
+    """Verdicts of all mutants and numerical faults for a program."""
+    mutants = [
+        {"mutant": row.mutant.name, "case": row.case, "verdict": row.verdict, "detected": row.detected}
+        for row in (*self_test.severe, *self_test.mild)
+    ]
+    faults = [
+        {"fault": row.fault.name, "case": row.case, "verdict": row.verification, "detected": row.detected}
+        for row in self_test.numerical
+    ]
+    return {"mutants": mutants, "numerical_faults": faults}
+
+
+def _describe(self_test: SelfTest) -> Iterator[RenderableType]:
+    """Faults that were not detected, verdicts of the reference simulator, and tables."""
+    for result in (row for row in self_test.severe if not row.detected):
+        yield escape_text(
+            f"NOT DETECTED: {result.mutant.name} on {result.case}, expected check: {result.mutant.expected_check}"
+        )
     for name, (verdict, reason) in self_test.reference.items():
-        output.print(escape_text(f"reference simulator on {name}:"), style_verdict(verdict), escape_text(reason))
+        yield escape_text(f"reference simulator on {name}: ") + style_verdict(verdict) + escape_text(f" {reason}")
     for fault in (row for row in self_test.numerical if not row.detected):
-        output.print(escape_text(f"NOT DETECTED: {fault.fault.name} on {fault.case}, by verification"), soft_wrap=True)
+        yield escape_text(f"NOT DETECTED: {fault.fault.name} on {fault.case}, by verification")
     for title, results in (("must be detected", self_test.severe), ("may remain undetected", self_test.mild)):
-        output.print()
-        output.print(_build_mutant_table(title, results))
+        yield Padding(_build_mutant_table(title, results), (1, 0, 0, 0))
     if self_test.numerical:
-        output.print()
-        output.print(_build_fault_table(self_test.numerical))
+        yield Padding(_build_fault_table(self_test.numerical), (1, 0, 0, 0))
 
 
-def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> Table:
+def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> FittedTable:
     table = build_table("mutant", "case", "verdict", "limits alone", "detected by", "reason in the report", title=title)
     for result in results:
         check = result.mutant.expected_check or ", ".join(result.checks)
@@ -98,7 +113,7 @@ def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> Table:
     return table
 
 
-def _build_fault_table(results: Sequence[NumericalResult]) -> Table:
+def _build_fault_table(results: Sequence[NumericalResult]) -> FittedTable:
     columns = ("numerical fault", "case", "EN 50318 criteria", "verification", "quantities outside")
     table = build_table(*columns, title="numerical faults")
     for result in results:

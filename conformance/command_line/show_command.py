@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
+from rich.text import Text
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
@@ -14,9 +16,10 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_files import recognise_named_file
 from pantocheck.conformance.command_line.case_completion import complete_case
-from pantocheck.conformance.command_line.case_tables import build_case_tables
+from pantocheck.conformance.command_line.case_tables import build_case_tables, describe_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
@@ -59,7 +62,7 @@ def show_command(
         typer.Option(help="SVG or PDF file for a drawing of the whole line to scale, in elevation and in plan."),
     ] = None,
     folders: CasesOption = None,
-) -> None:
+) -> CommandOutput:
     """Show the inputs, the limits and the notes of a case with their trust and source.
 
     Examples:
@@ -72,7 +75,6 @@ def show_command(
 
     pantocheck show my-line.toml --drawing line.svg
     """
-    output = console()
     if drawing is not None and drawing.suffix.lower() not in DRAWING_FORMATS:
         raise InputError(
             str(drawing), f"format '{drawing.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}."
@@ -80,9 +82,9 @@ def show_command(
     if drawing is not None:
         check_writable(drawing.parent)
     if drawing is not None and not (at_rest or derived or request) and _is_line(case):
-        _draw_line(read_model(Path(case), LineFile, "line"), drawing)
-        output.print(escape_text(str(drawing)), soft_wrap=True)
-        return
+        line = read_model(Path(case), LineFile, "line")
+        _draw_line(line, drawing)
+        return CommandOutput(escape_text(line.title), {"title": line.title}, files=(drawing,))
     cases = _without_required(case, select_cases([case], (), open_catalogue(folders or ())))
     if request is not None:
         _write_request(cases, request)
@@ -90,13 +92,16 @@ def show_command(
         if any(each.line != cases[0].line for each in cases):
             raise InputError(f"case '{case}'", "the cases have different lines", "Give the id of one case.")
         _draw(cases[0], drawing)
+    parts: list[RenderableType] = []
     for each in cases:
         tables = [*(build_derived_tables(each) if derived else []), *(build_rest_tables(each) if at_rest else [])]
-        for part in [*build_case_tables(each), *tables]:
-            output.print(part)
-    for path in (request, drawing):
-        if path is not None:
-            output.print(escape_text(str(path)), soft_wrap=True)
+        parts += [*build_case_tables(each), *tables]
+    return CommandOutput(
+        Text(),
+        [describe_case(each) for each in cases],
+        parts,
+        files=[path for path in (request, drawing) if path is not None],
+    )
 
 
 def _without_required(pattern: str, cases: list[Case]) -> list[Case]:

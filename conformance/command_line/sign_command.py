@@ -8,7 +8,8 @@ import typer
 
 from pantocheck.conformance.authenticity.signatures.detached_file import Encoding
 from pantocheck.conformance.authenticity.signatures.signing import SigningOptions, sign_document
-from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.command_line.passphrase import read_passphrase
 
 
@@ -33,7 +34,7 @@ def sign_command(
     out: Annotated[
         Path | None, typer.Option(help="File to write.", show_default="FILE-signed.pdf, or FILE.p7s for HTML and JSON")
     ] = None,
-) -> None:
+) -> CommandOutput:
     """Sign a certificate or results.
 
     A PDF gets a PAdES signature as an incremental update: the unsigned document is kept, and the signed copy begins
@@ -45,4 +46,5 @@ def sign_command(
     """
     options = SigningOptions(role, timestamp_url, visible, encoding, out)
     signed = sign_document(document, key, certificate, partial(read_passphrase, passphrase_file), options)
-    typer.echo(strip_control_characters(f"Signed by {signed.holder} as {signed.role}: {signed.path}"))
+    data = {"holder": signed.holder, "role": signed.role}
+    return CommandOutput(escape_text(f"Signed by {signed.holder} as {signed.role}"), data, files=(signed.path,))

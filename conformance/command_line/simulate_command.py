@@ -9,8 +9,12 @@ from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.command_line.options import SetOption, choose_case
+from pantocheck.conformance.command_line.progress_display import follow_steps
+from pantocheck.conformance.command_line.value_table import build_quantities_table, list_names, select_main
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import check_record_path, write_record
@@ -29,7 +33,7 @@ def simulate_command(
     ] = "builtin",
     changed: SetOption = None,
     folders: CasesOption = None,
-) -> None:
+) -> CommandOutput:
     """Simulate a case and write its record.
 
     Examples:
@@ -45,8 +49,7 @@ def simulate_command(
     check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.
     run = simulator.run_unrefined if isinstance(simulator, ReferenceSimulator) else simulator.run
-    output = console()
-    with output.status(f"simulating {chosen.id}"):
+    with follow_steps("simulation"):
         outcome = run(chosen)
     if not isinstance(outcome, Delivered) or outcome.record is None:
         reason = missing_record_reason(outcome)
@@ -64,4 +67,11 @@ def simulate_command(
             "line": {"span_m": chosen.line.geometry.longest_span},
         },
     )
-    output.print(escape_text(f"{out} and {sidecar.name}"), soft_wrap=True)
+    values = {str(owner): quantities for owner, quantities in CaseEvaluation(chosen, outcome).evaluation.values.items()}
+    return CommandOutput(
+        escape_text(f"{chosen.id}: simulated by {simulator.name} {simulator.version}"),
+        {"case": chosen.id, "run": outcome.run, "quantities": values},
+        [build_quantities_table(values, {}, select_main(values))],
+        [build_quantities_table(values, {}, list_names(values))],
+        files=(out, out.with_name(sidecar.name)),
+    )

@@ -6,9 +6,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.command_line.console import console, escape_text
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import indent_text
+from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages, write_report
@@ -26,7 +29,7 @@ def site_command(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that holds results.json files at any depth.")],
     out: Annotated[Path, typer.Option(help="Folder for the site; open its index.html.")] = Path("site"),
     title: Annotated[str, typer.Option(help="Title of the first page.")] = "Conformance results",
-) -> None:
+) -> CommandOutput:
     """Write a static site from many results: systems against cases, and versions over time.
 
     Every verdict leads to its certificate, which is made from results.json again. Results that contradict themselves
@@ -38,24 +41,26 @@ def site_command(
     if not paths:
         raise InputError(f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR.")
     check_writable(out)
-    output = console()
     contents = []
     for path in paths:
-        with output.status(escape_text(str(path))):
+        with follow_steps(str(path)):
             results = read_results(path).to_dict()
             contents.append((results, tuple(find_discrepancies(results))))
     published = publish_results(contents)
     pages = _name_case_pages(published)
     for run in published:
-        with output.status(escape_text(run.folder)):
+        with follow_steps(run.folder):
             _write_run(run, out)
     for case, page in pages.items():
         write_report(build_case_page(case, published), out / page)
     write_report(build_site_index(title, published, pages), out / "index.html")
-    output.print(escape_text(f"{out / 'index.html'}: {len(published)} runs, {len(pages)} cases"), soft_wrap=True)
-    for run in published:
-        if run.discrepancies:
-            output.print(escape_text(f"{run.folder}: {run.discrepancies[0]}"), soft_wrap=True)
+    refused = {run.folder: list(run.discrepancies) for run in published if run.discrepancies}
+    return CommandOutput(
+        Text(f"{len(published)} runs, {len(pages)} cases"),
+        {"runs": [run.folder for run in published], "cases": list(pages), "discrepancies": refused},
+        [indent_text(f"{name}: {found[0]}") for name, found in refused.items()],
+        files=(out / "index.html",),
+    )
 
 
 def _find_results(folder: Path, out: Path) -> Iterator[Path]:

@@ -5,9 +5,16 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 
-from pantocheck.conformance.command_line.console import build_table, console, escape_text, format_number, style_verdict
-from pantocheck.conformance.command_line.file_list import print_files
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import (
+    build_table,
+    escape_text,
+    format_number,
+    indent_text,
+    style_verdict,
+)
 from pantocheck.conformance.command_line.options import (
     AdministrationOption,
     FormatsOption,
@@ -16,14 +23,15 @@ from pantocheck.conformance.command_line.options import (
     build_options,
     state_administration,
 )
-from pantocheck.conformance.command_line.results_output import EXIT_CODES, report_progress
+from pantocheck.conformance.command_line.progress_display import report_cases
+from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.procedure.validation import Validation
 from pantocheck.conformance.reports.certificate.procedure_page import describe_steps, name_state
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import check_formats, remark_missing_formats, write_all
 from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 from pantocheck.conformance.results.results_format import Results
@@ -38,7 +46,7 @@ def validate_command(
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
     jobs: Annotated[int, typer.Option(help="Number of reference models that run in parallel.", min=1, max=256)] = 1,
-) -> None:
+) -> CommandOutput:
     """Validate a simulator for a line by a dossier: the EN 50318 procedure in one certificate.
 
     Steps: pantograph model, static check of the line, simulation parameters, reference models, line tests, limits of
@@ -55,30 +63,35 @@ def validate_command(
     check_writable(folder)
     runs, interrupted = len(content.cases) + len(content.file.pair), 0
     try:
-        with report_progress(runs) as progress:
+        with report_cases(runs, "running cases and line tests") as progress:
             results = Validation(content, system, folder, jobs, progress).run()
     except RunInterrupted as interruption:
         results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished steps are written.", err=True)
     results = results.model_copy(update={"administration": options.administration})
     files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)))
-    _print_steps(results)
-    print_files(files, options.formats)
-    raise typer.Exit(interrupted or EXIT_CODES[results.verdict])
+    headline = escape_text(f" {build_headline(results.to_dict())}")
+    return CommandOutput(
+        style_verdict(results.verdict) + headline,
+        results,
+        [*_describe_results(results)],
+        files=files,
+        remarks=remark_missing_formats(options.formats),
+        exit_code=interrupted or EXIT_CODES[results.verdict],
+    )
 
 
-def _print_steps(results: Results) -> None:
-    """Print the verdict, and a table of the steps with their reasons."""
-    output, content = console(), results.to_dict()
-    output.print(style_verdict(results.verdict), escape_text(f" {build_headline(content)}"))
+def _describe_results(results: Results) -> Iterator[RenderableType]:
+    """Table of the steps, and their reasons."""
+    content = results.to_dict()
     table = build_table("step", "state", "verdict", "margin", "+-", right=("margin", "+-"))
     for step in content["procedure"]["steps"]:
         name = read_words()["procedure"][step["step"]]
         numbers = (format_number(step["margin"], 3), format_number(step["uncertainty"], 2))
         table.add_row(name, name_state(step), style_verdict(step["verdict"]), *numbers)
-    output.print(table)
+    yield table
     for sentence in (*describe_steps(content), *_describe_cases(results)):
-        output.print(escape_text(f"  {sentence}"))
+        yield indent_text(sentence)
 
 
 def _describe_cases(results: Results) -> Iterator[str]:

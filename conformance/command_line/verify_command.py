@@ -1,21 +1,21 @@
 """`pantocheck verify`: verification of a certificate as PDF or HTML page, or of a results.json."""
 
-import textwrap
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
+from rich.text import Text
 
 from pantocheck.conformance.authenticity.authenticity_check import CheckOutcome
 from pantocheck.conformance.authenticity.verification import Verification
 from pantocheck.conformance.command_line.cases_option import CasesOption
-from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text, indent_text
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.interface.verified_report import verify_report
-
-WIDTH = 80
-"""Columns of the output, so that it can be read in any terminal and mail."""
 
 HEADINGS: dict[CheckOutcome, str] = {
     "contradicted": "Contradictions",
@@ -43,7 +43,7 @@ def verify_command(
     any_verdict: Annotated[
         bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
     ] = False,
-) -> None:
+) -> CommandOutput:
     """Verify a document: its verdicts, its pages, its cases and its signatures.
 
     The results in the document are graded again, the pages are made again and compared, and the cases are compared
@@ -67,8 +67,12 @@ def verify_command(
     """
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
     word = "authentic" if report.authentic else "consistent"
-    typer.echo("\n".join(_describe(report.verification, word)))
-    raise typer.Exit(_exit_code(report.verification, any_verdict))
+    return CommandOutput(
+        escape_text(_conclude(report.verification, word)),
+        _describe_verification(report.verification),
+        [*_list_checks(report.verification)],
+        exit_code=_exit_code(report.verification, any_verdict),
+    )
 
 
 def _exit_code(verification: Verification, any_verdict: bool) -> int:
@@ -77,36 +81,40 @@ def _exit_code(verification: Verification, any_verdict: bool) -> int:
     return 0 if any_verdict else EXIT_CODES[verification.verdict]
 
 
-def _describe(verification: Verification, word: str) -> Iterator[str]:
+def _conclude(verification: Verification, word: str) -> str:
+    """State of the document in one sentence."""
     size = f"{_count(verification.cases, 'case', 'cases')}, {_count(verification.criteria, 'criterion', 'criteria')}"
     verdict = verification.verdict
     match verification.state:
         case "consistent":
-            yield _wrap(f"{word}: the verdict '{verdict}' follows from the embedded numbers ({size}).", "")
+            return f"{word}: the verdict '{verdict}' follows from the embedded numbers ({size})."
         case "incomplete":
-            yield _wrap(f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared.", "")
+            return f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared."
         case "contradicted":
             count = _count(len(verification.discrepancies), "contradiction", "contradictions")
-            yield _wrap(f"not consistent: {count} ({size}; stated verdict '{verdict}').", "")
+            return f"not consistent: {count} ({size}; stated verdict '{verdict}')."
+
+
+def _list_checks(verification: Verification) -> Iterator[RenderableType]:
+    """Checks with their details, by outcome."""
     for outcome, heading in HEADINGS.items():
         checks = [check for check in verification.checks if check.outcome == outcome]
         if checks:
-            yield f"{heading}:"
+            yield Text(f"{heading}:")
         for check in checks:
-            yield _wrap(check.statement, "  * ")
-            yield from (_wrap(line, "    - ") for line in check.details)
+            yield indent_text(check.statement.strip(), "  * ")
+            yield from (indent_text(line.strip(), "    - ") for line in check.details)
 
 
-def _wrap(text: str, mark: str) -> str:
-    """Paragraph of the width of the output; a long word such as a digest is not broken."""
-    return textwrap.fill(
-        strip_control_characters(text.strip()),
-        WIDTH,
-        initial_indent=mark,
-        subsequent_indent=" " * len(mark),
-        break_on_hyphens=False,
-        break_long_words=False,
-    )
+def _describe_verification(verification: Verification) -> dict[str, object]:
+    """State and checks for a program."""
+    return {
+        "state": verification.state,
+        "verdict": verification.verdict,
+        "cases": verification.cases,
+        "criteria": verification.criteria,
+        "checks": [asdict(check) for check in verification.checks],
+    }
 
 
 def _count(number: int, singular: str, plural: str) -> str:

@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import count
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from pantocheck.conformance.simulation.time_steps import integrate_passage
 from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces
 from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
 from pantocheck.conformance.simulation.working_height import build_pantographs
+from pantocheck.conformance.step_log import ShareCallback, ignore_progress
 from pantocheck.model import DiscretisedLine, History, Pantograph, Passage
 from pantocheck.model.fem.contact_wires import touched_wires
 
@@ -47,7 +49,11 @@ class PassageRun:
 
 
 def run_passage(
-    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None = None
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...] | None = None,
+    progress: ShareCallback = ignore_progress,
 ) -> PassageRun:
     """Simulate the passage of a case on a discretised line.
 
@@ -61,6 +67,9 @@ def run_passage(
         Element length and time step.
     uplift_forces : tuple of float, optional
         Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force is required.
+    progress : callable
+        Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not known: each is
+        half of the rest.
 
     Returns
     -------
@@ -76,12 +85,23 @@ def run_passage(
     # The computing time must not include the compilation of the kernels: one time step compiles all of them.
     first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
     integrate_passage(line, first_step)
+    targets = [None if uplift_forces else lift.target_mean_force for lift in case.lift_forces]
+    shares = _halve_rest(progress) if any(targets) else iter([progress])
     return tune_uplift(
-        lambda forces: _run_once(case, line, discretisation, forces),
+        lambda forces: _run_once(case, line, discretisation, forces, next(shares)),
         lambda passage_run: _mean_forces(case, passage_run.record),
         start,
-        [None if uplift_forces else lift.target_mean_force for lift in case.lift_forces],
+        targets,
     )
+
+
+def _halve_rest(progress: ShareCallback) -> Iterator[ShareCallback]:
+    """Progress of the runs of a tuning: the first covers half of the whole, each further one half of the rest."""
+
+    def follow(run: int) -> ShareCallback:
+        return lambda share: progress(1 - 0.5**run * (1 - 0.5 * share))
+
+    return map(follow, count())
 
 
 def run_starts(
@@ -99,11 +119,15 @@ def run_starts(
 
 
 def _run_once(
-    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...],
+    progress: ShareCallback,
 ) -> PassageRun:
     passage = build_passage(case, line, discretisation, uplift_forces)
     begin = time.perf_counter()
-    history = integrate_passage(line, passage)
+    history = integrate_passage(line, passage, progress)
     record = record_passage(case, passage, history)
     return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces)
 

@@ -9,7 +9,9 @@ from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 from pantocheck.model.dynamics.passage import History, Passage
 
 
-def integrate_passage(line: DiscretisedLine, passage: Passage) -> History:
+def integrate_passage(
+    line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
+) -> History:
     """Simulate a passage; parameters and errors as in `model.simulate_passage`.
 
     Raises
@@ -19,7 +21,7 @@ def integrate_passage(line: DiscretisedLine, passage: Passage) -> History:
     """
     with refuse_missing_package("the simulation of a passage"):
         from pantocheck.model.dynamics.simulation import simulate_passage
-    return simulate_passage(line, passage)
+    return simulate_passage(line, passage, progress)
 
 
 def integrate_mass_drop(

@@ -14,12 +14,15 @@ from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.figure_data import TextTable
 from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
+from pantocheck.conformance.step_log import use_part
 from pantocheck.conformance.studies.band_charts import draw_band_bars
 from pantocheck.conformance.systems.system import System
 
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library by name of the model, for the damping study of any line."""
 TABLE_ROWS = table_quantities("damping models")
+REFINED_RUN = 5.0
+"""Estimated duration of the first run, with its refined runs and other starts, in runs with one mesh."""
 CASE_DAMPING = "of the case"
 """Name of the model for the damping of the case."""
 
@@ -39,13 +42,16 @@ def add_damping_study(case: Case) -> Case:
 
 def run_damping_sensitivity(case: Case, system: System) -> Outcome:
     """Run a passage with the damping of the case and with each damping model of its study."""
-    outcome = system.run(case.without_study())
+    whole = REFINED_RUN + len(case.dampings)
+    with use_part(0.0, REFINED_RUN / whole):
+        outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
     low_pass, supports = case.file.filter.low_pass, case.line.geometry.supports
     values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass, supports).values}, []
-    for name, damping in case.dampings.items():
-        run = _run_unrefined(system, case.with_damping(name, damping))
+    for number, (name, damping) in enumerate(case.dampings.items()):
+        with use_part((REFINED_RUN + number) / whole, (REFINED_RUN + number + 1) / whole):
+            run = _run_unrefined(system, case.with_damping(name, damping))
         if isinstance(run, Delivered) and run.record is not None:
             values[name] = evaluate_record(run.record, low_pass, supports).values
         else:

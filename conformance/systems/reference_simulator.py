@@ -1,5 +1,6 @@
 """Reference simulator as a system under test, in the same process."""
 
+import logging
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Literal
@@ -18,7 +19,13 @@ from pantocheck.conformance.simulation.static_quantities import compute_static_q
 from pantocheck.conformance.simulation.statics_along_line import compute_quantities_along_line
 from pantocheck.conformance.simulation.stored_drawing import build_line_shape
 from pantocheck.conformance.simulation.window_warning import window_warnings
+from pantocheck.conformance.step_log import ShareCallback, StepSequence, ignore_progress
 from pantocheck.model.failures import SimulationError
+
+_LOGGER = logging.getLogger(__name__)
+
+OWN_MESH, FINE_MESH, COARSE_MESH = "mesh of the case", "mesh halved", "mesh doubled"
+"""Steps of a case."""
 
 
 @dataclass(frozen=True)
@@ -35,20 +42,21 @@ class ReferenceSimulator:
 
     def run(self, case: Case) -> Delivered:
         """Run a case, with element length and time step halved and doubled, and from other starts."""
-        discretisation = case.file.discretisation
-        delivered, uplift_forces = _deliver(case, discretisation)
+        discretisation, steps = case.file.discretisation, _plan_steps(case)
+        delivered, uplift_forces = _deliver(case, discretisation, progress=steps.begin(OWN_MESH))
         shape = build_line_shape(case, discretise_line(case.line, discretisation.element_m))
-        refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces)
+        refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces, steps.begin(FINE_MESH))
         try:
-            coarse, _ = _deliver(case, discretisation.scale(2), uplift_forces)
+            coarse, _ = _deliver(case, discretisation.scale(2), uplift_forces, steps.begin(COARSE_MESH))
         except SimulationError:  # too coarse to converge: the uncertainty follows from two meshes
             coarse = None
-        starts = () if uplift_forces is None else _run_other_starts(case, discretisation, uplift_forces)
+        starts = () if uplift_forces is None else _run_other_starts(case, discretisation, uplift_forces, steps)
         return replace(delivered, refined=refined, coarse=coarse, starts=starts, line_shape=shape)
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
-        return _deliver(case, case.file.discretisation)[0]
+        steps = StepSequence(_LOGGER, case.id, {OWN_MESH: 1.0})
+        return _deliver(case, case.file.discretisation, progress=steps.begin(OWN_MESH))[0]
 
 
 @dataclass(frozen=True)
@@ -60,19 +68,34 @@ class UnrefinedSimulator(ReferenceSimulator):
         return self.run_unrefined(case)
 
 
+def _plan_steps(case: Case) -> StepSequence:
+    """Steps of a case, with their estimated durations in passages on the mesh of the case."""
+    other_starts = () if case.is_static else list_other_starts(case)
+    starts = {f"start {number}": 1.0 for number, _ in enumerate(other_starts, 1)}
+    return StepSequence(_LOGGER, case.id, {OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts})
+
+
 def _run_other_starts(
-    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...]
+    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...], steps: StepSequence
 ) -> tuple[Delivered, ...]:
     """Simulate a case from other starts, if its run-in is short."""
     starts = list_other_starts(case)
     if not starts:
         return ()
     line = discretise_line(case.line, discretisation.element_m)
-    return tuple(map(Delivered, run_starts(starts, case, line, discretisation, uplift_forces)))
+    runs = run_starts(starts, case, line, discretisation, uplift_forces)
+    delivered = []
+    for number, _ in enumerate(starts, 1):
+        steps.begin(f"start {number}")
+        delivered.append(Delivered(next(runs)))
+    return tuple(delivered)
 
 
 def _deliver(
-    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None = None
+    case: Case,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...] | None = None,
+    progress: ShareCallback = ignore_progress,
 ) -> tuple[Delivered, tuple[float, ...] | None]:
     """Simulate a case; result, and uplift forces of its passage [N]."""
     line = discretise_line(case.line, discretisation.element_m)
@@ -82,7 +105,7 @@ def _deliver(
         return Delivered(
             static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
         ), None
-    passage = run_passage(case, line, discretisation, uplift_forces)
+    passage = run_passage(case, line, discretisation, uplift_forces, progress)
     delivered = Delivered(
         passage.record,
         static,

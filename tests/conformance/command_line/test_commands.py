@@ -295,7 +295,7 @@ def test_cases_and_show_state_trust_and_source() -> None:
 def test_show_states_the_forces_of_a_force_law_and_their_sources() -> None:
     shown = " ".join(pantocheck("show", "force-law/300").output.split())
     assert "force law of pantograph 1: applied forces of 155.81 N: static force 70.00 N, aerodynamic" in shown
-    assert "pantograph 1.force_law.aerodynamic_force wang2016 constant_N -0.2 secondary" in shown
+    assert "pantograph 1.force_law.aerodynamic_force source: wang2016 constant_N -0.2 secondary" in shown
     assert "force law" not in pantocheck("show", "en50318-2002/250").output
 
 

@@ -62,7 +62,7 @@ def test_a_package_that_is_too_old_is_reported(monkeypatch: pytest.MonkeyPatch) 
     provide_versions(monkeypatch, numpy="1.26", pantocheck="0.1.0")
     done = CliRunner().invoke(app, ["doctor", "--json"])
     assert done.exit_code == 1
-    report = json.loads(done.output)
+    report = json.loads(done.output)["result"]
     assert report["packages"] == [
         {"name": "numpy", "extra": "", "lowest": "2.0", "installed": "1.26", "state": "too old"}
     ]

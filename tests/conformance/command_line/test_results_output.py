@@ -4,12 +4,13 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.command_line.results_output import LEGEND, print_results
+from pantocheck.conformance.command_line.command_output import print_output
+from pantocheck.conformance.command_line.results_output import LEGEND, build_results_output
 from pantocheck.conformance.results.results_format import Results
 
 
 def printed(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> str:
-    print_results(Results.model_validate(results), [])
+    print_output(build_results_output(Results.model_validate(results), [], 0), "run")
     return capsys.readouterr().out
 
 
@@ -30,6 +31,7 @@ def rear(passing: dict[str, Any]) -> dict[str, Any]:
     criterion: dict[str, Any] = passing["cases"][0]["criteria"][9]
     assert (criterion["quantity"], criterion["pantograph"]) == ("std_force_N", 2)
     criterion |= {"value": 28.1234, "margin": 0.64, "close": [], "lower": 22.0, "upper": 31.0}
+    passing["cases"][0]["criteria"][0]["spread"] = 0.1  # so that the table has a column of shifts
     return criterion
 
 
@@ -102,6 +104,28 @@ def test_columns_of_the_table_are_one_space_apart(passing: dict[str, Any], capsy
     assert lines[heading + 1].startswith("mean_force_N ")
 
 
+def test_table_has_no_column_for_unknown_shifts(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    for criterion in passing["cases"][0]["criteria"]:
+        criterion["spread"] = None
+    heading = next(line for line in printed(passing, capsys).splitlines() if line.startswith("criterion"))
+    assert heading.split() == ["criterion", "value", "+-", "limits", "margin", "verdict", "trust"]
+
+
+def test_remark_of_every_case_is_printed_once(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """A remark of one case is a warning of it; a common one, and the caveat of the band, are footnotes."""
+    band = "20-50 Hz: lumped models of pantographs are validated up to 20 Hz only"
+    first, second = passing["cases"][0], dict(passing["cases"][0], id="another/300")
+    first["warnings"], second["warnings"] = ["a common remark", "a rare remark"], ["a common remark", band]
+    passing["cases"] = [first, second]
+    lines = printed(passing, capsys).splitlines()
+    assert [line.strip() for line in lines if "remark" in line or "20-50 Hz" in line] == [
+        "warning: a rare remark",
+        "[1] a common remark",
+        f"[2] {band}",
+    ]
+    assert [line.split()[-2:] for line in lines if line.startswith("PASS another/300")] == [["[1]", "[2]"]]
+
+
 def test_first_pantograph_and_line_are_not_named(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     criteria = passing["cases"][0]["criteria"]
     criteria[0] |= {"quantity": "dropper_length_m", "pantograph": 0, "item": 3}
@@ -125,7 +149,7 @@ def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: 
     assert any("every consistency check that applies confirms the record" in line for line in above)
     assert "  mean_force_N: 2 N above the upper limit" in below
     assert "  mean_force_N: lies 1 N from a limit" in below
-    assert LEGEND in below
+    assert LEGEND in " ".join(line.strip() for line in below)
 
 
 def test_case_without_changes_or_criteria_has_no_line_for_them(
@@ -135,7 +159,7 @@ def test_case_without_changes_or_criteria_has_no_line_for_them(
     assert "  the static case en50318-2018/ac-simple/static did not pass" in text.splitlines()
     assert "limits file" not in text
     assert "criterion" not in text.splitlines()[3:]
-    assert LEGEND not in text
+    assert LEGEND[:20] not in text
 
 
 def test_values_of_a_case_without_limits_are_printed(

@@ -8,7 +8,8 @@ import pytest
 from pypdf import PdfReader
 
 from helpers.shown_page import shown_certificate
-from pantocheck.conformance.command_line.results_output import print_results
+from pantocheck.conformance.command_line.command_output import print_output
+from pantocheck.conformance.command_line.results_output import build_results_output
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.scope_page import (
     CHANGES_SHOWN,
@@ -47,7 +48,7 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     """No format shows the id of the library case alone."""
     suites = ElementTree.fromstring(render_junit(copied))
     assert suites[0].attrib["name"] == suites[0].findall("testcase")[0].attrib["classname"] == COPY
-    print_results(Results.model_validate(copied), [])
+    print_output(build_results_output(Results.model_validate(copied), [], 0), "run")
     for text in (
         shown_certificate(copied),
         render_markdown(build_summary(copied)),
@@ -67,7 +68,7 @@ def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -
 
 def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     changed = describe(results, limit_changes=[CHANGE])
-    print_results(Results.model_validate(changed), [])
+    print_output(build_results_output(Results.model_validate(changed), [], 0), "run")
     weakened = "The limits file weakens limits or changes their trust in 1 case."
     assert build_headline(changed).endswith(weakened)
     texts = [shown_certificate(changed), capsys.readouterr().out, render_junit(changed).decode()]

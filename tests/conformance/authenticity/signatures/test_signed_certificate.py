@@ -46,11 +46,11 @@ def test_commands_from_signing_to_authentic(
     assessor = signers.assessor.write_pkcs12(tmp_path / "assessor.p12", b"secret")
     signed = tmp_path / "certificate-signed.pdf"
     first = invoke("sign", passing_certificate, "--key", author, "--visible", "top-left")
-    assert (first.exit_code, first.stdout) == (0, f"Signed by Ada Author as author: {signed}\n")
+    assert (first.exit_code, first.stdout) == (0, f"Signed by Ada Author as author\n{signed}\n")
     second = invoke("sign", signed, "--key", assessor, "--role", "assessor")
     assert (second.exit_code, second.stdout) == (
         0,
-        f"Signed by Ada Assessor as assessor: {signed}\n".replace("Ada A", "Ben A"),
+        f"Signed by Ben Assessor as assessor\n{signed}\n",
     )
     assert passing_certificate.read_bytes() == unsigned
     assert signed.read_bytes().startswith(unsigned)
@@ -181,7 +181,7 @@ def test_signature_beside_a_document(
     document = tmp_path / name
     document.write_bytes(render_document(accepted_wave.to_dict(), name))
     key = signers.author.write_pkcs12(tmp_path / "author.p12", b"secret")
-    assert invoke("sign", document, "--key", key).stdout == f"Signed by Ada Author as author: {document}.p7s\n"
+    assert invoke("sign", document, "--key", key).stdout == f"Signed by Ada Author as author\n{document}.p7s\n"
     assert invoke("verify", document, "--trust-roots", roots_file).stdout.startswith("authentic: ")
     document.write_bytes(document.read_bytes() + b"\n")
     changed = invoke("verify", document, "--trust-roots", roots_file)

@@ -1,0 +1,186 @@
+"""Display of progress on standard error: task, step, completed share and remaining time.
+
+=====================  ===========================================================
+output                 rule
+=====================  ===========================================================
+terminal               one line that is redrawn at most `REDRAWS_PER_S` times a second
+file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter command
+`-q`                   nothing
+=====================  ===========================================================
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from pantocheck.conformance.command_line.console import error_console
+from pantocheck.conformance.command_line.guard import strip_control_characters
+from pantocheck.conformance.command_line.log_output import ROOT_LOGGER
+from pantocheck.conformance.command_line.output_settings import current_settings
+from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.step_log import TaskStep
+
+_LOGGER = logging.getLogger(__name__)
+
+LOG_INTERVAL_S = 10.0
+"""Time between two lines outside of a terminal [s]: a run of an hour writes 360 lines."""
+
+REDRAWS_PER_S = 3.0
+"""Redraws on a terminal [1/s]: a log of the terminal grows by some kilobytes a minute."""
+
+SMALLEST_SHARE = 0.02
+"""Completed share from which the remaining time is estimated; below, the estimate is an extrapolation by 50 times."""
+
+
+@contextmanager
+def show_line(describe: Callable[[], str]) -> Iterator[None]:
+    """Show a line of progress while a computation runs.
+
+    Parameters
+    ----------
+    describe : callable
+        Function that gives the current line; an empty line is not shown.
+    """
+    errors = error_console()
+    if current_settings().detail == "quiet":
+        yield
+    elif errors.is_terminal:
+        line = _LiveLine(describe)
+        with Live(line, console=errors, refresh_per_second=REDRAWS_PER_S, transient=True):
+            yield
+    else:
+        with _print_periodically(describe, errors):
+            yield
+
+
+class _LiveLine:
+    """Line that is described anew for every redraw."""
+
+    def __init__(self, describe: Callable[[], str]) -> None:
+        self._describe = describe
+
+    def __rich__(self) -> Text:
+        return Text(strip_control_characters(self._describe()))
+
+
+@contextmanager
+def _print_periodically(describe: Callable[[], str], output: Console) -> Iterator[None]:
+    ended = threading.Event()
+
+    def print_lines() -> None:
+        while not ended.wait(LOG_INTERVAL_S):
+            if line := strip_control_characters(describe()):
+                output.print(Text(f"{time.strftime('%H:%M:%S')} {line}"))
+
+    thread = threading.Thread(target=print_lines, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+class TaskProgress(logging.Handler):
+    """Progress of tasks that report their steps to the loggers `pantocheck.*`.
+
+    Parameters
+    ----------
+    title : str
+        Purpose of the tasks.
+    total : int
+        Number of tasks.
+    clock : callable
+        Time [s].
+    """
+
+    def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__()
+        self._title, self._total, self._clock = title, total, clock
+        self._begin, self._finished = clock(), 0
+        self._steps: dict[str, TaskStep] = {}
+        self._task: str | None = None
+
+    def begin_task(self, name: str) -> None:
+        """Begin a task that may report no steps; the task before it is finished."""
+        if self._task is not None:
+            self.finish_task()
+        self._task = name
+        _LOGGER.info("%s", name)
+
+    def reach(self, task: str, finished: int) -> None:
+        """State the number of finished tasks and the latest one."""
+        self._task, self._finished = task or None, finished
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep the step of a record."""
+        if isinstance(step := getattr(record, "step", None), TaskStep):
+            self._steps[step.task] = step
+
+    def finish_task(self, name: str = "") -> None:
+        """Count a finished task.
+
+        Parameters
+        ----------
+        name : str
+            Begin of the names of its steps; empty: no other task runs.
+        """
+        self._finished += 1
+        self._steps = {task: step for task, step in self._steps.items() if not task.startswith(name)}
+
+    def describe(self) -> str:
+        """Progress in one line."""
+        parts = [f"{self._title}: {self._finished} of {self._total} finished"] if self._total > 1 else [self._title]
+        steps = list(self._steps.values())
+        if steps:
+            parts += [f"{step.task}: {step.name}" for step in steps]
+        elif self._task is not None:
+            parts.append(self._task)
+        share = min((self._finished + sum(step.completed for step in steps)) / self._total, 1.0)
+        parts.append(f"{100 * share:.0f} %")
+        elapsed = self._clock() - self._begin
+        if share >= SMALLEST_SHARE:
+            parts.append(f"about {timedelta(seconds=round(elapsed * (1 - share) / share))} remaining")
+        else:
+            parts.append(f"{timedelta(seconds=round(elapsed))} elapsed")
+        return ", ".join(parts)
+
+
+@contextmanager
+def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
+    """Show the progress of tasks while they run.
+
+    Parameters
+    ----------
+    title : str
+        Purpose of the tasks.
+    total : int
+        Number of tasks.
+    """
+    progress, logger = TaskProgress(title, total), logging.getLogger(ROOT_LOGGER)
+    if current_settings().detail == "quiet":
+        yield progress
+        return
+    level = logger.level
+    logger.addHandler(progress)
+    logger.setLevel(logging.DEBUG)  # the shares of steps
+    try:
+        with show_line(progress.describe):
+            yield progress
+    finally:
+        logger.removeHandler(progress)
+        logger.setLevel(level)
+
+
+@contextmanager
+def report_cases(cases: int, title: str = "running cases") -> Iterator[Callable[[CaseResult], None]]:
+    """Show the progress of cases; yields the callback of the runner."""
+    with follow_steps(title, cases) as progress:
+        yield lambda result: progress.finish_task(result.id)

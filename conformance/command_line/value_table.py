@@ -1,0 +1,50 @@
+"""Table of the values of quantities with their uncertainty, for results without limits."""
+
+from collections.abc import Collection, Mapping
+
+from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
+from pantocheck.conformance.command_line.fitted_table import FittedTable
+from pantocheck.conformance.quantities.registry import QUANTITIES
+
+MAIN_VALUES = (
+    *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N"),
+    *("max_force_N", "min_force_N", "contact_loss_pct", "max_uplift_at_support_mm"),
+)
+"""NamedValues of a passage that are printed without `-v`."""
+
+NamedValues = Mapping[str, Mapping[str, object]]
+"""NamedValues or uncertainties by pantograph ("0": the line) and quantity."""
+
+
+def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names: Collection[str]) -> FittedTable:
+    """Table of quantities that are single numbers; those of the line come last.
+
+    Parameters
+    ----------
+    values, uncertainty : NamedValues
+        NamedValues and their uncertainties.
+    names : collection of str
+        Quantities of the table, in its order.
+    """
+    numbers = ("value", "+-") if uncertainty else ("value",)
+    headings = ("quantity", *numbers, "unit")
+    table = build_table(*headings, unbroken=headings, right=numbers)
+    for owner, quantities in sorted(values.items(), key=lambda item: (item[0] == "0", item[0])):
+        for name in names:
+            value, width = quantities.get(name), uncertainty.get(owner, {}).get(name)
+            if isinstance(value, float):
+                text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
+                errors = [format_number(width if isinstance(width, float) else None, 2)] if uncertainty else []
+                table.add_row(escape_text(text), format_number(value), *errors, QUANTITIES[name].unit)
+    return table
+
+
+def list_names(values: NamedValues) -> tuple[str, ...]:
+    """Names of all quantities of a result, in their order."""
+    return tuple(dict.fromkeys(name for quantities in values.values() for name in quantities))
+
+
+def select_main(values: NamedValues) -> tuple[str, ...]:
+    """Names of the main quantities of a result: those of a passage, or all of a line at rest."""
+    names = list_names(values)
+    return tuple(name for name in MAIN_VALUES if name in names) or names

@@ -1,0 +1,97 @@
+"""Steps of long computations, as records of the standard logging, which a display of progress can follow.
+
+The loggers are named after their modules, `pantocheck.*`. Without a handler of the user, nothing is printed.
+"""
+
+import logging
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+
+logging.getLogger("pantocheck").addHandler(logging.NullHandler())
+
+
+ShareCallback = Callable[[float], None]
+"""Function that is called from time to time with the completed share, 0 to 1."""
+
+
+def ignore_progress(share: float) -> None:
+    """Follow no progress."""
+
+
+@dataclass(frozen=True)
+class TaskStep:
+    """Position in a task.
+
+    Parameters
+    ----------
+    task : str
+        Task, such as the id of a case.
+    name : str
+        TaskStep that runs.
+    completed : float
+        Completed share of the task, 0 to 1.
+    """
+
+    task: str
+    name: str
+    completed: float
+
+
+_PART: ContextVar[tuple[float, float]] = ContextVar("part_of_task", default=(0.0, 1.0))
+"""Shares of the task at which the present part begins and ends."""
+
+
+@contextmanager
+def use_part(begin: float, end: float) -> Iterator[None]:
+    """Count the steps inside as one part of a task.
+
+    Parameters
+    ----------
+    begin, end : float
+        Completed shares of the task before and after the part, 0 to 1.
+    """
+    token = _PART.set((begin, end))
+    try:
+        yield
+    finally:
+        _PART.reset(token)
+
+
+@dataclass(frozen=True)
+class StepSequence:
+    """Steps of a task in their order.
+
+    Parameters
+    ----------
+    logger : logging.Logger
+        Logger of the module that executes the steps.
+    task : str
+        Task, such as the id of a case.
+    weights : mapping of str to float
+        Estimated duration of every step, in any unit.
+    """
+
+    logger: logging.Logger
+    task: str
+    weights: Mapping[str, float]
+
+    def begin(self, name: str) -> ShareCallback:
+        """Report the begin of a step; returns a function that reports its completed share, 0 to 1."""
+        names, (begin, end) = list(self.weights), _PART.get()
+        scale = (end - begin) / sum(self.weights.values())
+        before = begin + scale * sum(self.weights[earlier] for earlier in names[: names.index(name)])
+        self.logger.info("%s: %s", self.task, name, extra={"step": TaskStep(self.task, name, before)})
+
+        def report(share: float) -> None:
+            completed = before + scale * share * self.weights[name]
+            self.logger.debug("%s: %s", self.task, name, extra={"step": TaskStep(self.task, name, completed)})
+
+        return report
+
+
+def report_remote(logger: logging.Logger, task: str) -> None:
+    """Report the begin of a task in another process, whose steps are not followed."""
+    name = "in a process of its own"
+    logger.info("%s: %s", task, name, extra={"step": TaskStep(task, name, 0.0)})
