@@ -6,8 +6,8 @@ from pathlib import Path
 from site_pages.markdown_table import build_markdown_table
 
 DOCS = Path(__file__).parents[1]
-TOCTREE = re.compile(r"```\{toctree\}\n(?P<options>(?::.*\n)*)\n(?P<entries>.*?)```", re.DOTALL)
-SENTENCE = re.compile(r".*?[.:](?=\s|$)", re.DOTALL)
+TOCTREE = re.compile(r"```\{toctree\}\n(?P<options>(?::.*\n)*)\n(?P<entries>(?:[^`\n]+\n)*)```")
+SENTENCE = re.compile(r".*?\.(?=\s|$)", re.DOTALL)
 
 
 def build_page_list() -> str:
@@ -22,17 +22,9 @@ def build_page_list() -> str:
 
 
 def read_navigation() -> dict[str, list[str]]:
-    """Pages below each caption of the start page."""
-    return _read_toctrees("index")
-
-
-def _read_toctrees(page: str) -> dict[str, list[str]]:
-    text = (DOCS / f"{page}.md").read_text("utf-8")
-    found = {}
-    for tree in TOCTREE.finditer(text):
-        caption = re.search(r":caption: (.*)", tree["options"])
-        found[caption[1] if caption else page] = tree["entries"].split()
-    return found
+    """Pages below each caption of the navigation, which the start page holds."""
+    trees = TOCTREE.finditer((DOCS / "index.md").read_text("utf-8"))
+    return {re.findall(r":caption: (.*)", tree["options"])[0]: tree["entries"].split() for tree in trees}
 
 
 def read_title(name: str) -> str:

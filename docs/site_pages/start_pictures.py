@@ -30,13 +30,10 @@ SVG = {"svg.hashsalt": "pantocheck", "svg.fonttype": "none", "axes.spines.top": 
 
 def write_start_pictures(folder: Path) -> None:
     """Write the pictures of the start page."""
-    import matplotlib
-
     folder.mkdir(parents=True, exist_ok=True)
-    with matplotlib.rc_context(SVG):
-        draw_contact_force(folder / "contact-force.svg")
-        draw_spectrum(folder / "spectrum.svg")
-        draw_decay(folder)
+    draw_contact_force(folder / "contact-force.svg")
+    draw_spectrum(folder / "spectrum.svg")
+    draw_decay(folder)
     run_pantocheck("show", ONE_PANTOGRAPH, "--drawing", str(folder / "line.svg"))
     run_pantocheck("run", ONE_PANTOGRAPH, "--formats", "pdf", "--out", str(folder / "report"))
     draw_page(folder / "report" / "certificate.pdf", 1, folder / "certificate.png")
@@ -98,14 +95,19 @@ def run_pantocheck(*arguments: str) -> None:
 
 
 def _start_figure(width: float, height: float) -> tuple[Any, Any]:
+    import matplotlib
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
-    return figure, figure.subplots()
+    with matplotlib.rc_context(SVG):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        return figure, figure.subplots()
 
 
 def _save(figure: Any, target: Path) -> None:
-    figure.savefig(target, metadata={"Date": None})
+    import matplotlib
+
+    with matplotlib.rc_context(SVG):
+        figure.savefig(target, metadata={"Date": None})
 
 
 if __name__ == "__main__":

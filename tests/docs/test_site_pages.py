@@ -55,3 +55,27 @@ def test_navigation_lists_every_page_once(pages: dict[str, str]) -> None:
     tutorials = {f"tutorials/{path.stem}" for path in (DOCS / "tutorials").glob("*.md")}
     generated = {f"generated/{name}" for name in pages} | {"gallery/index"}
     assert sorted(listed) == sorted(written | tutorials | generated)
+
+
+def test_list_of_pages_states_the_purpose_of_each(pages: dict[str, str]) -> None:
+    """Written pages only; generated ones are named in the navigation by their content."""
+    for page in {*DOCS.glob("*.md"), *DOCS.glob("tutorials/*.md")} - {DOCS / "index.md"}:
+        link = f"](../{page.relative_to(DOCS).as_posix()}) | "
+        assert pages["all-pages"].count(link) == 1, page
+        purpose = pages["all-pages"].split(link)[1].split(" |\n")[0]
+        assert 15 < len(purpose) < 180, purpose
+
+
+@pytest.mark.thorough
+def test_picture_of_the_readme_is_that_of_the_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The legend states the standard deviations with one decimal; `python docs/site_pages/start_pictures.py DIR`."""
+    monkeypatch.syspath_prepend(str(DOCS))
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    pictures = import_module("site_pages.start_pictures")
+    pictures.draw_contact_force(tmp_path / "contact-force.svg")
+    legends = [
+        re.findall(r"standard deviation ([\d.]+) N", (folder / "contact-force.svg").read_text("utf-8"))
+        for folder in (DOCS, tmp_path)
+    ]
+    assert len(legends[0]) == 2
+    assert legends[0] == legends[1]
