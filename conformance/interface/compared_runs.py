@@ -84,7 +84,15 @@ class ComparedRuns:
         return found[name]
 
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
-        """Plot the graded forces of all runs over the position; returns matplotlib axes."""
+        """Plot the graded forces of all runs over the position; returns matplotlib axes.
+
+        Parameters
+        ----------
+        pantograph : int
+            Number of the pantograph, from 1 in running order.
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         axes = provide_axes(axes)
         for name, opened, style in zip(self.subjects, self.runs, ("-", "--", ":", "-.") * len(self.runs), strict=False):
             signals = opened.run.signals[pantograph]
@@ -95,6 +103,11 @@ class ComparedRuns:
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write comparison.json, .html, .pdf and .csv; returns their paths.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Folder of the files.
 
         Raises
         ------

@@ -80,12 +80,24 @@ class FittedPantograph:
         return tabulate_rows(rows, ("key", "number", "value", "half_width", "determination"))
 
     def dynamic_stiffness(self, frequency_Hz: RealArray) -> ComplexArray:
-        """Force at the head over its displacement in the same direction [N/m], at frequencies [Hz]."""
+        """Force at the head over its displacement in the same direction [N/m].
+
+        Parameters
+        ----------
+        frequency_Hz : (n,) ndarray
+            Frequencies [Hz].
+        """
         pantograph = validate_model(self.tables, PantographFile, "fitted pantograph")
         return model_stiffness(pantograph, np.asarray(frequency_Hz, dtype=np.float64))
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot the modulus of the apparent mass over the frequency, measured and fitted; returns matplotlib axes."""
+        """Plot the modulus of the apparent mass over the frequency, measured and fitted; returns matplotlib axes.
+
+        Parameters
+        ----------
+        axes : matplotlib axes or None
+            Axes to draw in; None: those of a new figure.
+        """
         axes = provide_axes(axes)
         for record, mark in zip(self.records, ".x+^" * len(self.records), strict=False):
             squared = (2 * np.pi * record.frequency) ** 2
@@ -100,6 +112,11 @@ class FittedPantograph:
 
     def write(self, path: str | Path) -> list[Path]:
         """Write the pantograph file, and the report beside it; returns the paths.
+
+        Parameters
+        ----------
+        path : str or Path
+            Path of the pantograph file; it ends in .toml.
 
         Raises
         ------

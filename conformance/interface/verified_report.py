@@ -72,7 +72,7 @@ def verify_report(
     Parameters
     ----------
     report : str or Path
-        certificate.pdf, certificate.html or results.json.
+        Path of a certificate.pdf, certificate.html or results.json.
     records : sequence of str or Path
         Records of cases: their quantities are computed from the samples again.
     rerun : bool
