@@ -25,6 +25,9 @@ EXTRA_OF_PACKAGE = {
 }
 """Extra of `pyproject.toml` that installs a package, by its name in an import."""
 
+NOT_INSTALLED = "not installed"
+"""Version of a package of an extra that is not installed."""
+
 
 class MissingPackage(InputError):
     """A package of an extra is not installed: the message names the line that installs the extra."""
@@ -80,6 +83,13 @@ def require_package(package: str, where: str) -> None:
 def is_installed(package: str) -> bool:
     """Whether a package can be imported."""
     return find_spec(package) is not None
+
+
+def find_version(package: str) -> str:
+    """Version of an optional package; `NOT_INSTALLED` without its extra."""
+    from importlib.metadata import version  # slow to load: the help of the commands loads this file
+
+    return version(package) if is_installed(package) else NOT_INSTALLED
 
 
 def install_line(package: str) -> str:

@@ -8,21 +8,18 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.extras import is_installed
+from pantocheck.conformance.input_files.extras import find_version
 from pantocheck.conformance.results.results_format import Renderer
 
 FONT_FILES = "mpl-data/fonts/ttf/DejaVuSans*.ttf"
 """Fonts of the pages beside those that Typst brings, in the folder of matplotlib."""
-
-NOT_INSTALLED = "not installed"
-"""Version of Typst without the extra `pdf`; HTML pages do not depend on it."""
 
 
 @cache
 def identify_renderer() -> Renderer:
     """Versions of the installed software that lays out pages."""
     return Renderer(
-        typst=version("typst") if is_installed("typst") else NOT_INSTALLED,
+        typst=find_version("typst"),
         matplotlib=version("matplotlib"),
         jinja2=version("jinja2"),
         numpy=version("numpy"),

@@ -13,10 +13,16 @@ import pytest
 from helpers.wave_system import Wave
 from pantocheck.conformance.authenticity.verification import verify_document
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.input_files.extras import EXTRA_OF_PACKAGE, refuse_missing_package, require_package
+from pantocheck.conformance.input_files.extras import (
+    EXTRA_OF_PACKAGE,
+    NOT_INSTALLED,
+    refuse_missing_package,
+    require_package,
+)
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.formats.report_writers import DEFAULT_FORMATS, FILES
+from pantocheck.conformance.results.results_reading import read_results
 
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -89,7 +95,7 @@ print(json.dumps(failed))
 """
     failed = run_without_extras(code, folder=tmp_path)
     assert {name for name in failed if not name.startswith(COMPUTE_WITH_KERNELS)} == set(NEEDS_AN_EXTRA)
-    assert {failed[name] for name in failed if name.startswith(COMPUTE_WITH_KERNELS)} <= {"numba", "llvmlite"}
+    assert {failed[name] for name in failed if name.startswith("model.")} <= {"numba", "llvmlite"}
 
 
 def test_record_is_graded_and_verified_without_extras(tmp_path: Path, wave: type[Wave], case_250: Case) -> None:
@@ -127,6 +133,8 @@ print(json.dumps({"loaded": loaded, **commands}))
     assert (exit_code, errors) == (1, f"{no_pdf}Install it: pip install 'pantocheck[pdf]'\n"), done["run"]
     written = {path.name for path in (tmp_path / "report").iterdir()}
     assert written == {FILES[name] for name in DEFAULT_FORMATS} - {"certificate.pdf"}
+    results = read_results(tmp_path / "report" / "results.json")
+    assert results.platform.numba == results.renderer.typst == NOT_INSTALLED
     for document in ("html", "json"):
         assert "Proved" in done[document][1]
         assert "Contradict" not in done[document][1]
