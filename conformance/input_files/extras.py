@@ -85,7 +85,7 @@ def is_installed(package: str) -> bool:
     return find_spec(package) is not None
 
 
-def find_version(package: str) -> str:
+def version_or_absence(package: str) -> str:
     """Version of an optional package; `NOT_INSTALLED` without its extra."""
     from importlib.metadata import version  # slow to load: the help of the commands loads this file
 

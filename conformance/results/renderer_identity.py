@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.extras import find_version
+from pantocheck.conformance.input_files.extras import version_or_absence
 from pantocheck.conformance.results.results_format import Renderer
 
 FONT_FILES = "mpl-data/fonts/ttf/DejaVuSans*.ttf"
@@ -19,7 +19,7 @@ FONT_FILES = "mpl-data/fonts/ttf/DejaVuSans*.ttf"
 def identify_renderer() -> Renderer:
     """Versions of the installed software that lays out pages."""
     return Renderer(
-        typst=find_version("typst"),
+        typst=version_or_absence("typst"),
         matplotlib=version("matplotlib"),
         jinja2=version("jinja2"),
         numpy=version("numpy"),

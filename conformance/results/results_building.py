@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.grading.uncertainty import Uncertainty
-from pantocheck.conformance.input_files.extras import find_version
+from pantocheck.conformance.input_files.extras import version_or_absence
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.results.finding_format import count_findings
@@ -102,7 +102,7 @@ def build_results(
             python=host.python_version(),
             numpy=version("numpy"),
             scipy=version("scipy"),
-            numba=find_version("numba"),
+            numba=version_or_absence("numba"),
             machine=host.machine(),
             system=host.system(),
         ),
