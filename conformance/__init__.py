@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pantocheck.conformance.input_files.input_error import InputError
+    from pantocheck.conformance.interface.built_case import build_case
     from pantocheck.conformance.interface.campaign_session import read_traces, run_campaign
     from pantocheck.conformance.interface.compared_runs import ComparedRuns, compare_runs
     from pantocheck.conformance.interface.fitted_damping import FittedDamping
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
     )
     from pantocheck.conformance.interface.opened_case import OpenedCase, list_cases, open_case
     from pantocheck.conformance.interface.opened_drop import OpenedDrop, open_drop
-    from pantocheck.conformance.interface.opened_line import OpenedLine
+    from pantocheck.conformance.interface.opened_line import OpenedLine, open_line
+    from pantocheck.conformance.interface.opened_pantograph import OpenedPantograph, open_pantograph
     from pantocheck.conformance.interface.opened_run import OpenedRun, SimulatedRun, open_run
     from pantocheck.conformance.interface.verified_report import VerifiedReport, verify_report
 
@@ -42,10 +44,12 @@ __all__ = [
     "OpenedCase",
     "OpenedDrop",
     "OpenedLine",
+    "OpenedPantograph",
     "OpenedRun",
     "SimulatedRun",
     "VerifiedReport",
     "assess_run",
+    "build_case",
     "compare_runs",
     "fit_pantograph",
     "grade_cases",
@@ -53,7 +57,9 @@ __all__ = [
     "list_cases",
     "open_case",
     "open_drop",
+    "open_line",
     "open_modes",
+    "open_pantograph",
     "open_results",
     "open_run",
     "read_traces",
@@ -73,10 +79,12 @@ _MODULES = {
     "OpenedCase": "interface.opened_case",
     "OpenedDrop": "interface.opened_drop",
     "OpenedLine": "interface.opened_line",
+    "OpenedPantograph": "interface.opened_pantograph",
     "OpenedRun": "interface.opened_run",
     "SimulatedRun": "interface.opened_run",
     "VerifiedReport": "interface.verified_report",
     "assess_run": "interface.graded_results",
+    "build_case": "interface.built_case",
     "compare_runs": "interface.compared_runs",
     "fit_pantograph": "interface.fitted_pantograph",
     "grade_cases": "interface.graded_results",
@@ -84,7 +92,9 @@ _MODULES = {
     "list_cases": "interface.opened_case",
     "open_case": "interface.opened_case",
     "open_drop": "interface.opened_drop",
+    "open_line": "interface.opened_line",
     "open_modes": "interface.identified_lines",
+    "open_pantograph": "interface.opened_pantograph",
     "open_results": "interface.graded_results",
     "open_run": "interface.opened_run",
     "read_traces": "interface.campaign_session",

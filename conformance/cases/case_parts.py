@@ -14,9 +14,9 @@ from pantocheck.conformance.cases.changed_content import change_case, change_tre
 from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
 from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.input_changes import InputChange
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import spread_limits
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.named_parts import locate_part
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml, validate_model
@@ -142,12 +142,4 @@ def _read_damping(case_path: Path, name: str, key: str) -> Damping:
 
 
 def _locate(case_path: Path, name: str, key: str) -> Path:
-    """Path of a file named in a case: relative to the case file, or else to the library."""
-    for folder in (case_path.parent, library_folder()):
-        if (folder / name).is_file():
-            return folder / name
-    raise InputError(
-        f"case '{case_path.name}', key {key}",
-        f"there is no file {name!r}",
-        f"Name a file relative to {case_path.parent} or to the library, e.g. en50318-2002/line.toml .",
-    )
+    return locate_part(name, case_path.parent, f"case '{case_path.name}', key {key}")

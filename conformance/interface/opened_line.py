@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.named_parts import locate_part, read_line_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
@@ -178,3 +180,23 @@ class OpenedLine:
                 x = np.full(2, dropper.position)
                 ends = [find_deflection(line, name, "z", dropper.position) for name in (dropper.lower, dropper.upper)]
                 yield x, np.array(ends), {"color": "0.55", "linewidth": 0.8}
+
+
+def open_line(name: str | Path, element_m: float = 0.5) -> OpenedLine:
+    """Open a line file.
+
+    Parameters
+    ----------
+    name : str or Path
+        Path of the file, or its name in the library such as `en50318-2018/ac-simple/line.toml`.
+    element_m : float
+        Largest length of an element [m].
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is invalid, or the length of the elements is not positive.
+    """
+    if not element_m > 0:
+        raise InputError("open_line, element_m", f"found {element_m:g} m", "Give a length above zero, in metres.")
+    return OpenedLine(read_line_file(locate_part(str(name), Path.cwd(), f"line '{name}'")), element_m)

@@ -7,11 +7,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.cases.named_parts import locate_part, read_line_file, read_pantograph_file
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.plan import place_cases
@@ -37,9 +34,11 @@ def read_dossier(path: Path) -> Dossier:
     """
     file = read_model(path, DossierFile, "dossier")
     reader = _FileReader(path)
-    lines = {entry.name: reader.read(f"line[{i}].file", entry.file, _read_line) for i, entry in enumerate(file.line, 1)}
+    lines = {
+        entry.name: reader.read(f"line[{i}].file", entry.file, read_line_file) for i, entry in enumerate(file.line, 1)
+    }
     pantographs = {
-        entry.name: reader.read(f"pantograph[{i}].file", entry.file, _read_pantograph)
+        entry.name: reader.read(f"pantograph[{i}].file", entry.file, read_pantograph_file)
         for i, entry in enumerate(file.pantograph, 1)
     }
     pair_cases = {
@@ -82,7 +81,7 @@ class _FileReader:
 
     def read(self, key: str, name: str, parse: Callable[[Path], Content]) -> Content | None:
         """Content of a file beside the dossier, or else in the library; None after a problem."""
-        return self.attempt(key, lambda: parse(self._locate(name)))
+        return self.attempt(key, lambda: parse(locate_part(name, self.path.parent, f"file '{name}'")))
 
     def attempt(self, key: str, read: Callable[[], Content]) -> Content | None:
         """Result of a function; None after a problem, which is kept under the key."""
@@ -101,26 +100,8 @@ class _FileReader:
             hint = f"Name a table beside its sidecar, relative to {self.path.parent} ."
             self.problems.append(InputError(self._name(key), f"there is no file {path.with_suffix('.toml')}", hint))
 
-    def _locate(self, name: str) -> Path:
-        for folder in (self.path.parent, library_folder()):
-            if (folder / name).is_file():
-                return folder / name
-        raise InputError(
-            f"file '{name}'",
-            "there is no such file",
-            f"Name a file relative to {self.path.parent} or to the library, e.g. en50318-2002/line.toml .",
-        )
-
     def _name(self, key: str) -> str:
         return f"dossier '{self.path.name}', key {key}"
-
-
-def _read_line(path: Path) -> LineFile:
-    return read_model(path, LineFile, "line")
-
-
-def _read_pantograph(path: Path) -> PantographFile:
-    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
 
 
 def _overlay(cases: list[Case], path: Path) -> list[Case]:

@@ -17,6 +17,7 @@ from pantocheck.conformance.comparison.compared_run import describe_delivery
 from pantocheck.conformance.interface import column_table
 from pantocheck.conformance.runner import run_cases
 
+OPENED_FILES = {"OpenedCase", "OpenedLine", "OpenedPantograph", "OpenedRun"}
 DROP_RESULTS = {"OpenedDrop", "IdentifiedLines", "IdentifiedRecords", "FittedDamping"}
 WORK_RESULTS = {"ComparedRuns", "FittedPantograph", "VerifiedReport"}
 PAGE = Path(__file__).parents[3] / "docs" / "python.md"
@@ -40,7 +41,7 @@ def read_column(table: Any, name: str) -> list[Any]:
 def test_public_names_are_those_of_the_page() -> None:
     """The page and the types of the results it names."""
     named = set(re.findall(r"^\| `(\w+)", PAGE.read_text("utf-8").split("## ")[0], re.MULTILINE))
-    results = {"OpenedCase", "OpenedLine", "OpenedRun", "SimulatedRun", "GradedResults", *DROP_RESULTS, *WORK_RESULTS}
+    results = {*OPENED_FILES, "SimulatedRun", "GradedResults", *DROP_RESULTS, *WORK_RESULTS}
     assert named | results == set(pantocheck.conformance.__all__)
 
 

@@ -18,7 +18,7 @@ OTHER = {"name": "example line", "file": "line.toml"}
 @pytest.mark.parametrize(
     ("changes", "key", "found"),
     [
-        ({"line.0.file": "missing.toml"}, "line[1].file", "there is no such file"),
+        ({"line.0.file": "missing.toml"}, "line[1].file", "there is no file 'missing.toml'"),
         ({"line.0.file": "pantograph.toml"}, "line[1].file", "missing"),
         ({"pantograph.0.responses.1": "measured/none.csv"}, "pantograph[1].responses[2]", "there is no file"),
         ({"line.0.statics": "measured/none.csv"}, "line[1].statics", "there is no file"),
