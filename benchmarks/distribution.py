@@ -70,7 +70,7 @@ def check_wheel(path: Path) -> Iterator[str]:
 def _compare(expected: set[str], names: set[str], info: str) -> Iterator[str]:
     yield from (f"missing: {name}" for name in sorted(expected - names))
     for name in sorted(names - expected):
-        if not name.startswith(info) and name != "pantocheck/__main__.py":
+        if not name.startswith(info) and name not in ("pantocheck/__main__.py", "pytest_pantocheck.py"):
             yield f"does not belong here: {name}"
 
 

@@ -1,9 +1,12 @@
 """pytest plugin in sessions of a user."""
 
+import ast
+import importlib
 import json
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from _pytest.config import _iter_rewritable_modules
 
 from helpers.converged_fixtures import StateConverged
 from helpers.outside_cases import write_case
@@ -30,6 +34,8 @@ from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.model.dynamics.binary_search import search
 
 pytest_plugins = ["pytester"]
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -444,3 +450,24 @@ def test_plans_and_fixtures_take_folders_of_cases(pytester: pytest.Pytester) -> 
                    "--pantocheck-cases", "lines")  # fmt: skip
     assert sum(done.parseoutcomes()[word] for word in ("passed", "failed")) == 8 + 1
     assert "test_mean" not in "".join(line for line in done.outlines if "FAILED" in line)
+
+
+def test_distribution_has_one_module_for_the_assertions_of_pytest() -> None:
+    """Without a top-level module, pytest would prepare `__main__` and user modules with the names of our folders.
+
+    The function is private, but no public one tells which modules pytest prepares.
+    """
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    packages = [name.replace(".", "/") + "/__init__.py" for name in project["tool"]["setuptools"]["packages"][1:]]
+    modules = [f"{name}.py" for name in project["tool"]["setuptools"]["py-modules"]]
+    prepared = _iter_rewritable_modules([*modules, "pantocheck/__main__.py", *packages])
+    assert list(prepared) == list(project["project"]["entry-points"]["pytest11"].values()) == ["pytest_pantocheck"]
+    assert "__main__" in _iter_rewritable_modules(["pantocheck/__main__.py", *packages])
+
+
+def test_module_of_the_plugin_holds_its_hooks_and_fixtures() -> None:
+    plugin = importlib.import_module("pantocheck.conformance.pytest_plugin")
+    parts = {name for name in vars(plugin) if name.startswith("pytest_")} | {"pantocheck_assess", "pantocheck_run"}
+    tree = ast.parse((ROOT / "pytest_pantocheck.py").read_text(encoding="utf-8"))
+    (imported,) = (node for node in tree.body if isinstance(node, ast.ImportFrom))
+    assert {alias.name for alias in imported.names} == parts
