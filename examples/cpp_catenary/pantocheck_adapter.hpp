@@ -27,7 +27,7 @@ namespace pantocheck {
 
 using Numbers = std::vector<double>;
 
-/// The simulator does not support a case. A skipped case does not count as a failure.
+/// The simulator does not support a case. Its verdict is `skip`, which is not `fail`; the exit code of the run is 1.
 struct Skip : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -9,8 +9,8 @@ function pantocheck_serve(name, version, simulate)
 %   start                                               struct with place_m, ramp_m and state
 %   dt_s, element_m, note                               printed in reports
 %
-% It calls error('pantocheck:skip', reason) for a case that it does not support. Any other error becomes the verdict
-% `error` of the case. Write a log to the standard error: fprintf(2, ...).
+% It calls error('pantocheck:skip', reason) for a case that it does not support: verdict `skip`. Any other error becomes
+% the verdict `error` of the case. Write a log to the standard error: fprintf(2, ...).
 %
 % Tested with GNU Octave 7. The branches for MATLAB could not be run where this was written; MATLAB must be started so
 % that it can read its standard input (matlab -nodisplay -r).
@@ -50,8 +50,16 @@ function answer = run_case(name, version, simulate, given)
     if strcmp(failure.identifier, 'pantocheck:skip')
       answer = struct('message', 'skipped', 'reason', failure.message);
     else
-      answer = struct('message', 'errored', 'reason', failure.message);
+      answer = struct('message', 'errored', 'reason', [failure.message describe_place(failure)]);
     end
+  end
+end
+
+function text = describe_place(failure)
+% Function and line that raised an error.
+  text = '';
+  if ~isempty(failure.stack)
+    text = sprintf(' (%s, line %d)', failure.stack(1).name, failure.stack(1).line);
   end
 end
 
@@ -70,12 +78,16 @@ function write_record(record, given, name, version, wall_s)
   fprintf(table, '%s\n', strjoin(names, ','));
   fprintf(table, [strjoin(repmat({'%.9g'}, 1, numel(names)), ',') '\n'], samples');
   fclose(table);
+  supports = {};
+  if ~isempty(record.support_position_m)
+    supports = {['support_position_m = ' list_numbers(record.support_position_m)]};
+  end
   lines = {
     'schema = "pantocheck.record/1"', ['case = ' jsonencode(given.id)], ...
     ['case_digest = ' jsonencode(given.case_digest)], 'file = "record.csv"', ...
     sprintf('speed_km_h = %.9g', given.speed_km_h), sprintf('pantographs = %d', size(record.force_N, 2)), ...
     ['evaluated_m = ' list_numbers(given.evaluated_m)], 'filter_applied_Hz = "none"', ...
-    ['support_position_m = ' list_numbers(record.support_position_m)], ...
+    supports{:}, ...
     '[system]', ['name = ' jsonencode(name)], ['version = ' jsonencode(version)], ...
     '[start]', sprintf('place_m = %.9g', record.start.place_m), sprintf('ramp_m = %.9g', record.start.ramp_m), ...
     ['state = ' jsonencode(record.start.state)], ...

@@ -7,7 +7,7 @@ from pantocheck_adapter import START_OF_THE_CASE, Record, Skip, serve
 
 
 def reason_to_skip(case):
-    """Reason why the simulator does not support a case; None if it does. A skipped case does not count as a failure."""
+    """Reason why the simulator does not support a case; None if it does. The verdict is then `skip`, not `fail`."""
     line, derived, trains = case["line"], case["derived"]["line"], case["pantographs"]
     if case["speed_km_h"] is None:
         return "checks of the line at rest are not supported"

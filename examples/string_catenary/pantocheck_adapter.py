@@ -20,6 +20,7 @@ import json
 import os
 import sys
 import time
+import traceback
 from dataclasses import dataclass, field
 
 PROTOCOL = "pantocheck.command/2"
@@ -29,7 +30,7 @@ START_OF_THE_CASE = "as in the case"
 
 
 class Skip(Exception):
-    """The simulator does not support a case. A skipped case does not count as a failure."""
+    """The simulator does not support a case: verdict `skip`, not `fail`. The exit code of the run is 1."""
 
 
 @dataclass
@@ -66,7 +67,7 @@ def serve(name, version, simulate):
 
     `simulate` receives a case as a dictionary and returns a `Record`, or a dictionary of static quantities for a check
     of the line at rest (`speed_km_h` is None). It raises `Skip` for a case that is not supported. Any other exception
-    becomes the verdict `error` of the case. Printed output goes to the log.
+    becomes the verdict `error` of the case, and its traceback goes to the log. Printed output goes to the log, too.
     """
     # Output of libraries, even of compiled ones, must not mix with the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
@@ -95,7 +96,15 @@ def _run(name, version, simulate, case):
     except Skip as reason:
         return {"message": "skipped", "reason": str(reason)}
     except Exception as error:
-        return {"message": "errored", "reason": f"{type(error).__name__}: {error}"[:2000]}
+        traceback.print_exc()
+        return {"message": "errored", "reason": f"{type(error).__name__}: {error}"[:1500] + _list_places(error)}
+
+
+def _list_places(error):
+    """Files and lines from the adapter to the place that raised an error, as text behind its reason."""
+    frames = traceback.extract_tb(error.__traceback__)[1:]  # the first one is this file
+    places = [f"{os.path.basename(frame.filename)}, line {frame.lineno}" for frame in frames]
+    return f" ({'; '.join(places[-4:])})" if places else ""
 
 
 def write_record(record, case, system, run):
@@ -122,8 +131,9 @@ def write_record(record, case, system, run):
         "pantographs": len(record.force_N),
         "evaluated_m": case["evaluated_m"],
         "filter_applied_Hz": record.filter_applied_Hz,
-        "support_position_m": [float(position) for position in record.support_position_m],
     }
+    if len(record.support_position_m):
+        sidecar["support_position_m"] = [float(position) for position in record.support_position_m]
     with open("record.toml", "w", encoding="utf-8", newline="\n") as file:
         for heading, table in ((None, sidecar), ("system", system), ("start", start), ("run", run)):
             if heading is not None:
