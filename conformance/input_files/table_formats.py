@@ -97,7 +97,10 @@ def find_table_format(path: Path, formats: tuple[TableFormat, ...]) -> TableForm
     for table_format in formats:
         if suffix in table_format.suffixes:
             return table_format
-    raise InputError(where, f"has the unknown suffix '{suffix}'", f"Known formats are {list_suffixes(formats)}.")
+    known = f"Known formats are {list_suffixes(formats)}."
+    if suffix == "":
+        raise InputError(where, "has no suffix", f"Did you mean {path.name}{formats[0].suffixes[0]} ? {known}")
+    raise InputError(where, f"has the unknown suffix '{suffix}'", known)
 
 
 def find_plug_in_reader(path: Path) -> PlugIn | None:

@@ -136,6 +136,8 @@ def _explain(detail: ErrorDetails, table: type[BaseModel], field: str | None) ->
         return "missing", about
     if kind == "finite_number":
         return f"{value} is not a finite number", about
+    if kind == "too_short" and not value and field is not None and not table.model_fields[field].is_required():
+        return f"found {_show(value)}, which is empty", f"Remove the key, or fill it in. {about}"
     if kind in _BOUNDS:
         words, bound = _BOUNDS[kind]
         return f"{_show(value)} {words} {detail['ctx'][bound]}", about

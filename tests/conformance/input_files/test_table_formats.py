@@ -13,6 +13,10 @@ def test_messages_list_all_formats() -> None:
     assert list_suffixes((CSV,)) == ".csv"
     with pytest.raises(InputError, match=r"has the unknown suffix '\.xls'\.\n  Known formats are \.csv or \.h5\."):
         find_table_format(Path("a.xls"), (CSV, HDF5))
+    with pytest.raises(
+        InputError, match=r"has no suffix\.\n  Did you mean 250\.csv \? Known formats are \.csv or \.h5\."
+    ):
+        find_table_format(Path("records/250"), (CSV, HDF5))
 
 
 def test_suffixes_are_unique_and_in_lower_case() -> None:

@@ -290,11 +290,15 @@ def test_changed_table_contradicts_its_digest(written: Writer) -> None:
     [
         ({"filter_applied_Hz": None}, "key filter_applied_Hz: missing"),
         ({"filter_applied_Hz": -20.0}, "found -20 Hz, expected a positive cut-off"),
-        ({"schema": "pantocheck.record/9"}, "key schema: found 'pantocheck.record/9'"),
+        ({"schema": "pantocheck.record/9"}, "key schema: version 9 of the format record"),
         ({"file": "../a.csv"}, "found the path"),
         ({"file": "b.csv"}, "record 'b.csv': cannot be read"),
         ({"speed_km_h": None, "speed_m_s": 69.4}, "key speed_m_s: unknown key"),
         ({"pantographs": 2}, "1 rows of position_m, expected 2"),
+        (
+            {"support_position_m": []},
+            r"support_position_m: found \[\], which is empty\.\n  Remove the key, or fill it in",
+        ),
     ],
 )
 def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], message: str) -> None:
