@@ -78,7 +78,7 @@ def _find_other_spacing(case: Case, record: Record) -> str | None:
 
 
 def find_other_case(case: Case, case_digest: str | None) -> str | None:
-    """Reason why a record was made for another version of a case; None if it was not, or does not state it.
+    """Reason why a record was made with other inputs than those of a case; None if it was not, or does not state it.
 
     Parameters
     ----------
@@ -90,6 +90,6 @@ def find_other_case(case: Case, case_digest: str | None) -> str | None:
     if case_digest in {None, case.digest}:
         return None
     return (
-        f"the record was made for another version of the case: its case_digest is {case_digest}, "
+        f"the record was made with other inputs than those of the case: its case_digest is {case_digest}, "
         f"that of the case is {case.digest}"
     )

@@ -141,7 +141,7 @@ def test_record_of_another_version_of_the_case_is_refused(twin: Case, record: Re
     older = replace(twin, file=twin.file.model_copy(update={"spacing_m": (151.0,)})).digest
     result = grade(twin, record, older)
     assert result.verdict == "error"
-    assert result.reason.startswith("the record was made for another version of the case")
+    assert result.reason.startswith("the record was made with other inputs than those of the case")
     assert grade(twin, record).record.case_digest is None
     assert grade(twin, record, twin.digest).record.case_digest == twin.digest
 
