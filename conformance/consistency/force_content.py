@@ -63,8 +63,9 @@ def _check_content(case: Case, signals: RecordSignals) -> Finding | None:
                 Finding(
                     "doubt",
                     f"pantograph {number}: the force has {share:.1g} times the content at {UPPER_BAND_HZ[0]:g}-"
-                    f"{upper:g} Hz that kinks of the wire cause, as after a filter that is not stated; deliver force "
-                    "and contact height without this filter",
+                    f"{upper:g} Hz that kinks of the wire cause, as after a filter that is not stated, or by a model "
+                    "without droppers or with a coarse mesh; deliver force and contact height without a filter, or "
+                    "refine the model",
                 )
             )
     return worst_finding(findings)
