@@ -7,9 +7,11 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.self_test.record_zeros import describe_other_height, describe_other_position
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.systems.system import System
 
@@ -122,6 +124,7 @@ def _check_delivery(case: Case, delivered: Delivered, simulator: ReferenceSimula
     findings = (
         AdapterFinding("ok", "short case", "a record was delivered, and its files have the stated digests."),
         *_check_statements(case, delivered, result.record),
+        *_check_zeros(case, delivered, delivered.record),
         *_check_channels(result, reference),
         *_check_units(values),
         *_check_state(result.record),
@@ -149,6 +152,14 @@ def _check_statements(case: Case, delivered: Delivered, record: RecordFacts) -> 
     unknown = [key for key in ("dt_s", "element_m") if getattr(delivered.run, key) is None]
     if unknown:
         yield AdapterFinding("note", "run", f"the sidecar has no {' and '.join(unknown)} in [run]; reports print them.")
+
+
+def _check_zeros(case: Case, delivered: Delivered, record: Record) -> Iterator[AdapterFinding]:
+    """Zeros of position and height: another one of the height changes no verdict."""
+    if (text := describe_other_position(case, record, delivered.start)) is not None:
+        yield AdapterFinding("wrong", "position", text)
+    if (text := describe_other_height(case, record)) is not None:
+        yield AdapterFinding("note", "height", text)
 
 
 def _check_channels(result: CaseResult, reference: CaseResult) -> Iterator[AdapterFinding]:

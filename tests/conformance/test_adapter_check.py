@@ -78,6 +78,14 @@ GAPS: dict[str, tuple[Callable[[Delivered], Outcome], str, str, str]] = {
     "height in cm": (
         change_record(contact_height=lambda h: 100 * h), "wrong", "units", "contact_height_range_mm is 100 times",
     ),
+    "height above the rail": (
+        change_record(contact_height=lambda h: h + 5.3),
+        "note", "height", "begins at 5.332 m, the case starts with 0.0296 m",
+    ),
+    "position from the start": (
+        change_record(position=lambda x: x - 60), "wrong", "position",
+        "the first sample of the last pantograph is at 0.06944 m, but [start] states 60 m",
+    ),
     "force of another run": (change_record(force=lambda f: f[:, ::-1]), "wrong", "record", "contradicted: "),
     "other start": (lambda d: replace(d, start=OTHER_START), "note", "start", "its ramp is 30 m long"),
     "run": (lambda d: replace(d, run=RunTable()), "note", "run", "no dt_s and element_m in [run]"),
