@@ -1,4 +1,4 @@
-"""CheckedValue of computed with expected values, and orders of convergence."""
+"""Comparison of computed with expected values, and orders of convergence."""
 
 from collections.abc import Sequence
 
