@@ -13,6 +13,7 @@ from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.interface.opened_run import OpenedRun, open_run
 
 COMPARED_COLUMNS = (
@@ -42,6 +43,10 @@ class ComparedRuns:
 
     comparison: RunComparison
     runs: tuple[OpenedRun, ...]
+
+    def __repr__(self) -> str:
+        """Names of the runs in one line."""
+        return describe_in_one_line(self, *self.subjects)
 
     @property
     def subjects(self) -> tuple[str, ...]:

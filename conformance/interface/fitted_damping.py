@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.reports.document import Document
 
 COEFFICIENT_COLUMNS = ("kind", "matrix", "value", "low_95", "high_95", "determined", "reason")
@@ -36,6 +37,10 @@ class FittedDamping:
     """
 
     results: DampingResults
+
+    def __repr__(self) -> str:
+        """Number of coefficients in one line."""
+        return describe_in_one_line(self, count_noun(len(self.results.coefficients), "coefficient"))
 
     @property
     def toml(self) -> str:

@@ -25,6 +25,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import validate_model
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import label_logarithms, provide_axes
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 
 LONGEST_SOURCE = 500
 """Largest number of characters of a source in a pantograph file."""
@@ -50,6 +51,10 @@ class FittedPantograph:
     tables: dict[str, Any]
     report: PantographFit
     records: tuple[ResponseRecord, ...]
+
+    def __repr__(self) -> str:
+        """Number of masses in one line."""
+        return describe_in_one_line(self, f"{self.report.masses} masses")
 
     def parameter(self, key: str, number: int) -> ChainParameter:
         """Fitted value of the chain.

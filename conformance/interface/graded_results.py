@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
@@ -33,6 +34,11 @@ class GradedResults:
     """
 
     results: Results
+
+    def __repr__(self) -> str:
+        """Verdict, cases and system in one line."""
+        cases = count_noun(len(self.results.cases), "case")
+        return describe_in_one_line(self, self.verdict, cases, f"system: {self.results.system.name}")
 
     @property
     def verdict(self) -> Verdict:

@@ -21,6 +21,7 @@ from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.fitted_damping import FittedDamping
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.interface.opened_case import OpenedCase
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
@@ -56,6 +57,10 @@ class IdentifiedLines:
     """
 
     modes: tuple[Mode, ...]
+
+    def __repr__(self) -> str:
+        """Number of modes in one line."""
+        return describe_in_one_line(self, count_noun(len(self.modes), "mode"))
 
     def to_dataframe(self) -> Any:
         """Modes, one per row: a table of pandas, or columns of numpy.
@@ -129,7 +134,7 @@ class IdentifiedLines:
         return [path]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class IdentifiedRecords(IdentifiedLines):
     """Modes of the lines of mass-drop records, with the records and the course of the identification.
 

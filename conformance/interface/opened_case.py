@@ -15,6 +15,7 @@ from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.graded_results import GradedResults
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.interface.opened_run import SimulatedRun
 from pantocheck.conformance.results.outcome import missing_record_reason
@@ -46,6 +47,14 @@ class OpenedCase:
     path: Path
     case: Case
     changes: tuple[InputChange, ...] = ()
+
+    def __repr__(self) -> str:
+        """Id, speed, pantographs, line and changed keys in one line."""
+        speed, pantographs = self.case.file.speed_km_h, len(self.case.pantographs)
+        facts = [self.id, "at rest" if speed is None else f"{speed:g} km/h"]
+        facts += [count_noun(pantographs, "pantograph")] if pantographs else []
+        facts += [f"changed: {' '.join(change.key for change in self.changes)}"] if self.changes else []
+        return describe_in_one_line(self, *facts, f"line: {self.case.line.title}")
 
     @property
     def id(self) -> str:

@@ -8,6 +8,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
@@ -24,6 +25,12 @@ class OpenedDrop:
     """
 
     record: DropRecord
+
+    def __repr__(self) -> str:
+        """Name, quantity, channels and duration in one line."""
+        record = self.record
+        channels = f"{record.quantity} in {count_noun(len(self.channels), 'channel')}"
+        return describe_in_one_line(self, record.name, channels, f"{record.time[-1]:g} s")
 
     @property
     def channels(self) -> tuple[str, ...]:

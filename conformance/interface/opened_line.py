@@ -14,6 +14,7 @@ from pantocheck.conformance.cases.named_parts import locate_part, read_line_file
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
 from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, static_uplift
@@ -42,6 +43,12 @@ class OpenedLine:
 
     file: LineFile
     element_m: float
+
+    def __repr__(self) -> str:
+        """Title, spans, length and elements in one line."""
+        spans = count_noun(self.file.geometry.spans, "span")
+        length = f"{self.file.geometry.length:g} m"
+        return describe_in_one_line(self, spans, length, f"elements of {self.element_m:g} m", self.file.title)
 
     @property
     def span_limits(self) -> RealArray:

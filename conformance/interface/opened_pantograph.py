@@ -12,6 +12,7 @@ from pantocheck.conformance.cases.named_parts import locate_part, read_pantograp
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.drawn_axes import label_logarithms, provide_axes
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.model import Pantograph
 from pantocheck.model.pantograph import apparent_mass, frequencies
@@ -31,6 +32,10 @@ class OpenedPantograph:
 
     path: Path
     file: PantographFile
+
+    def __repr__(self) -> str:
+        """File and title in one line."""
+        return describe_in_one_line(self, self.path.name, self.file.title)
 
     @property
     def model(self) -> Pantograph:

@@ -9,6 +9,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import ComparedRun, read_record_run
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -29,6 +30,14 @@ class OpenedRun:
     """
 
     run: ComparedRun
+
+    def __repr__(self) -> str:
+        """Case, speed, pantographs and origin in one line."""
+        speed = "unknown speed" if self.run.speed_km_h is None else f"{self.run.speed_km_h:g} km/h"
+        owners = count_noun(len(self.run.signals), "pantograph")
+        return describe_in_one_line(
+            self, self.run.case or "no case", speed, owners, f"{self.run.kind}: {self.run.name}"
+        )
 
     @property
     def pantographs(self) -> tuple[int, ...]:
@@ -62,15 +71,15 @@ class OpenedRun:
                 "pantograph": owner,
                 "quantity": name,
                 "value": value,
-                "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
                 "unit": quantity_unit(name),
+                "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
                 "label": quantity_label(name),
             }
             for owner, values in self.run.values.items()
             for name, value in values.items()
             if not isinstance(value, tuple)
         ]
-        return tabulate_rows(rows, ("pantograph", "quantity", "value", "uncertainty", "unit", "label"))
+        return tabulate_rows(rows, ("pantograph", "quantity", "value", "unit", "uncertainty", "label"))
 
     def signals(self, pantograph: int = 1) -> Any:
         """Signals over the analysis section: a table of pandas, or columns of numpy.
@@ -139,7 +148,7 @@ class OpenedRun:
         return f"{self.run.case or self.run.name}, pantograph {pantograph}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SimulatedRun(OpenedRun):
     """A passage that a system has run.
 

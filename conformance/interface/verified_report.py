@@ -14,6 +14,7 @@ from pantocheck.conformance.authenticity.verification import DocumentState, Veri
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.interface.column_table import tabulate_rows
+from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,10 @@ class VerifiedReport:
 
     verification: Verification
     authentic: bool
+
+    def __repr__(self) -> str:
+        """State, verdict and number of checks in one line."""
+        return describe_in_one_line(self, self.state, f"verdict {self.verdict}", count_noun(len(self.checks), "check"))
 
     @property
     def verdict(self) -> Verdict:

@@ -77,6 +77,7 @@ def test_fit_finds_the_coefficients_of_the_line(fit: FittedDamping) -> None:
         damping["contact_wire"]["mass_coefficient_1_s"], rel=2e-3
     )
     assert len(fit.to_dataframe()["value"]) == len(fit.results.coefficients) >= 4
+    assert repr(fit) == f"<FittedDamping {len(fit.results.coefficients)} coefficients>"
     models = fit.models()
     np.testing.assert_allclose(models["Rayleigh"], models["line as it is"], rtol=2e-3)
     assert len(fit.plot().lines) == 4  # the measured points and three models
@@ -107,6 +108,7 @@ def test_files_of_an_identification_are_those_of_the_command(tmp_path: Path) -> 
     line = analyse_identification(Identification(solution, build_modes(solution, 2), ()))
     identified = IdentifiedRecords(line.modes, (line,))
     np.testing.assert_allclose(identified.to_dataframe()["damping_ratio"], ratio, rtol=1e-6)
+    assert repr(identified) == f"<IdentifiedRecords {len(identified.modes)} modes>"
     assert [path.name for path in identified.write(tmp_path)] == [
         *("modes.json", "identification.json", "identification.html", "identification.pdf")
     ]

@@ -11,7 +11,17 @@ import pytest
 
 import pantocheck.conformance
 from helpers.wave_system import SIGMA, Wave
-from pantocheck.conformance import InputError, OpenedCase, SimulatedRun, list_cases, open_case, open_results, open_run
+from pantocheck.conformance import (
+    GradedResults,
+    InputError,
+    OpenedCase,
+    SimulatedRun,
+    list_cases,
+    open_case,
+    open_pantograph,
+    open_results,
+    open_run,
+)
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import describe_delivery
 from pantocheck.conformance.interface import column_table
@@ -91,6 +101,30 @@ def test_quantities_are_a_table(run: SimulatedRun) -> None:
     assert values[2, "std_force_N"] == run.quantity("std_force_N", 2) == pytest.approx(SIGMA, rel=1e-3)
     assert values[0, "max_uplift_at_support_mm"] == run.quantity("max_uplift_at_support_mm", 0)
     assert run.pantographs == (1, 2)
+
+
+def test_value_and_unit_stand_before_the_label(run: SimulatedRun) -> None:
+    """A terminal of 80 columns shows the first columns of a table of pandas; a label is up to 60 characters long."""
+    assert list(run.to_dataframe()) == ["pantograph", "quantity", "value", "unit", "uncertainty", "label"]
+
+
+def test_values_are_described_in_one_line(run: SimulatedRun, two_pantograph_case: Case) -> None:
+    case = open_case("en50318-2018/ac-simple/320-twin").with_({"line.contact_wire.tension_N": 21e3}, speed_km_h=300.0)
+    described = (
+        f"<OpenedCase {case.id}, 300 km/h, 2 pantographs, changed: line.contact_wire.tension_N speed_km_h, line: EN"
+    )
+    assert repr(case).startswith(described)
+    assert repr(open_case("en50318-2018/ac-simple/static")).startswith(
+        "<OpenedCase en50318-2018/ac-simple/static, at rest, line: EN 50318:2018"
+    )
+    assert repr(case.line).startswith("<OpenedLine 48 spans, 2640 m, elements of 0.5 m, EN 50318:2018 AC simple")
+    pantograph = open_pantograph("en50318-2018/pantograph.toml")
+    assert repr(pantograph) == f"<OpenedPantograph pantograph.toml, {pantograph.file.title}>"
+    speed = f"{two_pantograph_case.file.speed_km_h:g} km/h, 2 pantographs"
+    assert repr(run).startswith(f"<SimulatedRun {two_pantograph_case.id}, {speed}, system: ")
+    graded = GradedResults(run_cases([two_pantograph_case], Wave()))
+    assert repr(graded).startswith(f"<GradedResults {graded.verdict}, 1 case, system: ")
+    assert max(len(repr(each)) for each in (case, case.line, pantograph, run, graded)) < 180
 
 
 def test_tables_without_pandas_are_columns(run: SimulatedRun, monkeypatch: pytest.MonkeyPatch) -> None:

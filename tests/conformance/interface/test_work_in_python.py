@@ -46,6 +46,7 @@ def test_a_run_agrees_with_its_record(run: SimulatedRun, tmp_path: Path) -> None
     agreement = compared.agreement(pantograph=2)
     assert agreement.correlation == pytest.approx(1, abs=1e-9)
     assert agreement.rms_difference_N < 1e-6 * SIGMA
+    assert repr(compared) == f"<ComparedRuns {', '.join(compared.subjects)}>"
     table = compared.to_dataframe()
     rows = zip(*(table[name] for name in ("pantograph", "quantity", "subject", "value")), strict=True)
     values = {row[:3]: row[3] for row in rows}
@@ -82,6 +83,7 @@ def test_a_changed_number_is_found(two_pantograph_case: Case, tmp_path: Path) ->
     assert (forged.state, forged.verdict) == ("contradicted", genuine.verdict)
     assert any("std_force_N" in line for line in forged.contradictions)
     assert "contradicted" in list(forged.to_dataframe()["outcome"])
+    assert repr(forged).startswith("<VerifiedReport contradicted, verdict ")
 
 
 def test_fit_finds_the_pantograph_of_a_response(tmp_path: Path) -> None:
@@ -95,6 +97,7 @@ def test_fit_finds_the_pantograph_of_a_response(tmp_path: Path) -> None:
         assert abs(fitted.value - mass) < 2 * fitted.half_width
     np.testing.assert_allclose(fit.dynamic_stiffness(FREQUENCY), chain_stiffness(pantograph), rtol=3e-3)
     assert len(fit.to_dataframe()["value"]) == 3 * fit.report.masses
+    assert repr(fit) == f"<FittedPantograph {fit.report.masses} masses>"
     assert len(fit.plot().lines) == 2
     assert [path.name for path in fit.write(tmp_path / "mine.toml")] == [
         *("mine.toml", "mine-fit.json", "mine-fit.html", "mine-fit.pdf")
