@@ -28,6 +28,7 @@ from pantocheck.conformance.comparison.drop_limits import read_drop_limits
 from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
@@ -47,7 +48,9 @@ SHORTEST_WINDOW_S, LATEST_WINDOW_S = 1.0, 900.0
 
 
 def compare_drop_command(
-    record: Annotated[Path, typer.Argument(help="Record of a mass drop, with its sidecar (docs/identification.md).")],
+    record: Annotated[
+        Path, typer.Argument(help=f"Record of a mass drop, with its sidecar: {DocumentationPage.IDENTIFICATION}.")
+    ],
     line: Annotated[
         str,
         typer.Option(
@@ -59,7 +62,7 @@ def compare_drop_command(
         list[Path] | None,
         typer.Option(help="Damping file; repeat the option for several. The first is graded. Default: the line's own."),
     ] = None,
-    limits: Annotated[Path | None, typer.Option(help="File of limits (docs/compare-drop.md).")] = None,
+    limits: Annotated[Path | None, typer.Option(help=f"File of limits: {DocumentationPage.COMPARE_DROP}.")] = None,
     run: Annotated[int, typer.Option(help="Number of the run in a record with several, from 1.", min=1)] = 1,
     window: Annotated[
         list[str] | None,

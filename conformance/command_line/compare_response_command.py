@@ -25,6 +25,7 @@ from pantocheck.conformance.comparison.response_limits import read_response_limi
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.reports.comparison.response_comparison_page import (
     RESPONSE_HEADLINES,
@@ -44,11 +45,15 @@ PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
 def compare_response_command(
     responses: Annotated[
         list[Path],
-        typer.Argument(help="Tables of measured responses, or their sidecars (docs/pantograph-response.md)."),
+        typer.Argument(
+            help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."
+        ),
     ],
     pantograph: Annotated[Path, typer.Option(help="Pantograph file.")],
     out: Annotated[Path, typer.Option(help="Folder for response_comparison.json, .html and .pdf.")],
-    limits: Annotated[Path | None, typer.Option(help="File of limits (docs/pantograph-response.md).")] = None,
+    limits: Annotated[
+        Path | None, typer.Option(help=f"File of limits: {DocumentationPage.PANTOGRAPH_RESPONSE}.")
+    ] = None,
 ) -> CommandOutput:
     """Compare frequency responses measured at a pantograph head with its model.
 

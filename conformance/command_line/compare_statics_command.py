@@ -25,6 +25,7 @@ from pantocheck.conformance.comparison.static_comparison_format import ComparedV
 from pantocheck.conformance.comparison.static_record import read_static_record
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, produce_atomically
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.reports.comparison.static_comparison_page import (
     HEADLINES,
@@ -37,7 +38,9 @@ ToleranceOption = float | None
 
 
 def compare_statics_command(
-    table: Annotated[Path, typer.Argument(help="Table of the measured values, or its sidecar (docs/line-tables.md).")],
+    table: Annotated[
+        Path, typer.Argument(help=f"Table of the measured values, or its sidecar: {DocumentationPage.LINE_TABLES}.")
+    ],
     line: Annotated[
         str,
         typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),

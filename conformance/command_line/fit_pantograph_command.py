@@ -20,6 +20,7 @@ from pantocheck.conformance.identification.pantograph_fit.chain_selection import
 from pantocheck.conformance.identification.pantograph_fit.fit_description import CHAIN_KEYS, name_parameter
 from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.interface.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
@@ -29,7 +30,9 @@ from pantocheck.conformance.reports.formats.report_writers import remark_missing
 def fit_pantograph_command(
     responses: Annotated[
         list[Path],
-        typer.Argument(help="Tables of measured responses, or their sidecars (docs/pantograph-response.md)."),
+        typer.Argument(
+            help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."
+        ),
     ],
     out: Annotated[Path, typer.Option(help="Pantograph file to write; the reports stand beside it.")],
     masses: Annotated[

@@ -9,13 +9,16 @@ import typer
 from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.line_tables.dropper_rows import LengthMeaning
 from pantocheck.conformance.line_tables.line_import import import_line
 
 
 def import_line_command(
-    supports: Annotated[Path, typer.Argument(help="CSV table of the supports and both ends (docs/line-tables.md).")],
+    supports: Annotated[
+        Path, typer.Argument(help=f"CSV table of the supports and both ends: {DocumentationPage.LINE_TABLES}.")
+    ],
     base: Annotated[
         Path, typer.Option(help="Line file with the wires, arms and damping, and the values of empty cells.")
     ],

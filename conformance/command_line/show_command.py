@@ -23,6 +23,7 @@ from pantocheck.conformance.command_line.console import escape_text
 from pantocheck.conformance.command_line.derived_tables import build_derived_tables
 from pantocheck.conformance.command_line.rest_tables import build_rest_tables
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -55,7 +56,8 @@ def show_command(
         typer.Option("--derived", help="Also compute the values that follow from the inputs by the conventions."),
     ] = False,
     request: Annotated[
-        Path | None, typer.Option(help="JSON file for one case, as a program receives it (docs/systems.md).")
+        Path | None,
+        typer.Option(help=f"JSON file for one case, as a program receives it: {DocumentationPage.SYSTEMS}."),
     ] = None,
     drawing: Annotated[
         Path | None,

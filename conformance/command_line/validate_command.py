@@ -27,6 +27,7 @@ from pantocheck.conformance.command_line.progress_display import report_cases
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.input_files.atomic_writing import check_writable
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.procedure.validation import Validation
 from pantocheck.conformance.reports.certificate.procedure_page import describe_steps, name_state
@@ -40,7 +41,7 @@ from pantocheck.conformance.systems.system_choice import choose_system
 
 
 def validate_command(
-    dossier: Annotated[Path, typer.Argument(metavar="DOSSIER.toml", help="Dossier (docs/validate.md).")],
+    dossier: Annotated[Path, typer.Argument(metavar="DOSSIER.toml", help=f"Dossier: {DocumentationPage.VALIDATE}.")],
     out: OutOption = None,
     formats: FormatsOption = None,
     administration: AdministrationOption = None,

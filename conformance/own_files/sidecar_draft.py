@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Sequence
 
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.own_files.channel_facts import ChannelFacts, TimeFacts
 from pantocheck.conformance.own_files.channel_guess import guess_channels, list_force_signals
@@ -31,7 +32,7 @@ def draft_record_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFac
     forces = len(guesses.get("force", [])) or 1
     lines = [
         f"# Sidecar of {file}. Complete the lines with {TO_DO.rstrip(':')}, and check the others.",
-        "# docs/records.md and docs/logger-files.md describe every key.",
+        f"# See {DocumentationPage.RECORDS}, and {DocumentationPage.LOGGER_FILES}.",
         'schema = "pantocheck.record/1"',
         f"file = {json.dumps(file, ensure_ascii=False)}",
         f"# speed_km_h = 250.0              # {TO_DO} nominal speed of the train",
@@ -83,7 +84,8 @@ def _list_columns(
         column = json.dumps(fact.column.label, ensure_ascii=False)
         yield f'# force_{number}_N = {{ column = {column}, unit = "N", scale = 1.0 }}   # {TO_DO} N per {fact.unit}'
     if len(signals) > 1:
-        yield "# or the sum of several sensors of one pantograph: docs/logger-files.md, [columns.force_1_N] with sum"
+        yield "# or the sum of several sensors of one pantograph: [columns.force_1_N] with sum"
+        yield f"# in {DocumentationPage.LOGGER_FILES}"
     if "force" not in guesses and not signals:
         yield f'# force_1_N = {{ column = "...", unit = "N" }}   # {TO_DO} column of the contact force'
     unused = [fact.column.label for fact in facts if id(fact) not in used and fact.column.label]
@@ -129,7 +131,7 @@ def draft_drop_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts
     rate = rate if "." in rate or "e" in rate else f"{rate}.0"
     lines = [
         f"# Sidecar of {file}. Complete the lines with {TO_DO.rstrip(':')}, and check the others.",
-        "# docs/identification.md describes every key.",
+        f"# See {DocumentationPage.IDENTIFICATION}.",
         "[test]",
         'name = ""',
         "# spans_m = [63.0, 63.0]          # lengths of the spans",

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from importlib.metadata import EntryPoint
 from typing import TypeVar
 
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plug_ins.plug_in import GROUPS, PlugIn
 
@@ -32,7 +33,7 @@ def load_plug_in(plug_in: PlugIn, expected: type[T]) -> T:
         raise InputError(
             plug_in.text,
             f"{plug_in.value} is a {type(loaded).__name__}",
-            f"It must be a pantocheck.conformance.{expected.__name__} (docs/extending.md).",
+            f"It must be a pantocheck.conformance.{expected.__name__}. See {DocumentationPage.EXTENDING}.",
         )
     return loaded
 

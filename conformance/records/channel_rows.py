@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.measured_table import (
     EVERY_CHANNEL,
@@ -122,7 +123,7 @@ def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> Re
         raise InputError(place, "unknown column", hint)
     stated = None if column.unit is None else find_factor(column.unit, find_key_units(meaning.channel.unit))
     if column.unit is not None and stated != meaning.factor:
-        hint = "Correct the wrong one, or map the columns: [columns] in the sidecar (docs/logger-files.md)."
+        hint = f"Correct the wrong one, or map the columns ([columns]). See {DocumentationPage.LOGGER_FILES}."
         raise InputError(place, f"has the unit {column.unit!r} in the file, which is not that of its name", hint)
     allowed = sidecar.rows(meaning.channel.per)
     if meaning.number > allowed:

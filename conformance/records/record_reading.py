@@ -7,6 +7,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, check_file, file_digest
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import read_channel_rows
@@ -142,7 +143,7 @@ def record_digest(sidecar_path: Path, table: Path | None = None) -> str:
 def build_record_error(table: Path, error: RecordInvalid) -> InputError:
     """Input error for a table whose samples are not a valid record."""
     return InputError(
-        f"record '{table.name}', channel {error.channel}", error.found, "docs/records.md describes the format."
+        f"record '{table.name}', channel {error.channel}", error.found, f"See {DocumentationPage.RECORDS}."
     )
 
 

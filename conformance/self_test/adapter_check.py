@@ -7,6 +7,7 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.results.outcome import Delivered, Skipped
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
@@ -208,6 +209,6 @@ def _check_values(values: tuple[AdapterValue, ...]) -> Iterator[AdapterFinding]:
     if far:
         text = (
             f"more than {USUAL_DIFFERENCE:.0%} from the reference simulator: {', '.join(far)}. Compare the conventions "
-            "in docs/systems.md: start, zero of heights, working height of the pantograph, filter."
+            f"in {DocumentationPage.SYSTEMS}: start, zero of heights, working height of the pantograph, filter."
         )
         yield AdapterFinding("note", "values", text)

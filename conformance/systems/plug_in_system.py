@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plug_ins.plug_in import PlugIn, find_plug_in
 from pantocheck.conformance.plug_ins.plug_in_loading import guard_plug_in, load_plug_in
@@ -96,7 +97,7 @@ def _open_system(plug_in: PlugIn, text: str) -> CaseSystem:
         system: object = factory.open(text)
     if not isinstance(system, CaseSystem):
         found = f"open returned a {type(system).__name__}"
-        raise InputError(plug_in.text, found, "It must return a CaseSystem (docs/extending.md).")
+        raise InputError(plug_in.text, found, f"It must return a CaseSystem. See {DocumentationPage.EXTENDING}.")
     return system
 
 
