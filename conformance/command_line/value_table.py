@@ -4,16 +4,16 @@ from collections.abc import Collection, Mapping
 
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
 from pantocheck.conformance.command_line.fitted_table import FittedTable
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.registry import find_quantity
 
 MAIN_VALUES = (
     *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N"),
     *("max_force_N", "min_force_N", "contact_loss_pct", "max_uplift_at_support_mm"),
 )
-"""NamedValues of a passage that are printed without `-v`."""
+"""Values of a passage that are printed without `-v`."""
 
 NamedValues = Mapping[str, Mapping[str, object]]
-"""NamedValues or uncertainties by pantograph ("0": the line) and quantity."""
+"""Values or uncertainties by pantograph ("0": the line) and quantity."""
 
 
 def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names: Collection[str]) -> FittedTable:
@@ -22,7 +22,7 @@ def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names:
     Parameters
     ----------
     values, uncertainty : NamedValues
-        NamedValues and their uncertainties.
+        Values and their uncertainties.
     names : collection of str
         Quantities of the table, in its order.
     """
@@ -35,8 +35,14 @@ def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names:
             if isinstance(value, float):
                 text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
                 errors = [format_number(width if isinstance(width, float) else None, 2)] if uncertainty else []
-                table.add_row(escape_text(text), format_number(value), *errors, QUANTITIES[name].unit)
+                table.add_row(escape_text(text), format_number(value), *errors, _find_unit(name))
     return table
+
+
+def _find_unit(name: str) -> str:
+    """Unit of a quantity of the suite or of a plug-in; empty for a quantity that is not known here."""
+    quantity = find_quantity(name)
+    return "" if quantity is None else quantity.unit
 
 
 def list_names(values: NamedValues) -> tuple[str, ...]:

@@ -36,8 +36,9 @@ def build_self_test_page(self_test: SelfTest) -> doc.Document:
         title="Self-test",
         header=doc.PlainHeader(
             "Self-test: can the suite fail?",
-            "The self-test grades the reference simulator, which must pass, and mutants of it. A mutant is a system "
-            "with one deliberate fault, which must end in fail or error for the reason stated here.",
+            "Show that the suite detects faulty simulators. The self-test grades the reference simulator, which must "
+            "pass, and mutants of it. A mutant is a system with one deliberate fault, which must end in fail or error "
+            "for the reason stated here.",
         ),
         blocks=(
             doc.Paragraph(

@@ -10,6 +10,7 @@ from pantocheck.conformance.simulation import case_run
 from pantocheck.conformance.simulation.case_run import build_passage, run_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import sample_span
+from pantocheck.conformance.step_log import ShareCallback
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.statics.elasticity import static_uplift
 
@@ -40,11 +41,11 @@ def test_computing_time_begins_after_a_first_step(two_pantograph_case: Case, mon
     """A passage without a step would leave the compilation of the time step to the run that is timed."""
     steps = []
 
-    def simulate(line: DiscretisedLine, passage: Passage) -> History:
+    def simulate(line: DiscretisedLine, passage: Passage, progress: ShareCallback | None = None) -> History:
         steps.append(round(passage.duration / passage.time_step))
-        return simulate_passage(line, passage)
+        return simulate_passage(line, passage, progress)
 
-    monkeypatch.setattr(case_run, "simulate_passage", simulate)
+    monkeypatch.setattr(case_run, "integrate_passage", simulate)
     line, discretisation = discretise(build_catenary(two_pantograph_case.line), 5.0), Discretisation(time_step_s=0.004)
     run_passage(two_pantograph_case, line, discretisation)
     duration = (two_pantograph_case.end - two_pantograph_case.start) / two_pantograph_case.speed
