@@ -13,6 +13,9 @@ from pantocheck.conformance.results.results_reading import parse_results
 MAX_DOCUMENT_BYTES = 64 * 2**20
 """Largest certificate that is read [bytes]; a certificate of two cases has about one million."""
 
+DOCUMENTS = ("certificate.pdf", "certificate.html", "results.json")
+"""Documents that `pantocheck run` writes to its folder."""
+
 HEADER_BYTES = 1024
 """Length of the part of a file with the header of a PDF [bytes] (ISO 32000-1, implementation note 13)."""
 
@@ -53,6 +56,8 @@ def read_certificate(path: Path) -> Certificate:
         It cannot be read, is too large, or is none of them.
     """
     name = str(path)
+    if path.is_dir():
+        raise InputError(name, "is a folder", _suggest_document(path))
     content = read_bytes(path, name, MAX_DOCUMENT_BYTES)
     beginning = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:HEADER_BYTES]
     if b"%PDF-" in content[:HEADER_BYTES]:
@@ -66,3 +71,9 @@ def read_certificate(path: Path) -> Certificate:
         "not a PDF, not an HTML page and not JSON",
         "Name the certificate.pdf, certificate.html or results.json that 'pantocheck run' wrote.",
     )
+
+
+def _suggest_document(folder: Path) -> str:
+    """Advice for a folder in place of a document: the documents in it."""
+    found = [f"'{folder / name}'" for name in DOCUMENTS if (folder / name).is_file()]
+    return f"Name one document of it: {', '.join(found)}." if found else f"Name a file: {', '.join(DOCUMENTS)}."

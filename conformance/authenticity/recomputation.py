@@ -140,8 +140,9 @@ def _check_grade(row: dict[str, Any], trust: Any) -> Iterator[str]:
         yield f"uncertainty {printed} stated, {combined} follows from its components"
     remarks = near_limit_remarks(value, (lower, upper), row["unit"], errors)
     if row["close"] != remarks:
-        stated = len(row["close"])
-        yield f"{stated} remarks on a close limit stated, {len(remarks)} follow from value, limits and errors"
+        stated, follow = len(row["close"]), len(remarks)
+        texts = " with other texts" if stated == follow else ""
+        yield f"{stated} remarks on a close limit stated, {follow}{texts} follow from value, limits and errors"
 
 
 def _check_statistics(quantities: dict[str, Any]) -> Iterator[str]:

@@ -14,6 +14,7 @@ from pantocheck.conformance.authenticity.verification import verify_document
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import run_cases
 
@@ -30,6 +31,16 @@ def test_document_of_this_version_is_consistent(wave_results: Results, tmp_path:
     assert (verification.verdict, verification.cases, verification.criteria) == ("fail", 1, 18)
     exits = [CliRunner().invoke(app, ["verify", str(path), *option]).exit_code for option in ((), ("--any-verdict",))]
     assert exits == [1, 0]
+
+
+def test_folder_is_refused_with_the_documents_in_it(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"is a folder\.\n  Name a file: certificate\.pdf"):
+        verify_document(tmp_path)
+    for name in FORMATS[1:]:
+        (tmp_path / name).touch()
+    with pytest.raises(InputError) as error:
+        verify_document(tmp_path)
+    assert f"'{tmp_path / 'certificate.html'}', '{tmp_path / 'results.json'}'" in str(error.value)
 
 
 @pytest.mark.parametrize("name", FORMATS[:2])

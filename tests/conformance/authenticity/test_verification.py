@@ -76,7 +76,7 @@ TAMPERINGS = {
     ),
     "another remark on a close limit": (
         lambda r: (widen(r), row(r).update(close=["lies far from every limit"])),
-        "1 remarks on a close limit stated, 1 follow",
+        "1 remarks on a close limit stated, 1 with other texts follow",
     ),
     "component beyond the limit without a remark": (widen, "0 remarks on a close limit stated, 1 follow"),
     "component of another quantity": (
@@ -241,7 +241,7 @@ def test_missing_and_too_large_files_are_refused(
 ) -> None:
     with pytest.raises(InputError, match="cannot be read"):
         verify_document(tmp_path / "none.pdf")
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="is a folder"):
         verify_document(tmp_path)
     monkeypatch.setattr(results_file, "MAX_RESULTS_BYTES", 1000)
     with pytest.raises(InputError, match=r"attachment results\.json: .* bytes"):
