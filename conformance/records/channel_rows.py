@@ -148,6 +148,9 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
         if name != "uplift" and len(numbered) != expected and not first_alone:
             found = f"has {len(numbered)} rows of {CHANNELS[name].key}, expected {expected}"
             hint = "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are enough."
+            if name == "position" and list(numbered) == [1]:
+                found = f"spacing_m is missing from the sidecar, and the table {found}"
+                hint = f"Give spacing_m, {expected - 1} distance(s) between pantographs, or one row per pantograph."
             yield InputError(where, found, hint)
 
 

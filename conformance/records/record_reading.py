@@ -30,9 +30,15 @@ def open_record(path: Path) -> RecordSidecar | RecordSummary:
     Raises
     ------
     InputError
-        The file cannot be read, does not fit its model, or is neither a sidecar nor a summary.
+        The file cannot be read, does not fit its model, or is neither a sidecar nor a summary; a table has no sidecar.
     """
-    path = path.with_suffix(".toml")
+    table, path = path, path.with_suffix(".toml")
+    if table != path and table.is_file() and not path.exists():
+        raise InputError(
+            f"record '{table.name}'",
+            f"its sidecar {path.name} is missing",
+            f"Write it: pantocheck describe {table} --sidecar {path}",
+        )
     schema = read_toml(path, "record").get("schema")
     model = RECORD_SCHEMAS.get(schema) if isinstance(schema, str) else None
     if model is None:

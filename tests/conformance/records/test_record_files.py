@@ -21,7 +21,7 @@ from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record import Record, RecordInvalid
-from pantocheck.conformance.records.record_reading import read_record, read_samples
+from pantocheck.conformance.records.record_reading import open_record, read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
 from pantocheck.conformance.records.sidecar_tables import LineTable
@@ -294,11 +294,11 @@ def test_changed_table_contradicts_its_digest(written: Writer) -> None:
         ({"file": "../a.csv"}, "found the path"),
         ({"file": "b.csv"}, "record 'b.csv': cannot be read"),
         ({"speed_km_h": None, "speed_m_s": 69.4}, "key speed_m_s: unknown key"),
-        ({"pantographs": 2}, "1 rows of position_m, expected 2"),
         (
             {"support_position_m": []},
             r"support_position_m: found \[\], which is empty\.\n  Remove the key, or fill it in",
         ),
+        ({"pantographs": 2}, "spacing_m is missing from the sidecar, and the table has 1 rows of position_m"),
     ],
 )
 def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], message: str) -> None:
@@ -306,6 +306,14 @@ def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], mess
     edit_toml(path.with_suffix(".toml"), changes)
     with pytest.raises(InputError, match=message):
         read_record(path)
+
+
+def test_table_without_its_sidecar_names_the_command_that_writes_it(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time_s,force_1_N\n0,120\n")
+    with pytest.raises(InputError, match=r"its sidecar run\.toml is missing") as error:
+        open_record(path)
+    assert f"pantocheck describe {path} --sidecar {path.with_suffix('.toml')}" in str(error.value)
 
 
 def test_record_never_overwrites_a_case_file(record: Record, tmp_path: Path) -> None:
