@@ -144,7 +144,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         },
     )
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
-    missing = _missing_statement(samples, sidecar)
+    missing = find_missing_statement(samples, sidecar)
     evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)
     return AssessedRecord(
         name=path.stem,
@@ -162,10 +162,17 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     )
 
 
-def _missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | None:
-    """Reason why no quantity of a record is evaluated; None if section and speed are stated.
+def find_missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> str | None:
+    """Find the reason why no quantity of a record is evaluated; None if section and speed are stated.
 
     Without them, a record that was cut short or ran at another speed could not be told from a complete one.
+
+    Parameters
+    ----------
+    samples : RecordSamples
+        Samples as read.
+    sidecar : RecordSidecar
+        Sidecar of the record.
     """
     if sidecar.evaluated_m is None:
         return "the analysis section is not stated: add evaluated_m to the sidecar"

@@ -15,6 +15,7 @@ from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
+from pantocheck.conformance.grading.assessed_record import find_missing_statement
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
@@ -27,7 +28,11 @@ from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
-from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, read_samples
+from pantocheck.conformance.records.measured.sample_positions import place_samples
+from pantocheck.conformance.records.record import RecordInvalid
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples
+from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.samples import RecordSamples
 from pantocheck.conformance.results.results_reading import MAX_RESULTS_BYTES
 from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -146,7 +151,27 @@ def _check_record(path: Path) -> str:
     samples, sidecar, table = read_samples(path)
     rows, n = samples.force.shape
     unused = f"\n  columns that are not used: {', '.join(samples.ignored[:20])}" if samples.ignored else ""
-    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h{unused}"
+    warnings = "".join(f"\n  warning: {text}" for text in _warn_of_record(samples, sidecar, table))
+    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h{unused}{warnings}"
+
+
+def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
+    """Reasons why `assess` evaluates no quantity of a record, or none of a pantograph."""
+    if (missing := find_missing_statement(samples, sidecar)) is not None:
+        yield f"`assess` skips every criterion: {missing}"
+    if sidecar.evaluated_m is None:
+        return
+    begin, end = sidecar.evaluated_m
+    try:
+        position = place_samples(samples, sidecar).position
+    except RecordInvalid as error:
+        raise build_record_error(table, error) from None
+    for number, (first, last) in enumerate(position[:, [0, -1]], 1):
+        if first > begin or last < end:
+            yield (
+                f"`assess` skips the criteria of pantograph {number}: its record from {first:g} to {last:g} m does not "
+                f"cover evaluated_m, {begin:g} to {end:g} m"
+            )
 
 
 def _check_drop_sidecar(path: Path) -> str:

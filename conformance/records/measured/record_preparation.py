@@ -153,6 +153,8 @@ def prepare_record(
         warnings += remarks
     line, remarks = _prepare_line(samples, section, position.min(axis=0))
     mean_speed = float(recorded[-1][steady].mean())
+    # A section that nobody stated is the whole track: every record ends at its limits.
+    edges = [] if sidecar.evaluated_m is None else edge_warnings(pantographs, mean_speed)
     seconds = _duration(pantographs[1])
     length = f"Evaluated: {seconds:.4g} s, about {seconds * nominal / 1000:.3g} km of line."
     return PreparedRecord(
@@ -163,7 +165,7 @@ def prepare_record(
         section=section,
         seconds=seconds,
         notes=(*_resampling_notes(placed, rate), *_ignored_notes(samples), *([length] if seconds else [])),
-        warnings=(*warnings, *edge_warnings(pantographs, mean_speed), *remarks),
+        warnings=(*warnings, *edges, *remarks),
         events=_list_section_events(sidecar, position[0], samples.event_level, section),
     )
 

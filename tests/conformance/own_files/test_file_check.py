@@ -171,6 +171,20 @@ def test_folder_of_records_is_checked(tmp_path: Path, two_pantograph_record: Rec
     assert "record 'b.h5': cannot be read" in result.stderr
 
 
+def test_record_that_cannot_be_assessed_gives_a_warning(tmp_path: Path, two_pantograph_record: Record) -> None:
+    """The second pantograph runs behind the first one, so that it ends before a section at the end of its track."""
+    write_record(tmp_path / "a.csv", two_pantograph_record)
+    first, second = two_pantograph_record.position
+    edit_toml(tmp_path / "a.toml", {"evaluated_m": [float(first[0]), float(first[-1])]})
+    result = check(tmp_path / "a.toml")
+    assert result.exit_code == 0
+    assert f"criteria of pantograph 2: its record from {second[0]:g} to {second[-1]:g} m does not" in result.stdout
+    assert "criteria of pantograph 1" not in result.stdout
+    edit_toml(tmp_path / "a.toml", {"evaluated_m": None})
+    warning = "warning: `assess` skips every criterion: the analysis section is not stated"
+    assert warning in check(tmp_path / "a.toml").stdout
+
+
 def test_mass_drop_record_is_checked(tmp_path: Path) -> None:
     write_drop_csv(build_drop_record(), tmp_path / "drop.csv")
     write_drop_sidecar(build_drop_record(), tmp_path / "drop.toml")

@@ -81,6 +81,11 @@ def test_filter_transients_inside_the_section_are_reported(run_in: float, warned
         assert any("begins or ends less than 6.9 m outside" in text for text in warnings) == warned
 
 
+def test_section_that_nobody_stated_gives_no_warning_on_transients() -> None:
+    """The whole record is evaluated; the missing statement is reported instead."""
+    assert not any("outside the analysis section" in text for text in ready(by_time()).warnings)
+
+
 @pytest.mark.parametrize("step", [0.1, 0.25])
 def test_sampling_by_distance_gives_the_statistics_of_time(step: float) -> None:
     position = np.arange(0, 2000, step)
