@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.grading.case_identity import raises_trust_only
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words
@@ -58,12 +59,16 @@ def list_identity_warnings(results: dict[str, Any]) -> tuple[str, ...]:
 def summarise_identity(results: dict[str, Any]) -> list[str]:
     """Sentences for the headline on modified copies, changed inputs and weakened limits."""
     copies = sum(case["library"] == "modified" for case in results["cases"])
-    changed = sum(bool(case["limit_changes"]) for case in results["cases"])
+    changes = [case["limit_changes"] for case in results["cases"] if case["limit_changes"]]
     inputs = sum(bool(case["changes"]) for case in results["cases"])
     sentences = [f"Modified copies of the library: {copies}."] if copies else []
     sentences += [f"Cases with inputs changed with --set: {inputs}."] if inputs else []
-    cases = "1 case" if changed == 1 else f"{changed} cases"
-    return [*sentences, f"The limits file weakens limits or changes their trust in {cases}."] if changed else sentences
+    if not changes:
+        return sentences
+    cases = "1 case" if len(changes) == 1 else f"{len(changes)} cases"
+    raised = all(raises_trust_only(change) for stated in changes for change in stated)
+    effect = "raises the trust of limits" if raised else "weakens limits or changes their trust"
+    return [*sentences, f"The limits file {effect} in {cases}."]
 
 
 def describe_changes(case: dict[str, Any]) -> str:

@@ -19,6 +19,7 @@ from pantocheck.conformance.grading.case_identity import (
     describe_limit_change,
     limits_digest,
     list_limit_changes,
+    raises_trust_only,
 )
 from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.results.results_reading import read_results
@@ -115,6 +116,22 @@ STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, tru
 )  # fmt: skip
 def test_weaker_limit_is_described(change: dict[str, Any], text: str) -> None:
     assert describe_limit_change(STATED, STATED.model_copy(update=change)) == f"std_force_N of pantograph 2: {text}"
+
+
+@pytest.mark.parametrize(
+    ("change", "raised"),
+    [
+        ({"trust": "primary"}, True),
+        ({"trust": "primary", "upper": 30.0}, True),
+        ({"trust": "provisional"}, False),
+        ({"trust": "primary", "upper": 32.0}, False),
+        ({"upper": 32.0}, False),
+    ],
+)
+def test_raised_trust_alone_weakens_nothing(change: dict[str, Any], raised: bool) -> None:
+    text = describe_limit_change(STATED, STATED.model_copy(update=change))
+    assert text is not None
+    assert raises_trust_only(text) == raised
 
 
 @pytest.mark.parametrize("change", [{}, {"upper": 30.0}, {"lower": 27.0, "source": "own", "note": "stricter"}])

@@ -71,6 +71,10 @@ def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys
     print_output(build_results_output(Results.model_validate(changed), [], 0), "run")
     weakened = "The limits file weakens limits or changes their trust in 1 case."
     assert build_headline(changed).endswith(weakened)
+    raised = describe(
+        results, limit_changes=["std_force_N: the trust of the limit is raised from secondary to primary"]
+    )
+    assert build_headline(raised).endswith("The limits file raises the trust of limits in 1 case.")
     texts = [shown_certificate(changed), capsys.readouterr().out, render_junit(changed).decode()]
     texts.append(render_markdown(build_summary(changed)).replace("\\_", "_"))
     assert all(CHANGE in " ".join(text.split()) for text in texts)
