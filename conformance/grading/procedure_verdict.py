@@ -87,13 +87,17 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
     Returns
     -------
     dict
-        `closest`, `margin`, and `uncertainty` on the scale of the margin; None without a criterion that has a range.
+        `closest`, `margin`, and `uncertainty` on the scale of the margin; None without a criterion that has a range
+        and a value beside its limits.
     """
     counted = [
         (case, row)
         for case, row in criteria
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
-        if row.verdict in ("pass", "fail") and row.margin is not None and row.lower != row.upper
+        if row.verdict in ("pass", "fail")
+        and row.margin is not None
+        and row.lower != row.upper
+        and not _equals_its_limit(row)
     ]
     if not counted:
         return {"closest": None, "margin": None, "uncertainty": None}
@@ -105,6 +109,11 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
         "margin": row.margin,
         "uncertainty": normalise_distance(width, row.lower, row.upper) or None,
     }
+
+
+def _equals_its_limit(row: Criterion) -> bool:
+    """Whether an exact value, such as a declared element length, is the limit itself: it has no margin."""
+    return row.margin == 0 and not row.uncertainty and not row.limit_uncertainty
 
 
 def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence: Sequence[Evidence]) -> ValidityClaim:

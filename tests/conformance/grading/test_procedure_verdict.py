@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.grading.procedure_verdict import decide_procedure, judge_claim, judge_procedure
+from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.procedure_verdict import (
+    decide_procedure,
+    describe_closest,
+    judge_claim,
+    judge_procedure,
+)
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.procedure_format import (
     STEP_NAMES,
     Evidence,
@@ -109,3 +116,13 @@ def test_a_step_for_information_decides_nothing() -> None:
     ]
     assert judge_procedure(steps) == "pass"
     assert judge_procedure(steps[:1]) == "info"
+
+
+def test_an_exact_value_on_its_limit_has_no_margin() -> None:
+    """An element length of 0.5 m as declared is not close to a limit; a smaller or uncertain one is compared."""
+    requirement = Requirement("largest_element_m", LINE, None, None, 0.5, "primary", "dossier", unit="m")
+    exact, smaller = (build_criterion(requirement, value, None, "primary") for value in (0.5, 0.4))
+    assert exact.margin == 0
+    assert describe_closest([(None, exact)])["margin"] is None
+    assert describe_closest([(None, exact), (None, smaller)])["margin"] == pytest.approx(0.2)
+    assert describe_closest([(None, exact.model_copy(update={"uncertainty": 0.01}))])["margin"] == 0
