@@ -51,11 +51,14 @@ def drop_command(
             record = simulation.record
             write(record, path)
             slack = simulation.decay.last_slack
-            droppers = "no slack dropper after the release" if slack is None else f"last slack dropper at {slack:.2f} s"
+            droppers = "no slack dropper" if slack is None else f"last slack dropper {slack:.2f} s"
             files.append(path)
             facts.append({"drop": n, "duration_s": record.duration, "last_slack_s": slack})
             lines.append(
-                indent_text(f"{record.duration:g} s, {len(record.channels)} sensors, {droppers}", f"drop {n}: ")
+                indent_text(
+                    f"{record.duration:g} s, {len(record.channels)} sensors, {droppers} after the release",
+                    f"drop {n}: ",
+                )
             )
     return CommandOutput(escape_text(f"{drop_case.id}: {len(files)} drop(s)"), facts, lines, files=files)
 
