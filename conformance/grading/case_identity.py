@@ -1,6 +1,5 @@
 """Identity of a case: comparison with the library, digest of the limits, changes by a limits file."""
 
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,10 +17,6 @@ from pantocheck.conformance.results.results_format import LibraryIdentity
 _FINDING_TEXTS = {"section", "sentence", "printed", "tolerance", "sensitivity"}
 _REMARKS: dict[str, Any] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
 """Texts of a limit, which do not change its grade."""
-
-_TRUST_RAISED = re.compile(
-    rf"[^:]+: the trust of the limit is raised from ({'|'.join(LEVELS)}) to ({'|'.join(LEVELS)})"
-)
 
 
 def compare_with_library(case: Case) -> LibraryIdentity:
@@ -103,17 +98,6 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     if stated.is_imposed and not limit.is_imposed:
         parts.append("an imposed finding counts")
     return f"{name}: {', and '.join(parts)}" if parts else None
-
-
-def raises_trust_only(change: str) -> bool:
-    """Check that a sentence of `describe_limit_change` states a higher trust of the limit and nothing else.
-
-    Parameters
-    ----------
-    change : str
-        The sentence; a name with a colon is not recognised, so that its change is never played down.
-    """
-    return _TRUST_RAISED.fullmatch(change) is not None
 
 
 def _is_wider(stated: Limit, limit: Limit) -> bool:

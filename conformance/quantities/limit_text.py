@@ -1,5 +1,6 @@
 """Texts of a criterion: the number that a limit applies to, its value, its bounds and its margin."""
 
+import re
 from itertools import combinations
 from typing import NamedTuple
 
@@ -11,6 +12,8 @@ STATED_DIGITS = 5
 
 EXACT_DIGITS = 17
 """Significant digits that distinguish any two numbers."""
+
+_TRUST_RAISED = re.compile(r"[^:]+: the trust of the limit is raised from [a-z]+ to [a-z]+")
 
 
 class GradedText(NamedTuple):
@@ -113,3 +116,14 @@ def _join_bounds(low: str | None, high: str | None) -> str:
     if high is None:
         return f">= {low}"
     return f"= {low}" if low == high else f"{low} to {high}"
+
+
+def raises_trust_only(change: str) -> bool:
+    """Check that a sentence on a changed limit states a higher trust of the limit and nothing else.
+
+    Parameters
+    ----------
+    change : str
+        The sentence; a name with a colon is not recognised, so that its change is never played down.
+    """
+    return _TRUST_RAISED.fullmatch(change) is not None

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.grading.case_identity import raises_trust_only
+from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.reports.words import read_words

@@ -19,8 +19,8 @@ from pantocheck.conformance.grading.case_identity import (
     describe_limit_change,
     limits_digest,
     list_limit_changes,
-    raises_trust_only,
 )
+from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
