@@ -21,6 +21,9 @@ from pantocheck.conformance.quantities.limit_text import format_stated
 from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults
 from pantocheck.conformance.results.results_building import build_suite
 
+SEED = ".seed"
+"""End of the keys of seeds. Their values have no order: runs that differ in them are random designs."""
+
 
 def evaluate_campaign(
     prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding, pairs: Sequence[RunPair] = ()
@@ -39,7 +42,8 @@ def evaluate_campaign(
         Runs beside those of another campaign.
     """
     design = prepared.design
-    grid = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
+    varied = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
+    grid = [key for key in varied if not key.endswith(SEED)]
     sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.ordered_keys]
     values = choose_values(store, prepared.limits)
     columns = read_columns(store, values, design.keys)

@@ -204,6 +204,24 @@ def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
     assert "3 runs: no power" in render_html(build_campaign_report(results.model_dump(mode="json")))
 
 
+def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:
+    """Ten seeds with the forces 1 to 10: their mean is 5.5, and no curve runs over the seed."""
+    droppers = "line.variation.droppers"
+    seeds = {"key": f"{droppers}.seed", "values": list(range(1, 11))}
+    content = {"cases": ["en50318-2002/250"], "set": [f"{droppers}.tolerance_m=0.003"], "vary": [seeds]}
+    prepared = prepare_campaign(CampaignFile.model_validate(content), Path())
+
+    def deliver(run: PlannedRun) -> RunRow:
+        return RunRow(run, {"verdict": "info"}, None, {"1.mean_force_N": float(run.number)}, 0.0)
+
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(prepared.design, deliver, store, ThisProcess(), Execution(), lambda _: None)
+        results = evaluate_campaign(prepared, store, "complete")
+    (statistics,) = results.statistics
+    assert (statistics.runs, statistics.mean.value) == (10, 5.5)
+    assert [chart for chart in results.charts if chart.x_label.endswith("seed")] == []
+
+
 def shift_force(row: RunRow, shift: float, system: str) -> RunRow:
     """The same run on another system, with another mean force."""
     quantities = {name: value + shift for name, value in row.quantities.items()}
