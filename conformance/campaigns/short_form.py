@@ -4,8 +4,11 @@ import re
 import tomllib
 from typing import Any
 
-from pantocheck.conformance.cases.input_changes import parse_value
+from pantocheck.conformance.cases.input_changes import build_change, parse_value
 from pantocheck.conformance.input_files.input_error import InputError
+
+VARY_OPTION = "option --vary"
+"""Option of the command line that varies an input."""
 
 HINT = "Write KEY=START:STOP:STEP or KEY=VALUE,VALUE, e.g. speed_km_h=200:350:10 ."
 
@@ -27,7 +30,7 @@ def parse_variation(text: str) -> dict[str, Any]:
         The text is no variation.
     """
     key, equals, values = (part.strip() for part in text.partition("="))
-    where = f"option --vary {text[:80]!r}"
+    where = f"{VARY_OPTION} {text[:80]!r}"
     if not equals or not key or not values:
         raise InputError(where, "is no variation", HINT)
     if (match := _RANGE.fullmatch(values)) is not None:
@@ -37,3 +40,15 @@ def parse_variation(text: str) -> dict[str, Any]:
         return {"key": key, "values": tomllib.loads(f"values = [{values}]")["values"]}
     except (ValueError, RecursionError):
         return {"key": key, "values": [parse_value(value.strip(), where) for value in values.split(",")]}
+
+
+def check_variation(variation: dict[str, Any]) -> None:
+    """Check the key of a variation of the command line, with its first value.
+
+    Raises
+    ------
+    InputError
+        The key does not exist, or cannot be changed.
+    """
+    values = variation["values"] if "values" in variation else [variation["range"]["start"]]
+    build_change(variation["key"], next(iter(values), None), VARY_OPTION)

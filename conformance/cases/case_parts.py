@@ -23,6 +23,9 @@ from pantocheck.conformance.input_files.toml_file import read_model, read_toml, 
 
 T = TypeVar("T", bound=BaseModel)
 
+OPTION = "option "
+"""Begin of the origin of a change by an option of the command line."""
+
 LONGEST_NAME = 200
 """Largest number of characters of a file name that is looked up in an invalid case file."""
 
@@ -111,11 +114,11 @@ class CaseFiles:
 
     def _read_case(self) -> tuple[CaseFile, tuple[str, ...]]:
         tree, case_changes = change_case(self.tree, self.changes)
-        return validate_model(tree, CaseFile, _name_file("case", self.path, case_changes)), case_changes
+        return validate_model(tree, CaseFile, _name_file("case", self.path, case_changes, self.changes)), case_changes
 
     def _read_line(self, name: str) -> tuple[LineFile, tuple[str, ...]]:
         changes = [change for change in self.changes if change.part == "line"]
-        return _read_changed(_locate(self.path, name, "line"), LineFile, "reference line", changes)
+        return _read_changed(_locate(self.path, name, "line"), LineFile, "line", changes)
 
     def _read_pantograph(self, name: str, index: int) -> tuple[PantographFile, tuple[str, ...]]:
         changes = [c for c in self.changes if c.part == "pantograph" and c.pantograph in (None, index)]
@@ -124,17 +127,22 @@ class CaseFiles:
 
 def _read_pantograph(path: Path, changes: Sequence[InputChange]) -> tuple[PantographFile, tuple[str, ...]]:
     file, descriptions = _read_changed(path, PantographFile, "pantograph", changes)
-    return resolve_rule(file, _name_file("pantograph", path, descriptions)), descriptions
+    return resolve_rule(file, _name_file("pantograph", path, descriptions, changes)), descriptions
 
 
 def _read_changed(path: Path, model: type[T], kind: str, changes: Sequence[InputChange]) -> tuple[T, tuple[str, ...]]:
     """Read a file with changes; the texts describe those that differ from the file."""
     tree, descriptions = change_tree(read_toml(path, kind), model, changes)
-    return validate_model(tree, model, _name_file(kind, path, descriptions)), descriptions
+    return validate_model(tree, model, _name_file(kind, path, descriptions, changes)), descriptions
 
 
-def _name_file(kind: str, path: Path, descriptions: Sequence[str]) -> str:
-    return f"{kind} '{path.name}'" + (f" with --set {'; '.join(descriptions)}" if descriptions else "")
+def _name_file(kind: str, path: Path, descriptions: Sequence[str], changes: Sequence[InputChange]) -> str:
+    """Name of a file in messages, with its changes and the options that state them."""
+    if not descriptions:
+        return f"{kind} '{path.name}'"
+    options = dict.fromkeys(change.origin for change in changes if change.origin.startswith(OPTION))
+    stated = [*(option.removeprefix(OPTION) for option in options), "; ".join(descriptions)]
+    return f"{kind} '{path.name}' with {' '.join(stated)}"
 
 
 def _read_damping(case_path: Path, name: str, key: str) -> Damping:

@@ -138,7 +138,8 @@ def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChan
     everywhere = [
         key for prefix, files in MODELS_BY_PREFIX.items() for model in files for key in list_dotted_keys(model, prefix)
     ]
-    check_path(models, change.path, change.value, change.where, everywhere)
+    prefix = parts[: len(parts) - len(change.path)]
+    check_path(models, change.path, change.value, change.where, everywhere, prefix)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return replace(change, value=[value]) if is_number and holds_list(models, change.path) else change
 

@@ -19,7 +19,7 @@ from pantocheck.conformance.campaigns.evaluation.campaign_columns import choose_
 from pantocheck.conformance.campaigns.evaluation.campaign_comparison import RunPair, pair_runs
 from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
-from pantocheck.conformance.campaigns.short_form import parse_variation
+from pantocheck.conformance.campaigns.short_form import check_variation, parse_variation
 from pantocheck.conformance.command_line.campaign_progress import report_campaign
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
@@ -103,8 +103,11 @@ def campaign_command(
 
     pantocheck campaign en50318-2018/ac-simple/320-twin --vary speed_km_h=200:350:10 --out map
     """
+    variations = [parse_variation(text) for text in vary or ()]
+    for variation in variations:
+        check_variation(variation)
     design: dict[str, object] = {
-        "vary": [parse_variation(text) for text in vary or ()] or None,
+        "vary": variations or None,
         "set": changed,
         "systems": system,
         "limits": None if limits is None else str(limits.resolve()),

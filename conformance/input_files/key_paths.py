@@ -65,7 +65,12 @@ def holds_list(models: Sequence[type[BaseModel]], path: KeyPath) -> bool:
 
 
 def check_path(
-    models: Sequence[type[BaseModel]], path: KeyPath, value: object, where: str, everywhere: list[str]
+    models: Sequence[type[BaseModel]],
+    path: KeyPath,
+    value: object,
+    where: str,
+    everywhere: list[str],
+    prefix: KeyPath = (),
 ) -> None:
     """Check that a key exists.
 
@@ -81,6 +86,8 @@ def check_path(
         Name of the key in messages.
     everywhere : list of str
         Dotted keys of all files, for a suggestion.
+    prefix : KeyPath
+        Path of these tables in the key of the user, for a suggestion.
 
     Raises
     ------
@@ -96,9 +103,14 @@ def check_path(
     above = join_path(path[:found])
     below = [key for model in models for key in list_dotted_keys(model) if key.startswith(above)]
     names = list(dict.fromkeys(key.removeprefix(f"{above}.").partition(".")[0] for key in below))
-    hint = suggest_key(part, value, names) or suggest_names(part, names)
+    hint = suggest_key(part, value, names) or suggest_names(part, names, _begin_key((*prefix, *path[:found])))
     elsewhere = list(dict.fromkeys(key for key in everywhere if f".{key}".endswith("." + join_path(path))))
     raise InputError(where, "unknown key", f"Did you mean {' or '.join(elsewhere)} ?" if elsewhere else hint)
+
+
+def _begin_key(path: KeyPath) -> str:
+    """Begin of the keys in a table; empty for the outermost one."""
+    return f"{join_path(path)}." if path else ""
 
 
 def follow_path(tree: dict[str, Any], path: KeyPath, where: str) -> tuple[Any, str | int, Any]:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 
 
-def suggest_names(name: str, known: Sequence[str]) -> str:
-    """Sentence with the known names that resemble an unknown name, or with the first known names."""
+def suggest_names(name: str, known: Sequence[str], prefix: str = "") -> str:
+    """Sentence with the known names that resemble an unknown name, behind a prefix, or with the first known names."""
     # Users often write the last part of an id only.
     tails = {item.rsplit("/", 1)[-1]: item for item in known}
     lowered = {item.lower(): item for item in known}
@@ -17,7 +17,7 @@ def suggest_names(name: str, known: Sequence[str]) -> str:
     if not close and name in tails:
         close = [tails[name]]
     if close:
-        return f"Did you mean {' or '.join(close)} ?"
+        return f"Did you mean {' or '.join(prefix + item for item in close)} ?"
     if not known:
         return "None are known."
     return f"Known are: {', '.join(known[:12])}{', ...' if len(known) > 12 else ''}"

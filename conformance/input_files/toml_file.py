@@ -35,7 +35,7 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
     model : type of BaseModel
         Required structure.
     kind : str
-        Name of its kind in messages, e.g. `reference line`.
+        Name of its kind in messages, e.g. `line`.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
     model : type of BaseModel
         Required structure.
     where : str
-        Name of the file in messages, e.g. `reference line 'line.toml'`.
+        Name of the file in messages, e.g. `line 'line.toml'`.
 
     Returns
     -------

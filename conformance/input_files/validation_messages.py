@@ -56,7 +56,7 @@ def build_input_error(error: ValidationError, model: type[BaseModel], where: str
     model : type of BaseModel
         Model that was validated.
     where : str
-        Name of the file in messages, e.g. `reference line 'my-line.toml'`.
+        Name of the file in messages, e.g. `line 'my-line.toml'`.
     tree : object
         Content of the file; a table of a list that states its number is named by it.
 

@@ -17,7 +17,7 @@ from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
 from pantocheck.conformance.campaigns.distributions import TruncatedNormal
-from pantocheck.conformance.campaigns.short_form import parse_variation
+from pantocheck.conformance.campaigns.short_form import check_variation, parse_variation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import validate_model
 
@@ -172,6 +172,26 @@ def test_single_invalid_design_is_accepted() -> None:
 )
 def test_values_of_the_short_form(text: str, values: list[Any]) -> None:
     assert parse_variation(text) == {"key": "a", "values": values}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("line.dropper.x_m=1,2", "option --vary, key line.dropper.x_m: unknown key.\n  Did you mean line.droppers ?"),
+        ("speed=200:300:50", "option --vary, key speed: unknown key.\n  Speeds are given in"),
+        ("title=a,b", "option --vary, key title: cannot be changed"),
+    ],
+)
+def test_wrong_key_of_the_short_form_names_its_option(text: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        check_variation(parse_variation(text))
+    assert message in str(caught.value)
+
+
+def test_wrong_value_names_the_line_and_the_input() -> None:
+    with pytest.raises(InputError) as caught:
+        list_runs(vary=[parse_variation("line.contact_wire.tension_N=-1,-2")])
+    assert str(caught.value).startswith("line 'line.toml' with line.contact_wire.tension_N = -1 (file: ")
 
 
 def test_campaign_of_the_documentation_is_valid(tmp_path: Path) -> None:

@@ -57,9 +57,9 @@ def test_text_of_the_error_has_one_message_per_problem(edited_case: EditedCase) 
     with pytest.raises(InputError) as caught:
         load_case(path)
     assert str(caught.value) == (
-        "reference line 'line.toml', key contact_wire.mass_kg_m: 500 must be at most 10.0.\n"
+        "line 'line.toml', key contact_wire.mass_kg_m: 500 must be at most 10.0.\n"
         "  It is: mass per length of one wire [kg/m]. Allowed: a number at least 0.02, at most 10.\n"
-        "reference line 'line.toml', key droppers.x_m[9]: 65 m is not inside the span of 60 m.\n"
+        "line 'line.toml', key droppers.x_m[9]: 65 m is not inside the span of 60 m.\n"
         "  Give positions between 0 and 60 m, from the start of the span."
     )
 

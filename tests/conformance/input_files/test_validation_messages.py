@@ -21,7 +21,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             {"contact_wire.tension_N": None, "contact_wire.tension_kN": 20},
             (
-                "reference line 'line.toml', key contact_wire.tension_kN: unknown key.\n"
+                "line 'line.toml', key contact_wire.tension_kN: unknown key.\n"
                 "  Forces are given in newtons: did you mean tension_N = 20000.0 ?"
             ),
         ),
@@ -29,7 +29,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             {"contact_wire.mass_kg_m": None, "contact_wire.mass_g_m": 1350.0},
             (
-                "reference line 'line.toml', key contact_wire.mass_g_m: unknown key.\n"
+                "line 'line.toml', key contact_wire.mass_g_m: unknown key.\n"
                 "  Masses per length are given in kilograms per metre: did you mean mass_kg_m = 1.35 ?"
             ),
         ),
@@ -37,27 +37,24 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
             LINE,
             {"droppers.x_m": None, "droppers.x_mm": [5000.0, 10.5]},
             (
-                "reference line 'line.toml', key droppers.x_mm: unknown key.\n"
+                "line 'line.toml', key droppers.x_mm: unknown key.\n"
                 "  Lengths are given in metres: did you mean x_m = [5.0, 0.0105] ?"
             ),
         ),
         (
             LINE,
             {"contact_wire.tension_N": None, "contact_wire.tenson_N": 20e3},
-            ("reference line 'line.toml', key contact_wire.tenson_N: unknown key.\n  Did you mean tension_N ?"),
+            ("line 'line.toml', key contact_wire.tenson_N: unknown key.\n  Did you mean tension_N ?"),
         ),
         (
             LINE,
             {"contact_wire.tension_N": None},
-            (
-                "reference line 'line.toml', key contact_wire.tension_N: missing.\n"
-                "  It is: axial tension of one wire [N]."
-            ),
+            ("line 'line.toml', key contact_wire.tension_N: missing.\n  It is: axial tension of one wire [N]."),
         ),
         (
             LINE,
             {"messenger_support": None, "messenger_suport": {"stiffness_N_m": 5e4}},
-            ("reference line 'line.toml', key messenger_suport: unknown key.\n  Did you mean messenger_support ?"),
+            ("line 'line.toml', key messenger_suport: unknown key.\n  Did you mean messenger_support ?"),
         ),
         (
             PANTOGRAPH,
@@ -80,55 +77,52 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (
             LINE,
             {"contact_wire.mass_kg_m": math.nan},
-            ("reference line 'line.toml', key contact_wire.mass_kg_m: nan is not a finite number."),
+            ("line 'line.toml', key contact_wire.mass_kg_m: nan is not a finite number."),
         ),
         (
             LINE,
             {"contact_wire.mass_kg_m": -math.inf},
-            ("reference line 'line.toml', key contact_wire.mass_kg_m: -inf is not a finite number."),
+            ("line 'line.toml', key contact_wire.mass_kg_m: -inf is not a finite number."),
         ),
         (
             LINE,
             {"contact_wire.mass_kg_m": "1.35"},
-            ("reference line 'line.toml', key contact_wire.mass_kg_m: found '1.35', expected a number."),
+            ("line 'line.toml', key contact_wire.mass_kg_m: found '1.35', expected a number."),
         ),
         (
             LINE,
             {"droppers.x_m.8": 65.0},
-            ("reference line 'line.toml', key droppers.x_m[9]: 65 m is not inside the span of 60 m."),
+            ("line 'line.toml', key droppers.x_m[9]: 65 m is not inside the span of 60 m."),
         ),
         (
             LINE,
             {"droppers.x_m.1": 17.0, "droppers.x_m.2": 10.5},
-            ("reference line 'line.toml', key droppers.x_m[3]: 10.5 m is not greater than the preceding 17 m."),
+            ("line 'line.toml', key droppers.x_m[3]: 10.5 m is not greater than the preceding 17 m."),
         ),
         (
             LINE,
             {"droppers.presag_m": [0.0] * 8},
-            ("reference line 'line.toml', key droppers.presag_m: 8 values for 9 droppers."),
+            ("line 'line.toml', key droppers.presag_m: 8 values for 9 droppers."),
         ),
         (
             LINE,
             {"droppers.axial_stiffness_EA_N": 2e5},
-            (
-                "reference line 'line.toml', key droppers.stiffness_N_m: "
-                "the stiffness of the droppers is missing or given twice."
-            ),
+            ("line 'line.toml', key droppers.stiffness_N_m: the stiffness of the droppers is missing or given twice."),
         ),
         (
             LINE,
             {"geometry.spans": 10_000_000},
-            ("reference line 'line.toml', key geometry.spans: 10000000 must be at most 1000."),
+            ("line 'line.toml', key geometry.spans: 10000000 must be at most 1000."),
         ),
         (
             LINE,
             {"geometry.span_m": 60000.0},
-            ("reference line 'line.toml', key geometry.span_m: 60000 must be at most 120.0."),
+            ("line 'line.toml', key geometry.span_m: 60000 must be at most 120.0."),
         ),
         (
             LINE,
             {"steady_arm.provisional": ["statics"]},
-            ("reference line 'line.toml', key steady_arm.provisional: 'statics' is not a key of this table."),
+            ("line 'line.toml', key steady_arm.provisional: 'statics' is not a key of this table."),
         ),
         (
             CASE,

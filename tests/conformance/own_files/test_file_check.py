@@ -125,8 +125,8 @@ def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> 
     assert [line.partition(":")[0] for line in messages[::2]] == [
         "case '250.toml', key speed_km_h",
         "case '250.toml', key filter.order",
-        "reference line 'line.toml', key geometry.span_m",
-        "reference line 'line.toml', key messenger_wire.number",
+        "line 'line.toml', key geometry.span_m",
+        "line 'line.toml', key messenger_wire.number",
         "pantograph 'pantograph.toml', key chain.masses_kg[1]",
     ]
 
