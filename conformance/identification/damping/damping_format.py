@@ -160,6 +160,14 @@ class ModelComparison(RoundedModel):
     models: Annotated[dict[str, tuple[Rounded, ...]], Field(description="damping ratios by name of the model")]
 
 
+class StatedDamping(RoundedModel):
+    """Rayleigh damping of a kind of component that is not fitted, as the line states it."""
+
+    kind: str
+    stiffness_coefficient_s: Rounded
+    mass_coefficient_1_s: Rounded
+
+
 class DampingResults(RoundedModel):
     """Content of damping.json."""
 
@@ -172,6 +180,10 @@ class DampingResults(RoundedModel):
     matching: Matching
     residual: Annotated[Rounded, Field(description="RMS of (measured - fitted) / measured, all modes of the fit [-]")]
     coefficients: tuple[Coefficient, ...]
+    stated: Annotated[
+        tuple[StatedDamping, ...],
+        Field(description="damping of other components, as the line of the fit states it"),
+    ] = ()
     modal: Annotated[tuple[MeasuredBand, ...], Field(description="frequency bands of the first groups of span modes")]
     observability: tuple[Observability, ...]
     thresholds: Thresholds

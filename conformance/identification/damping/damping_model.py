@@ -1,6 +1,7 @@
 """Fit of piecewise Rayleigh damping to measured damping ratios.
 
 The damping ratios are linear functions of the coefficients (see `damping_terms`), and no coefficient is negative.
+The damping of all components but the wires is that of the line; its share of the measured ratios is subtracted.
 The fit is a non-negative least-squares problem.
 
 References
@@ -112,16 +113,16 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
             f"Identify at least {len(terms) + 1} modes, or name the line of the record with --line.",
         )
     columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
-    target, std = measured.damping_ratio, fit_deviation(measured)
+    target, std = measured.damping_ratio - basis.stated, fit_deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
     for _ in range(3):
         values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
         used = _near_their_group(target - columns @ values, std, measured.group)
     # The last fit uses the final set of modes.
     values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
-    predicted = columns @ values
-    low_95, high_95 = _confidence_intervals(columns, measured, std, used)
-    relative = (target - predicted) / target
+    predicted = basis.stated + columns @ values
+    low_95, high_95 = _confidence_intervals(columns, target, measured, used)
+    relative = (measured.damping_ratio - predicted) / measured.damping_ratio
     coefficients = tuple(
         Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(lower), high_95=float(upper))
         for (kind, matrix), value, lower, upper in zip(terms, values, low_95, high_95, strict=True)
@@ -161,11 +162,11 @@ def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) 
 
 
 def _confidence_intervals(
-    columns: RealArray, measured: MeasuredModes, std: RealArray, used: NDArray[np.bool_]
+    columns: RealArray, target: RealArray, measured: MeasuredModes, used: NDArray[np.bool_]
 ) -> tuple[RealArray, RealArray]:
     """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
     random = np.random.default_rng(20150817)
-    target, noise, group = measured.damping_ratio, measured.std, measured.group
+    std, noise, group = fit_deviation(measured), measured.std, measured.group
     group_members = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
     group_members = [members for members in group_members if members.size]
     replicates = np.empty((FIT_REPLICATES, columns.shape[1]))

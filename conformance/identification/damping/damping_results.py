@@ -14,6 +14,7 @@ from pantocheck.conformance.identification.damping.damping_format import (
     MeasuredRatios,
     ModelComparison,
     PairedMode,
+    StatedDamping,
 )
 from pantocheck.conformance.identification.damping.damping_model import (
     MODAL_GROUPS,
@@ -21,7 +22,11 @@ from pantocheck.conformance.identification.damping.damping_model import (
     fit_damping_model,
     fit_modal_bands,
 )
-from pantocheck.conformance.identification.damping.damping_terms import DampingBasis, build_damping_basis
+from pantocheck.conformance.identification.damping.damping_terms import (
+    DampingBasis,
+    build_damping_basis,
+    list_other_damping,
+)
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.identification.damping.mode_matching import MatchedModes, match_modes, select_usable
 from pantocheck.conformance.identification.damping.observability import (
@@ -31,8 +36,9 @@ from pantocheck.conformance.identification.damping.observability import (
 )
 from pantocheck.conformance.identification.damping.paired_shapes import list_paired_shapes
 from pantocheck.conformance.identification.mode import Mode
-from pantocheck.model import Catenary
+from pantocheck.model import Catenary, Rayleigh
 from pantocheck.model.catenary import ModalBand
+from pantocheck.model.discretised_line import with_damping
 from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import component_energies, damping_ratios
 
@@ -43,6 +49,10 @@ COEFFICIENTS_OF_WIRES: dict[WireCoefficients, Callable[[DampingBasis], DampingBa
     "common": DampingBasis.join_wires,
 }
 """Basis of the fit: each wire with its own coefficients, or both with the same."""
+
+
+NOTICEABLE_SHARE = 0.01
+"""Share of the measured damping by other components from which the fit warns: the error of the line model."""
 
 
 @dataclass(frozen=True)
@@ -94,16 +104,22 @@ def build_damping_results(
     matched = match_modes(usable, line, element, source)
     measured, shapes = matched.measured, matched.shapes
     energies = component_energies(matched.mesh, shapes)
-    basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies))
+    stated = damping_ratios(with_damping(matched.mesh, list_other_damping(line)), shapes)
+    basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies, stated))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
     fit = fit_damping_model(paired_basis, measured)
     observability = tuple(row for row in compute_observability(paired_basis, measured, fit) if row.largest_share > 0)
     coefficients = judge_coefficients(fit.coefficients, observability, matched.matching)
     bands = fit_modal_bands(measured, options.modal_groups)
-    rayleigh = basis.ratios @ np.array([fit.values.get(term, 0.0) for term in basis.terms])
+    rayleigh = basis.stated + basis.ratios @ np.array([fit.values.get(term, 0.0) for term in basis.terms])
     return DampingResults(
         modes_file=source,
-        warnings=(*warn_about_line(comparison), *_warn_about_coefficients(coefficients)),
+        warnings=(
+            *warn_about_line(comparison),
+            *_warn_about_stated(paired_basis.stated / measured.damping_ratio),
+            *_warn_about_coefficients(coefficients),
+        ),
+        stated=_list_stated(line),
         line=comparison,
         matching=matched.matching,
         residual=fit.residual,
@@ -152,6 +168,30 @@ def _compare_models(matched: MatchedModes, rayleigh: RealArray, bands: tuple[Mod
             "Rayleigh + modal": tuple(apply_modal_bands(rayleigh, shapes.frequency, bands)),
         },
     )
+
+
+def _list_stated(line: Catenary) -> tuple[StatedDamping, ...]:
+    """Damping of the components that are not fitted, as the line states it."""
+    return tuple(
+        StatedDamping(
+            kind=kind.value,
+            stiffness_coefficient_s=rayleigh.stiffness_coefficient,
+            mass_coefficient_1_s=rayleigh.mass_coefficient,
+        )
+        for kind, rayleigh in list_other_damping(line).items()
+        if rayleigh != Rayleigh()
+    )
+
+
+def _warn_about_stated(share: RealArray) -> list[str]:
+    """Warning where the stated damping of other components is a noticeable part of the measured damping ratios."""
+    if share.max(initial=0.0) < NOTICEABLE_SHARE:
+        return []
+    return [
+        "Droppers, steady arms and supports have the damping that the line states, which gives "
+        f"{100 * np.median(share):.2g} % of the measured damping ratios (median; largest {100 * share.max():.2g} %). "
+        "The errors of the coefficients can exceed their intervals if that damping is wrong."
+    ]
 
 
 def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:

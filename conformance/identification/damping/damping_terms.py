@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
-from pantocheck.model import Kind
+from pantocheck.model import Catenary, Kind, Rayleigh
 from pantocheck.model.modal.modes import ComponentEnergies
 
 Term = tuple[str, str]
@@ -50,6 +50,11 @@ JOINED_WIRES = "wires"
 """Name of the wires with common coefficients."""
 
 
+def list_other_damping(line: Catenary) -> dict[Kind, Rayleigh]:
+    """Rayleigh damping that a line states for the components that are not fitted."""
+    return {kind: line.rayleigh(kind) for kind in Kind if kind not in WIRES}
+
+
 @dataclass(frozen=True)
 class DampingBasis:
     """Damping ratios of the modes per unit of each coefficient.
@@ -60,14 +65,17 @@ class DampingBasis:
         Kind and matrix of each of the t coefficients.
     ratios : (m, t) ndarray
         Damping ratio per unit of the coefficient [1/s] for stiffness, [s] for mass.
+    stated : (m,) ndarray
+        Damping ratio by the components that are not fitted, whose damping the line states [-].
     """
 
     terms: tuple[Term, ...]
     ratios: RealArray
+    stated: RealArray
 
     def select_modes(self, modes: IntegerArray) -> "DampingBasis":
         """Basis of selected modes, by index."""
-        return DampingBasis(self.terms, self.ratios[modes])
+        return DampingBasis(self.terms, self.ratios[modes], self.stated[modes])
 
     def join_wires(self) -> "DampingBasis":
         """Basis in which the wires of `WIRES` share their coefficients, as terms of the kind `JOINED_WIRES`."""
@@ -76,11 +84,11 @@ class DampingBasis:
             self.ratios[:, [self.terms.index((wire, matrix)) for wire in WIRES]].sum(axis=1) for matrix in MATRICES
         ]
         terms = (*((JOINED_WIRES, matrix) for matrix in MATRICES), *(self.terms[i] for i in others))
-        return DampingBasis(terms, np.column_stack([*shared, self.ratios[:, others]]))
+        return DampingBasis(terms, np.column_stack([*shared, self.ratios[:, others]]), self.stated)
 
 
-def build_damping_basis(frequency: RealArray, energies: ComponentEnergies) -> DampingBasis:
-    """Build the basis from the frequencies [Hz] and the energies of the modes."""
+def build_damping_basis(frequency: RealArray, energies: ComponentEnergies, stated: RealArray) -> DampingBasis:
+    """Build the basis from the frequencies [Hz], the energies and the stated damping ratios of the modes."""
     terms = tuple((str(kind), matrix) for kind in energies.kinds for matrix in MATRICES)
     both = np.stack([energies.stiffness, energies.mass], axis=2).reshape(frequency.size, -1)
-    return DampingBasis(terms, np.asarray(both / (4 * np.pi * frequency[:, None])))
+    return DampingBasis(terms, np.asarray(both / (4 * np.pi * frequency[:, None])), stated)

@@ -44,6 +44,12 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
                 tables.setdefault(table, {})[key] = c.value
             else:
                 comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
+    for other in results.stated:
+        tables[TABLE_OF_KIND[Kind(other.kind)]] = {
+            MATRICES[matrix].key: value
+            for matrix, value in (("stiffness", other.stiffness_coefficient_s), ("mass", other.mass_coefficient_1_s))
+        }
+        comments.append(f"{TABLE_OF_KIND[Kind(other.kind)]}: as the line states it, not fitted")
     if any(not c.determined for c in results.coefficients):
         comments.append("In a simulation, a coefficient that is left out counts as 0.")
     if results.warnings:

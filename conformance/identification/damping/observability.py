@@ -90,9 +90,12 @@ def judge_coefficients(
 def residual_without_term(basis: DampingBasis, measured: MeasuredModes, fit: DampingFit, left_out: Term) -> float:
     """Root mean square of the relative residual of a fit without one coefficient, over the modes in the fit [-]."""
     kept = [basis.terms.index(term) for term in fit.values if term != left_out]
-    target, weight = measured.damping_ratio, fit_weights(fit_deviation(measured), measured.group, fit.used)
+    target, weight = (
+        measured.damping_ratio - basis.stated,
+        fit_weights(fit_deviation(measured), measured.group, fit.used),
+    )
     values = solve_weighted(basis.ratios[:, kept], target, weight)
-    relative = (target - basis.ratios[:, kept] @ values) / target
+    relative = (target - basis.ratios[:, kept] @ values) / measured.damping_ratio
     return float(np.sqrt(np.mean(relative[fit.used] ** 2)))
 
 
