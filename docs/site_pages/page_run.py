@@ -151,26 +151,38 @@ def copy_repository(root: Path) -> None:
 
 
 def compare_output(block: Block, output: str) -> None:
-    """Compare the lines of a block with an output; every line must occur, in the order of the block."""
-    printed = iter(output.splitlines())
+    """Compare the lines of a block with an output; every line must occur, in the order of the block.
+
+    The output is compared word by word, because the program wraps its lines at the width of the terminal.
+    """
+    printed, start = output.split(), 0
     for line in block.text.splitlines():
         if line.strip() in ("", "..."):
             continue
-        if not any(is_same_line(line, candidate) for candidate in printed):
+        end = find_words(line.split(), printed, start)
+        if end is None:
             raise BlockFault(f"{block.page.name}:{block.line}: this line is not printed here: {line}\n{output}")
+        start = end
 
 
-def is_same_line(shown: str, printed: str) -> bool:
-    """Whether two lines have the same words; `...` is any text, and numbers may differ by a unit of the last digit."""
+def find_words(shown: list[str], printed: list[str], start: int) -> int | None:
+    """Index behind the first place of words at or after a start; `...` is any text, also of several words."""
     if "..." in shown:
-        return re.fullmatch(".*".join(map(re.escape, shown.split("..."))), printed) is not None
-    first, second = shown.split(), printed.split()
-    return len(first) == len(second) and all(map(_is_same_word, first, second))
+        gap = shown.index("...")
+        end = find_words(shown[:gap], printed, start)
+        return None if end is None else find_words(shown[gap + 1 :], printed, end)
+    for first in range(start, len(printed) - len(shown) + 1):
+        if all(map(_is_same_word, shown, printed[first:])):
+            return first + len(shown)
+    return None
 
 
 def _is_same_word(shown: str, printed: str) -> bool:
+    """Whether two words are the same; numbers may differ by a unit of the last digit, and `...` is any text."""
     if shown == printed:
         return True
+    if "..." in shown:
+        return re.fullmatch(".*".join(map(re.escape, shown.split("..."))), printed) is not None
     if NUMBER.sub("#", shown) != NUMBER.sub("#", printed):
         return False
     pairs = zip(NUMBER.finditer(shown), NUMBER.finditer(printed), strict=True)
