@@ -118,7 +118,7 @@ def spread_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimi
     """Give every pantograph of a train its own copy of each limit that names no pantograph.
 
     A limit that names its pantograph takes precedence. Without copies, a limit would judge the first pantograph alone,
-    although the trailing one usually has the larger standard deviation.
+    although the rear one usually has the larger standard deviation.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def draw_contact_force(target: Path) -> None:
     for pantograph, style in ((1, {"color": "#1b4f72"}), (2, {"color": "#c0392b", "linestyle": "--"})):
         signals = run.signals(pantograph)
         deviation = run.quantity("std_force_N", pantograph)
-        label = f"{('leading', 'trailing')[pantograph - 1]} pantograph, standard deviation {deviation:.1f} N"
+        label = f"{('leading', 'rear')[pantograph - 1]} pantograph, standard deviation {deviation:.1f} N"
         axes.plot(signals["position_m"][::4], signals["force_20_N"][::4], linewidth=1.1, label=label, **style)
     start = float(run.signals(1)["position_m"].min())
     axes.set(xlabel="position along the track [m]", ylabel="contact force [N]", xlim=(start, start + LENGTH_M))
