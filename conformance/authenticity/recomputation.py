@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.authenticity.baseline_check import check_baseline, list_graded
 from pantocheck.conformance.authenticity.procedure_check import check_procedure
 from pantocheck.conformance.authenticity.reported_numbers import EXACT, format_exact, same_number, select_item
 from pantocheck.conformance.authenticity.trace_check import check_trace, check_uplift
@@ -43,6 +44,7 @@ def find_discrepancies(results: dict[str, Any]) -> list[str]:
     ]
     pairs.append(("", stated.verdict, decided.verdict))
     pairs.append(("verification: ", stated.verification_verdict, decided.verification_verdict))
+    pairs.append(("baseline: ", stated.baseline_verdict, decided.baseline_verdict))
     if stated.criteria_verdict is not None:  # null: made by a version without a second verdict
         pairs.append(("EN 50318 criteria: ", stated.criteria_verdict, decided.criteria_verdict))
     findings = count_findings(row.finding for case in stated.cases for row in case.criteria)
@@ -64,9 +66,11 @@ def _check_case(case: dict[str, Any], trust: Any) -> Iterator[str]:
     stated, verification = case["criteria_verdict"] or case["verdict"], case["verification"]
     yield from (f"{case['id']}, {text}" for text in check_combination(case))
     record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
-    ungraded = not case["criteria"] and case["reason"] and stated in ("skip", "error")
+    graded = list_graded(case)
+    ungraded = not graded and case["reason"] and stated in ("skip", "error")
     yield from _check_criteria(case, case["criteria"], trust)
-    verdict = judge_case((row["verdict"] for row in case["criteria"]), record)
+    yield from (f"{case['id']}: {text}" for text in check_baseline(case))
+    verdict = judge_case((row["verdict"] for row in graded), record)
     if stated != verdict and not ungraded:
         yield f"{case['id']}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
     if verification is not None:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 from pantocheck.conformance.authenticity.reported_numbers import same_number, select_item
-from pantocheck.conformance.results.criterion_format import ComponentName
+from pantocheck.conformance.results.criterion_format import ComponentName, is_drift
 
 
 def check_components(
@@ -27,7 +27,7 @@ def check_components(
     str
         One line if they differ.
     """
-    if row["baseline"] is not None or (row["lower"] is None and row["upper"] is None):
+    if is_drift(row) or (row["lower"] is None and row["upper"] is None):
         return
     reported = components.get(str(row["pantograph"]), {}).get(row["quantity"], {})
     listed = {name: select_item(width, row["item"]) for name, width in reported.items() if name in names}

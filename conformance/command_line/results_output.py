@@ -21,6 +21,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
 from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.scope_page import describe_changes
+from pantocheck.conformance.reports.certificate.two_verdicts import describe_comparison
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.criterion_format import Criterion
@@ -89,8 +90,9 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
     warnings = (f"warning: {warning}" for warning in case.warnings if warning not in footnotes)
     for line in filter(None, [case.reason, record, *changes, *warnings]):
         yield indent_text(line)
-    yield from _list_criteria(case.criteria)
-    if not case.criteria:
+    criteria = [item for item in case.criteria if case.baseline is None or not item.is_drift]
+    yield from _list_criteria(criteria)
+    if not criteria:
         table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities))
         yield from [table] if table.row_count else []
     if case.verification is not None:
@@ -98,6 +100,10 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         if case.verification.reason and not case.reason:
             yield indent_text(case.verification.reason)
         yield from _list_criteria(case.verification.criteria)
+    if case.baseline is not None:
+        yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
+        yield indent_text(describe_comparison(case.baseline.model_dump()))
+        yield from _list_criteria([item for item in case.criteria if item.is_drift])
 
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:
@@ -136,7 +142,7 @@ def _build_criterion_table(criteria: Sequence[Criterion]) -> FittedTable:
             "limits": texts.bounds,
             "margin": "-" if item.margin is None else format_margin(item.margin),
             "verdict": style_verdict(item.verdict),
-            "trust": item.trust,
+            "trust": item.trust or "-",
         }
         table.add_row(*(cells[heading] for heading in headings))
     return table

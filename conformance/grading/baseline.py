@@ -1,18 +1,20 @@
-"""Baseline: a value that drifts from earlier results fails, independent of its limits."""
+"""Baseline: a value that drifts from earlier results fails, independent of its limits, by a verdict of its own."""
 
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
+from pantocheck.conformance.grading.case_verdict import judge_baseline, read_participation
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.criterion_format import BASELINE, Criterion
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.results.scope import build_scope
 
 SMALLEST_SCALE = 1.0
 """Smallest reference of a relative drift, in the unit of the value: near zero, a percentage has no meaning."""
@@ -61,7 +63,8 @@ def read_baseline(path: Path) -> Results:
 def compare_with_baseline(results: Results, baseline: Results, drift_pct: float, name: str) -> Results:
     """Add a failed criterion for each value that has drifted from its baseline.
 
-    A value of the baseline that is no longer delivered becomes a skipped criterion, so that its loss is noticed.
+    A value of the baseline that is no longer delivered becomes a skipped criterion, so that its loss is noticed. These
+    criteria give a verdict of their own; they do not belong to the EN 50318 criteria.
 
     Parameters
     ----------
@@ -76,16 +79,18 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compare_case(case, earlier.get(case.id), drift_pct, name) for case in results.cases]
-    return read_participation(results).decide_run(results.model_copy(update={"cases": cases}))
+    decided = read_participation(results).decide_run(results.model_copy(update={"cases": cases}))
+    return decided.model_copy(update={"scope": build_scope(decided.cases)})
 
 
 def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float, name: str) -> CaseResult:
     if not case.quantities:
         return case  # skipped or in error as a whole
     if earlier is None:
-        return _skip_comparison(case, f"baseline {name} has no case {case.id}")
+        return _skip_comparison(case, f"baseline {name} has no case {case.id}", drift_pct, name)
     if not earlier.quantities:
-        return _skip_comparison(case, f"baseline {name} has no values of this case: its verdict was {earlier.verdict}")
+        reason = f"baseline {name} has no values of this case: its verdict was {earlier.verdict}"
+        return _skip_comparison(case, reason, drift_pct, name)
     values, earlier_values = dict(_numbers(case)), dict(_numbers(earlier))
     source = f"baseline {name}, allowed drift {drift_pct:g} %"
     graded = (_grade_drift(case, key, (old, values.get(key)), drift_pct, source) for key, old in earlier_values.items())
@@ -94,9 +99,11 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
         f"Compared with baseline {name}: {len(earlier_values)} values, of which {len(drifted)} drifted by more than "
         f"{drift_pct:g} % or are missing."
     )
+    sizes = (len(earlier_values), len(drifted))
     if changes := _list_changes(case, earlier):
         drifted.append(_skipped_comparison(f"baseline {name} has other {' and '.join(changes)}; renew the baseline"))
-    return _add_criteria(case, drifted).model_copy(update={"notes": [*case.notes, note]})
+    compared = _add_criteria(case, drifted, sizes, drift_pct, name)
+    return compared.model_copy(update={"notes": [*case.notes, note]})
 
 
 def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
@@ -116,20 +123,29 @@ def _verification_digest(case: CaseResult) -> str | None:
 
 def _skipped_comparison(reason: str) -> Criterion:
     """Skipped criterion, without which a case could pass by the baseline of another one."""
-    requirement = Requirement(BASELINE, LINE, None, None, None, "primary", "baseline")
+    requirement = Requirement(BASELINE, LINE, None, None, None, None, "baseline")
     return build_criterion(requirement, None, reason, "primary")
 
 
-def _skip_comparison(case: CaseResult, reason: str) -> CaseResult:
+def _skip_comparison(case: CaseResult, reason: str, drift_pct: float, name: str) -> CaseResult:
     """Case with a skipped criterion in place of the comparison."""
-    return _add_criteria(case, [_skipped_comparison(reason)])
+    return _add_criteria(case, [_skipped_comparison(reason)], (0, 0), drift_pct, name)
 
 
-def _add_criteria(case: CaseResult, added: Sequence[Criterion]) -> CaseResult:
-    """Case with further criteria and the verdict that follows from all of them."""
-    criteria = [*case.criteria, *added]
-    verdict = judge_case((criterion.verdict for criterion in criteria), case.record)
-    return case.model_copy(update={"criteria": criteria, "criteria_verdict": verdict})
+def _add_criteria(
+    case: CaseResult, added: Sequence[Criterion], sizes: tuple[int, int], drift_pct: float, name: str
+) -> CaseResult:
+    """Case with criteria of drift, (compared, drifted) values, and the verdict that follows; others stay."""
+    values, drifted = sizes
+    verdict = judge_baseline((criterion.verdict for criterion in added), values)
+    comparison = BaselineComparison(verdict=verdict, name=name, drift_pct=drift_pct, values=values, drifted=drifted)
+    return case.model_copy(
+        update={
+            "criteria": [*case.criteria, *added],
+            "criteria_verdict": case.criteria_verdict or case.verdict,
+            "baseline": comparison,
+        }
+    )
 
 
 def _numbers(case: CaseResult) -> Iterator[tuple[_Key, float]]:
@@ -146,21 +162,34 @@ def _round_limit(limit: float, allowed: float) -> float:
     return round(limit, 3 - math.floor(math.log10(allowed))) if allowed > 0 else limit
 
 
+def bound_drift(quantity: str, earlier: float, drift_pct: float) -> tuple[float, float]:
+    """Bounds of a value that has not drifted from its earlier value, in the unit of the quantity."""
+    allowed = drift_pct / 100 * _scale(quantity, earlier)
+    return _round_limit(earlier - allowed, allowed), _round_limit(earlier + allowed, allowed)
+
+
+def _scale(quantity: str, earlier: float) -> float:
+    """Reference of a relative drift."""
+    return max(abs(earlier), SMALLEST_SCALE if _unit(quantity) else SMALLEST_RATIO_SCALE)
+
+
+def _unit(quantity: str) -> str:
+    return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
+
+
 def _grade_drift(
     case: CaseResult, key: _Key, values: tuple[float, float | None], drift_pct: float, source: str
 ) -> Criterion:
     """Grade a value (earlier, now) by the drift from its earlier value."""
     earlier, now = values
-    unit = QUANTITIES[key.quantity].unit if key.quantity in QUANTITIES else ""
-    scale = max(abs(earlier), SMALLEST_SCALE if unit else SMALLEST_RATIO_SCALE)
-    allowed = drift_pct / 100 * scale
-    lower, upper = (_round_limit(earlier + side * allowed, allowed) for side in (-1, 1))
-    requirement = Requirement(key.quantity, int(key.owner), key.item, lower, upper, "primary", source)
+    unit = _unit(key.quantity)
+    lower, upper = bound_drift(key.quantity, earlier, drift_pct)
+    requirement = Requirement(key.quantity, int(key.owner), key.item, lower, upper, None, source, baseline=earlier)
     if now is None:
         missing = case.skipped.get(key.owner, {}).get(key.quantity, "the system no longer delivers it")
         reason = f"the baseline has {earlier:.6g} {unit}".rstrip() + f"; now: {missing}"
     else:
-        drift = 100 * (now - earlier) / scale
+        drift = 100 * (now - earlier) / _scale(key.quantity, earlier)
         reason = f"drifted by {drift:+.3g} % from the baseline of {earlier:.6g} {unit}".rstrip()
     criterion = build_criterion(requirement, now, reason, "primary")
-    return criterion.model_copy(update={"reason": reason, "baseline": earlier})
+    return criterion.model_copy(update={"reason": reason})

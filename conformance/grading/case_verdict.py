@@ -33,6 +33,19 @@ def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdi
     return "unverified" if verdict == "pass" and lowered else verdict
 
 
+def judge_baseline(drifts: Iterable[Verdict], values: int) -> Verdict:
+    """Verdict of a case by its baseline: the worst of the criteria of drift; `info` if no value was compared.
+
+    Parameters
+    ----------
+    drifts : iterable of Verdict
+        Verdicts of the values that drifted or are missing, and of a comparison that is impossible.
+    values : int
+        Number of compared values.
+    """
+    return worst_verdict([*drifts, "pass" if values else "info"])
+
+
 @dataclass(frozen=True)
 class Participation:
     """Cases and verdicts that decide the verdict of a run, and records that need no verification.
@@ -79,12 +92,15 @@ class Participation:
     def decide_case(self, case: CaseResult) -> CaseResult:
         """Case with the worst of the requested verdicts in which it takes part.
 
-        A drift from a baseline, and an error, count whichever verdicts are requested.
+        A drift from a baseline, and an error, count whichever verdicts are requested. A baseline without drift improves
+        no verdict.
         """
         verdicts = [self._case_verdict(name, case) for name in self.requested]
         drift = [criterion.verdict for criterion in case.criteria if criterion.is_drift]
+        drift += [] if case.baseline is None else [case.baseline.verdict]
         errors = [verdict for verdict in (case.criteria_verdict, case.verdict) if verdict == "error"]
-        verdict = worst_verdict(verdict for verdict in (*verdicts, *drift, *errors) if verdict is not None)
+        requested = worst_verdict(verdict for verdict in (*verdicts, *errors) if verdict is not None)
+        verdict = worst_verdict([requested, *drift])
         return case.model_copy(update={"verdict": verdict})
 
     def decide_run(self, results: Results) -> Results:
@@ -95,6 +111,7 @@ class Participation:
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
         by_name = {name: self.judge_name(name, cases, system) for name in get_args(VerdictName)}
         overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
+        compared = [(case.id, case.baseline.verdict) for case in cases if case.baseline is not None]
         verdict = worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)])
         procedure = results.procedure
         if procedure is not None:
@@ -107,6 +124,7 @@ class Participation:
                 "procedure": procedure,
                 "criteria_verdict": by_name["criteria"],
                 "verification_verdict": by_name["verification"],
+                "baseline_verdict": self.judge_run(compared, system) if compared else None,
                 "requested": list(self.requested),
                 "information": list(self.information),
                 "accepted_unverified": list(self.accepted_unverified),

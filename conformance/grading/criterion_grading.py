@@ -35,14 +35,16 @@ class Requirement:
         Number among several values (dropper, mode), from 1.
     lower, upper : float or None
         Limits in the unit of the quantity; both None if they are not known.
-    trust : Trust
-        Trust of the limits.
+    trust : Trust or None
+        Trust of the limits; None: bounds of a baseline.
     source : str
         Source of the limits.
     finding : PublishedFinding or None
         Finding of a publication that the limits grade.
     unit : str or None
         Unit of a value that is no quantity of a run; None: that of the quantity.
+    baseline : float or None
+        Earlier value, if the limits bound the drift from it.
     """
 
     quantity: str
@@ -50,10 +52,11 @@ class Requirement:
     item: int | None
     lower: float | None
     upper: float | None
-    trust: Trust | Computed
+    trust: Trust | Computed | None
     source: str
     finding: PublishedFinding | None = None
     unit: str | None = None
+    baseline: float | None = None
 
 
 @dataclass(frozen=True)
@@ -175,6 +178,7 @@ def build_criterion(
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
         close=near_limit_remarks(value, (lower, upper), unit, errors),
+        baseline=requirement.baseline,
         finding=finding,
     )
 

@@ -12,11 +12,14 @@ Computed = Literal["computed"]
 LEVELS: tuple[Trust, ...] = get_args(Trust)
 
 
-def limit_counts(trust: Trust | Computed, lowest: Trust | Computed) -> bool:
+def limit_counts(trust: Trust | Computed | None, lowest: Trust | Computed) -> bool:
     """Whether a limit of this trust decides a verdict, if `lowest` is the lowest trust that counts.
 
-    With `computed`, computed limits count and no others; with any other level, computed limits do not count.
+    With `computed`, computed limits count and no others; with any other level, computed limits do not count. Bounds
+    without a trust are those of a baseline: they have no published source, and count with every other level.
     """
+    if trust is None:
+        return lowest != "computed"
     if trust == "computed" or lowest == "computed":
         return trust == lowest
     return LEVELS.index(trust) <= LEVELS.index(lowest)

@@ -1,8 +1,8 @@
 """Criterion of results.json: a value against its limits, with the components of its uncertainty."""
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Computed, Trust
@@ -38,7 +38,10 @@ class Criterion(ResultsPart):
     lower: FiniteNumber | None
     upper: FiniteNumber | None
     verdict: Verdict
-    trust: Trust | Computed
+    trust: Annotated[
+        Trust | Computed | None,
+        Field(description="trust of the limits; null: the bounds are values of a baseline, without a published source"),
+    ]
     source: str
     margin: float | None
     discretisation_error: float | None
@@ -57,6 +60,17 @@ class Criterion(ResultsPart):
     def is_drift(self) -> bool:
         """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
         return self.baseline is not None or self.quantity == BASELINE
+
+    @model_validator(mode="after")
+    def _demand_trust(self) -> Self:
+        if self.trust is None and not self.is_drift:
+            raise ValueError("a criterion without trust must compare with a baseline")
+        return self
+
+
+def is_drift(row: dict[str, Any]) -> bool:
+    """Whether a criterion of results.json compares with a baseline, or states that a comparison is impossible."""
+    return row["baseline"] is not None or row["quantity"] == BASELINE
 
 
 class CaseVerification(ResultsPart):

@@ -12,6 +12,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.administration import Administration
+from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.results.derived_facts import DerivedFact
@@ -133,7 +134,8 @@ def name_case(case_id: str, library: LibraryIdentity | None) -> str:
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line.
 
-    `verdict` is the worst of the requested verdicts in which the case takes part.
+    `verdict` is the worst of the requested verdicts in which the case takes part, and of that by the baseline.
+    `criteria` has the EN 50318 criteria and, with a baseline, those of the values that drifted from it.
     """
 
     id: str
@@ -144,6 +146,14 @@ class CaseResult(ResultsPart):
     ] = None
     verification: Annotated[
         CaseVerification | None, Field(description="verification; null: the case has no converged values")
+    ] = None
+    baseline: Annotated[
+        BaselineComparison | None,
+        Field(
+            exclude_if=is_absent,
+            description="comparison with a baseline; missing: none was made, or by an older version, which counted a "
+            "drift in `criteria_verdict`",
+        ),
     ] = None
     reason: str | None
     notes: list[str]
@@ -268,6 +278,13 @@ class Results(ResultsPart):
     ] = None
     verification_verdict: Annotated[
         Verdict | None, Field(description="verdict by verification; null: no case has converged values")
+    ] = None
+    baseline_verdict: Annotated[
+        Verdict | None,
+        Field(
+            exclude_if=is_absent,
+            description="verdict by the baseline, which always counts; missing: no case was compared with one",
+        ),
     ] = None
     requested: Annotated[list[VerdictName], Field(description="verdicts that decide `verdict`, the worst of them")] = [
         "criteria"

@@ -24,9 +24,11 @@ def _build_step(step: Step, cases: Sequence[CaseResult]) -> ScopeStep:
 
 
 def _judge_state(step: Step, case: CaseResult) -> State:
-    if case.verdict in ("skip", "error"):
+    verdict = case.verdict if case.baseline is None else case.criteria_verdict  # a drift concerns no step
+    if verdict in ("skip", "error"):
         return "not done"
     is_pantograph = step == "pantograph_model"
-    criteria = [item for item in case.criteria if (item.quantity == APPARENT_MASS) == is_pantograph]
+    graded = [item for item in case.criteria if case.baseline is None or not item.is_drift]
+    criteria = [item for item in graded if (item.quantity == APPARENT_MASS) == is_pantograph]
     counts = any(item.verdict in ("pass", "fail") for item in criteria)
     return "done" if counts and case.library != "modified" else "informative"

@@ -6,7 +6,7 @@ const UPLIFT_STRETCH_S = 2;
 /** Levels of the limits of the largest uplift. */
 function upliftLimits(shownCase, count) {
   const limits = shownCase.criteria
-    .filter((criterion) => criterion.quantity === "max_uplift_at_support_mm")
+    .filter((criterion) => criterion.quantity === "max_uplift_at_support_mm" && criterion.baseline === null)
     .flatMap(({ lower, upper }) => [["lower limit", lower], ["upper limit", upper]])
     .filter(([, value]) => value !== null);
   return [...new Map(limits.map(([label, value]) => [`${label} ${formatNumber(value)} mm`, value]))].map(([label, value]) =>

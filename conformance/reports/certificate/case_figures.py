@@ -17,6 +17,7 @@ from pantocheck.conformance.reports.figures.force_figures import (
 from pantocheck.conformance.reports.figures.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
 from pantocheck.conformance.reports.page_text import format_plain, format_value
+from pantocheck.conformance.results.criterion_format import is_drift
 
 
 def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterator[Figure]:
@@ -32,9 +33,10 @@ def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterato
         Anchor of the section of the case.
     """
     yield from _chart_figures(case["charts"])
+    limited = [row for row in case["criteria"] if not is_drift(row)]
     for key, trace in sorted(case["traces"].items(), key=lambda item: (len(item[0]), item[0])):
         if trace["position_m"]:
-            rows = [row for row in case["criteria"] if str(row["pantograph"]) == key]
+            rows = [row for row in limited if str(row["pantograph"]) == key]
             curves = Curves("force", number, key)
             figure = _force_figure(key, trace, rows, select_reference_force(case, key))
             yield replace(figure, anchor=name_figure(anchor, key), curves=curves)
@@ -49,7 +51,7 @@ def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterato
             for support in supports
         )
         caption = f"Uplift at the supports. Largest: {peaks}."
-        drawing = draw_uplift(supports, case["criteria"])
+        drawing = draw_uplift(supports, limited)
         yield Figure(drawing, caption, caption, anchor=name_figure(anchor, "0"), curves=Curves("uplift", number))
 
 

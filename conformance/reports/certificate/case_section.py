@@ -22,7 +22,7 @@ from pantocheck.conformance.reports.certificate.quantity_tables import (
 )
 from pantocheck.conformance.reports.certificate.reference_values import reference_note
 from pantocheck.conformance.reports.certificate.scope_page import describe_changes
-from pantocheck.conformance.reports.certificate.two_verdicts import verification_blocks
+from pantocheck.conformance.reports.certificate.two_verdicts import baseline_blocks, list_criteria, verification_blocks
 from pantocheck.conformance.reports.certificate.uncertainty_table import uncertainty_blocks
 from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, summarise_case
 
@@ -74,11 +74,13 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     if warnings:
         blocks.append(doc.WarningBox(warnings))
     blocks += reference_note(case)
-    if case["criteria"]:
-        blocks.append(doc.Section("Criteria", criteria_blocks(case, anchor, f"{anchor}-source")))
+    if criteria := list_criteria(case, "criteria"):
+        table = criteria_blocks(case | {"criteria": criteria}, anchor, f"{anchor}-source")
+        blocks.append(doc.Section("Criteria", table))
     if figures := tuple(draw_case_figures(case, shown.number, anchor)):
         blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     blocks += verification_blocks(case, anchor)
+    blocks += baseline_blocks(case, anchor)
     blocks += comparison_blocks(case, shown.number, anchor)
     blocks += event_blocks(case)
     blocks += [doc.Section(table["caption"], (_study_table(case, table),)) for table in _select_tables(case)]

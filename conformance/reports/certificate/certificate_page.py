@@ -135,12 +135,16 @@ def _case_index(cases: list[dict[str, Any]], anchors: dict[str, str]) -> doc.Tab
     )
     if any(case["verification"] for case in cases):
         shares["Verification"] = 0.0
-        rows = tuple((*row, _verification_mark(case)) for row, case in zip(rows, cases, strict=True))
+        rows = tuple((*row, _mark(case, "verification")) for row, case in zip(rows, cases, strict=True))
+    if any(case.get("baseline") for case in cases):
+        shares["Baseline"] = 0.0
+        rows = tuple((*row, _mark(case, "baseline")) for row, case in zip(rows, cases, strict=True))
     return doc.Table(tuple(doc.Column(heading, share) for heading, share in shares.items()), rows)
 
 
-def _verification_mark(case: dict[str, Any]) -> doc.RichText:
-    verdict = case_verdict(case, "verification")
+def _mark(case: dict[str, Any], name: str) -> doc.RichText:
+    """One of the verdicts of a case as a mark; a dash without this verdict."""
+    verdict = case_verdict(case, name)
     return "–" if verdict is None else doc.VerdictMark(verdict)
 
 

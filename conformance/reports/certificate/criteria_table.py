@@ -33,7 +33,7 @@ class CriterionTexts:
     limits: str
     margin: str
     trust: str
-    """Trust of the limits; empty if there are none."""
+    """Trust of the limits; empty if there are none, or if they are bounds of a baseline."""
     remarks: tuple[str, ...]
 
 
@@ -51,7 +51,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
         error="–" if error is None else f"± {format_value(error, 2)}",
         limits=limits,
         margin="–" if margin is None else replace_minus(format_margin(margin)),
-        trust="" if lower is None and upper is None else criterion["trust"],
+        trust="" if lower is None and upper is None else criterion["trust"] or "",
         remarks=tuple(filter(None, (criterion["reason"], *close, remark_shift(criterion), _remark_limit(criterion)))),
     )
 

@@ -36,7 +36,7 @@ def build_band_table(case: dict[str, Any]) -> Table:
             return "not available"
         return f"{format_value(value)} ({'; '.join(_list_verdicts(case, quantity, key))})"
 
-    rows = (*case["criteria"], *list_criteria(case, "verification"))
+    rows = (*list_criteria(case, "criteria"), *list_criteria(case, "verification"))
     graded = any(row["quantity"] in table_quantities("bands") for row in rows)
     pantographs = [key for key in list_owners(case) if key != "0" and graded]
     cells: dict[str, Callable[[str], RichText]] = {

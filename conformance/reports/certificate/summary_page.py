@@ -19,7 +19,12 @@ from pantocheck.conformance.reports.certificate.scope_page import (
     list_sources,
     prepare_results,
 )
-from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, build_verdict_section
+from pantocheck.conformance.reports.certificate.two_verdicts import (
+    NAMES,
+    build_verdict_section,
+    describe_comparison,
+    list_criteria,
+)
 from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, list_reasons
 from pantocheck.conformance.reports.words import read_words
 
@@ -72,12 +77,17 @@ def _case_section(case: dict[str, Any]) -> doc.Section:
         blocks.append(doc.Paragraph(record))
     if case["warnings"]:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
-    if case["criteria"]:
-        blocks.append(_criteria(case))
+    if criteria := list_criteria(case, "criteria"):
+        blocks.append(_criteria(case | {"criteria": criteria}))
     if (verification := case["verification"]) is not None:
         blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification["verdict"]))))
         if verification["criteria"]:
             blocks.append(_criteria(case | {"criteria": verification["criteria"]}))
+    if (comparison := case.get("baseline")) is not None:
+        mark, text = doc.VerdictMark(comparison["verdict"]), describe_comparison(comparison)
+        blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
+        if drifts := list_criteria(case, "baseline"):
+            blocks.append(_criteria(case | {"criteria": drifts}))
     word = read_words()["verdict"][case["verdict"]]["word"]
     return doc.Section(f"{word}: {case['title']}", tuple(blocks))
 
@@ -87,7 +97,9 @@ def _criteria(case: dict[str, Any]) -> doc.Table:
     for criterion in case["criteria"]:
         texts = describe_criterion(criterion)
         numbers = (texts.value, texts.error, texts.limits, texts.margin)
-        rows.append((texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion["verdict"]), texts.trust))
+        rows.append(
+            (texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion["verdict"]), texts.trust or "–")
+        )
     numbers = ("Value", error_name(case), "Limits", "Margin")
     columns = (
         *map(doc.Column, ("Quantity", "Pantograph")),

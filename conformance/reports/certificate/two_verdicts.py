@@ -1,4 +1,4 @@
-"""Two verdicts: EN 50318 criteria, and verification against the converged solution."""
+"""Verdicts side by side: EN 50318 criteria, verification against the converged solution, drift from a baseline."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -7,14 +7,19 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.criterion_format import is_drift
 
 NAMES = {
     "criteria": "EN 50318 criteria",
     "verification": "Verification against the converged solution, up to 50 Hz",
+    "baseline": "Drift from the baseline",
 }
 """Title of each verdict."""
 
-SHORT_TITLES = {"criteria": "EN 50318 criteria", "verification": "Verification up to 50 Hz"}
+SHORT_TITLES = NAMES | {"verification": "Verification up to 50 Hz"}
+
+NUMBERS = {2: "Two", 3: "Three"}
+"""Words for the number of verdicts."""
 
 MEANING = (
     "The verdict of the report is the worse of those that decide. Verification compares with the solution of the same "
@@ -22,19 +27,28 @@ MEANING = (
     "the verdict by the criteria."
 )
 
+BASELINE_MEANING = (
+    "Drift from the baseline compares with earlier results of the user. It is no criterion of EN 50318. It always "
+    "counts in the verdict of the report, and never improves it."
+)
+
 
 def case_verdict(case: dict[str, Any], name: str) -> str | None:
-    """One of the two verdicts of a case; None if the case has no converged values."""
+    """One of the verdicts of a case; None if the case has no converged values, or no baseline."""
     if name == "criteria":
         return str(case["criteria_verdict"] or case["verdict"])
-    return None if case["verification"] is None else str(case["verification"]["verdict"])
+    part = case.get(name)
+    return None if part is None else str(part["verdict"])
 
 
 def list_criteria(case: dict[str, Any], name: str) -> list[dict[str, Any]]:
-    """Criteria of one of the two verdicts of a case."""
-    table = case if name == "criteria" else case["verification"] or {"criteria": []}
+    """Criteria of one of the verdicts of a case; in results of older versions, a drift is one of the criteria."""
+    table = (case["verification"] or {"criteria": []}) if name == "verification" else case
     criteria: list[dict[str, Any]] = table["criteria"]
-    return criteria
+    if name == "verification":
+        return criteria
+    compared = case.get("baseline") is not None
+    return [row for row in criteria if (compared and is_drift(row)) == (name == "baseline")]
 
 
 def select_criteria(results: dict[str, Any], case: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -42,21 +56,31 @@ def select_criteria(results: dict[str, Any], case: dict[str, Any]) -> Iterator[d
     for name in NAMES:
         left_out = name == "criteria" and case["id"] in results["verification_only"]
         decides = name in results["requested"] and not left_out
-        yield from (row for row in list_criteria(case, name) if decides or row["baseline"] is not None)
+        yield from (row for row in list_criteria(case, name) if decides or is_drift(row))
 
 
 def build_verdict_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
-    """The two verdicts of a run side by side; empty if no case has converged values and none was requested."""
-    if results["verification_verdict"] is None and "verification" not in results["requested"]:
+    """The verdicts of a run side by side; empty if there is one only."""
+    names = _list_names(results)
+    if len(names) == 1:
         return ()
-    rows = tuple(_verdict_row(results, name) for name in NAMES)
+    rows = tuple(_verdict_row(results, name) for name in names)
+    meanings = [text for name, text in (("verification", MEANING), ("baseline", BASELINE_MEANING)) if name in names]
     columns = (doc.Column("Verdict on", 2), doc.Column("Verdict"), doc.Column("Part"), doc.Column("Cases and basis", 3))
-    return (doc.Section("Two verdicts", (doc.Table(columns, rows), doc.SmallPrint(MEANING)), anchor="verdicts"),)
+    blocks = (doc.Table(columns, rows), doc.SmallPrint(" ".join(meanings)))
+    return (doc.Section(f"{NUMBERS[len(names)]} verdicts", blocks, anchor="verdicts"),)
+
+
+def _list_names(results: dict[str, Any]) -> list[str]:
+    """Verdicts of a run: by the criteria, and by verification and baseline if there are any."""
+    verified = results["verification_verdict"] is not None or "verification" in results["requested"]
+    compared = results.get("baseline_verdict") is not None
+    return ["criteria", *(["verification"] if verified else []), *(["baseline"] if compared else [])]
 
 
 def _verdict_row(results: dict[str, Any], name: str) -> tuple[doc.RichText, ...]:
     verdict = results[f"{name}_verdict"] or "info"
-    part = "decides" if name in results["requested"] else "for information"
+    part = "decides" if name == "baseline" or name in results["requested"] else "for information"
     return NAMES[name], doc.VerdictMark(verdict), part, " ".join(_describe_basis(results, name))
 
 
@@ -66,6 +90,9 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
     verdicts = Counter(case_verdict(case, name) for case in cases)
     passed = f"{verdicts['pass']} of {len(cases)} {'case' if len(cases) == 1 else 'cases'}"
     yield f"{passed} {'passes' if verdicts['pass'] == 1 else 'pass'}." if cases else "No case takes part."
+    if name == "baseline":
+        yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)
+        return
     rows = Counter(row["verdict"] for case in cases for row in list_criteria(case, name))
     counted = sum(rows[verdict] for verdict in ("pass", "fail", "skip"))
     if counted:
@@ -76,15 +103,37 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
 
 
 def verdict_sentences(results: dict[str, Any]) -> list[str]:
-    """Sentence for the headline on the two verdicts; none if there is no verification."""
-    if results["verification_verdict"] is None and "verification" not in results["requested"]:
+    """Sentence for the headline on the verdicts; none if there is one only."""
+    names = _list_names(results)
+    if len(names) == 1:
         return []
     words = read_words()["verdict"]
     parts = []
-    for name, title in SHORT_TITLES.items():
-        note = "" if name in results["requested"] else " (for information)"
-        parts.append(f"{title}: {words[results[f'{name}_verdict'] or 'info']['word']}{note}")
+    for name in names:
+        note = "" if name == "baseline" or name in results["requested"] else " (for information)"
+        parts.append(f"{SHORT_TITLES[name]}: {words[results[f'{name}_verdict'] or 'info']['word']}{note}")
     return [f"{'; '.join(parts)}."]
+
+
+def describe_comparison(comparison: dict[str, Any]) -> str:
+    """Numbers of compared and of drifted values of a case in one sentence."""
+    values, drifted = comparison["values"], comparison["drifted"]
+    if not values:
+        return f"No value was compared with {comparison['name']}."
+    drift = f"drifted by more than {comparison['drift_pct']:g} % from {comparison['name']}"
+    return f"{drifted} of {values} values {drift}, or are missing."
+
+
+def baseline_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
+    """Section on the drift of a case from its baseline; empty if it was not compared with one."""
+    comparison = case.get("baseline")
+    if comparison is None:
+        return ()
+    mark = doc.VerdictMark(comparison["verdict"])
+    blocks: list[doc.Block] = [doc.Paragraph((mark, f"\N{EN SPACE}{describe_comparison(comparison)}"))]
+    if rows := list_criteria(case, "baseline"):
+        blocks += criteria_blocks(case | {"criteria": rows}, anchor, f"{anchor}-baseline-source")
+    return (doc.Section(NAMES["baseline"], tuple(blocks)),)
 
 
 def verification_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:

@@ -9,10 +9,11 @@ from pantocheck.conformance.reports.certificate.criteria_table import criterion_
 from pantocheck.conformance.reports.certificate.findings_table import count_sentences
 from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
-from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria, verdict_sentences
+from pantocheck.conformance.reports.certificate.two_verdicts import list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, read_words
+from pantocheck.conformance.results.criterion_format import is_drift
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -39,7 +40,9 @@ def build_headline(results: dict[str, Any]) -> str:
     verdicts = Counter(case["verdict"] for case in cases)
     accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0
     passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
-    grades = Counter(criterion["verdict"] for case in cases for criterion in select_criteria(results, case))
+    rows = [row for case in cases for row in select_criteria(results, case)]
+    grades = Counter(row["verdict"] for row in rows if not is_drift(row))
+    drifted = sum(row["verdict"] == "fail" for row in rows if is_drift(row))
     counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
     total = f"{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
     if not cases:
@@ -50,7 +53,9 @@ def build_headline(results: dict[str, Any]) -> str:
         parts = [f"{passed} of {total} {'passes' if passed == 1 else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
             if number := verdicts[verdict]:
-                outside = f" ({grades['fail']} of {counted} counted criteria outside their limits)"
+                outside = (
+                    f" ({grades['fail']} of {counted} counted criteria outside their limits{_count_drifts(drifted)})"
+                )
                 parts.append(f"{number} {one if number == 1 else many}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
     if accepted:
@@ -59,6 +64,13 @@ def build_headline(results: dict[str, Any]) -> str:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
+
+
+def _count_drifts(number: int) -> str:
+    """Further part of a clause: the number of values that drifted from a baseline; empty without any."""
+    if not number:
+        return ""
+    return f", {number} {'value' if number == 1 else 'values'} drifted from the baseline"
 
 
 def describe_record(case: dict[str, Any]) -> str | None:
@@ -73,11 +85,13 @@ def describe_record(case: dict[str, Any]) -> str | None:
 def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
     """Sentences under headings, errors first; a heading without sentences is left out."""
     passed = _select(results, "pass")
+    drifts = [(case, row) for case in results["cases"] for row in select_criteria(results, case) if is_drift(row)]
     bounded = [(case, criterion) for case, criterion in passed if criterion["lower"] != criterion["upper"]]
     groups = {
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
+        "Drift from the baseline": [_reason(pair) for pair in drifts],
         "Not verified": _record_reasons(results),
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1]["reason"]],
         "Closer to a limit than the uncertainty": [
@@ -95,7 +109,7 @@ def summarise_case(case: dict[str, Any]) -> str:
     """The verdict of one case in one sentence."""
     if case["reason"]:
         return str(case["reason"])
-    verdicts = Counter(criterion["verdict"] for criterion in case["criteria"])
+    verdicts = Counter(criterion["verdict"] for criterion in list_criteria(case, "criteria"))
     words = read_words()["verdict"]
     parts = [
         f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'with a limit that does not count'}"
@@ -114,7 +128,8 @@ CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
 
 
 def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:
-    return ((case, criterion) for case in results["cases"] for criterion in select_criteria(results, case))
+    """Criteria of the verdicts that decide, without those of drift."""
+    return ((case, row) for case in results["cases"] for row in select_criteria(results, case) if not is_drift(row))
 
 
 def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from pantocheck.conformance.reports.certificate.scope_page import prepare_results
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.graded_tests import GradedTest, list_case_tests, list_step_tests
-from pantocheck.conformance.results.criterion_format import BASELINE
+from pantocheck.conformance.results.criterion_format import is_drift
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 
 Severity = Literal["error", "warning"]
@@ -83,7 +83,7 @@ def _find_place(test: GradedTest, case_id: str, places: ReportPlaces) -> FilePla
     row = test.criterion
     if row is None or row["trust"] == "computed":
         return places.find_case(case_id)
-    if row["baseline"] is not None or row["quantity"] == BASELINE:
+    if is_drift(row):
         return places.find_baseline(case_id)
     return places.find_limit(case_id, row["quantity"], row["pantograph"], row["item"])
 

@@ -6,6 +6,7 @@ from xml.sax.saxutils import escape
 
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria
 from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.criterion_format import is_drift
 
 LABEL = "EN 50318 style"
 COLOURS = {
@@ -21,7 +22,7 @@ LETTER, MARGIN = 6.6, 8
 
 
 def summarise_verdict(results: dict[str, Any]) -> str:
-    """Verdict with the numbers of passed and of counted criteria; a modified copy of a library case is named.
+    """Verdict with the numbers of passed and of counted criteria; a drift and a modified library case are named.
 
     With a procedure, the numbers are those of its required steps.
     """
@@ -29,10 +30,13 @@ def summarise_verdict(results: dict[str, Any]) -> str:
         required = [step["verdict"] for step in results["procedure"]["steps"] if step["required"]]
         word = read_words()["verdict"][results["verdict"]]["word"].lower()
         return f"{word} {required.count('pass')}/{len(required)} steps"
-    verdicts = Counter(row["verdict"] for case in results["cases"] for row in select_criteria(results, case))
+    rows = [row for case in results["cases"] for row in select_criteria(results, case)]
+    verdicts = Counter(row["verdict"] for row in rows if not is_drift(row))
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
     word = read_words()["verdict"][results["verdict"]]["word"].lower()
     text = f"{word} {verdicts['pass']}/{counted}" if counted else word
+    if (baseline := results.get("baseline_verdict", "pass")) != "pass":
+        text += f", baseline {read_words()['verdict'][baseline]['word'].lower()}"
     return f"{text}, modified copy" if any(case["library"] == "modified" for case in results["cases"]) else text
 
 

@@ -83,7 +83,7 @@ def list_step_tests(results: dict[str, Any]) -> Iterator[list[GradedTest]]:
 
 
 def _list_criterion_tests(case: dict[str, Any], results: dict[str, Any], name: str) -> Iterator[GradedTest]:
-    """Tests of one of the two verdicts of a case; for information if this verdict does not decide."""
+    """Tests of one of the verdicts of a case; for information if this verdict does not decide."""
     decisive = list(select_criteria(results, case))
     for row in list_criteria(case, name):
         test = _test_criterion(case["id"], row)
@@ -97,7 +97,8 @@ def _test_criterion(group: str, row: dict[str, Any]) -> GradedTest:
     margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
     reason = f" ({row['reason']})" if row["reason"] else ""
     name = f"{kind}{row['quantity']} of {name_owner(row)}"
-    return GradedTest(group, name, row["verdict"], f"{value}, limits {bounds}{margin}, {row['trust']}{reason}", row)
+    basis = row["trust"] or "bounds of the baseline"
+    return GradedTest(group, name, row["verdict"], f"{value}, limits {bounds}{margin}, {basis}{reason}", row)
 
 
 def _test_claim(group: str, claim: dict[str, Any]) -> GradedTest:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.reports.words import quantity_unit
-from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES
+from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, is_drift
 
 COLUMNS = (
     *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
@@ -28,7 +28,8 @@ def render_quantity_list(results: dict[str, Any]) -> str:
 
 def _list_rows(case: dict[str, Any]) -> Iterator[list[Any]]:
     """One row per quantity, or per item of a quantity with several values."""
-    graded = {(str(row["pantograph"]), row["quantity"], row["item"]): row for row in case["criteria"]}
+    rows = [row for row in case["criteria"] if not is_drift(row)]
+    graded = {(str(row["pantograph"]), row["quantity"], row["item"]): row for row in rows}
     for key, quantities in case["quantities"].items():
         for name, value in quantities.items():
             for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):

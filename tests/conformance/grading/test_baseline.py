@@ -2,11 +2,13 @@
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 from typer.testing import CliRunner, Result
 
 from helpers.toml_edit import change_keys, write_toml
@@ -17,6 +19,7 @@ from pantocheck.conformance.grading.baseline import compare_with_baseline, read_
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases
@@ -99,6 +102,71 @@ def test_ratio_near_zero_drifts_by_a_hundredth(results: Results, was: float, dri
     assert any(row.baseline is not None for row in found) is (was > 0.0199)
     tiny = compare_with_baseline(changed(results, "cov_20", was), changed(results, "cov_20", 0.0), 100.0, "b.json")
     assert any(row.baseline is not None for row in tiny.cases[0].criteria) is drifts
+
+
+def test_drift_is_a_verdict_of_its_own(results: Results) -> None:
+    """All eight criteria pass; the accepted published record keeps them at a pass."""
+    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json")
+    verdicts = (compared.verdict, compared.criteria_verdict, compared.baseline_verdict)
+    assert verdicts == ("fail", "pass", "fail")
+    case = compared.cases[0]
+    assert (case.verdict, case.criteria_verdict) == ("fail", results.cases[0].criteria_verdict)
+    assert case.baseline == BaselineComparison(verdict="fail", name="b.json", drift_pct=1.0, values=8, drifted=1)
+    assert (case.criteria[-1].trust, case.criteria[-1].source) == (None, "baseline b.json, allowed drift 1 %")
+    assert compared.scope == results.scope
+
+
+def test_criterion_without_trust_is_a_drift(results: Results) -> None:
+    """Otherwise a limit without any source would count."""
+    content = results.to_dict()
+    content["cases"][0]["criteria"][0]["trust"] = None
+    with pytest.raises(ValidationError, match="a criterion without trust must compare with a baseline"):
+        Results.model_validate(content)
+
+
+def remove_row(case: dict[str, Any]) -> None:
+    case["criteria"].pop()
+
+
+FORGERIES: dict[str, Callable[[dict[str, Any]], None]] = {
+    "row": remove_row,
+    "row and number": lambda case: (remove_row(case), case["baseline"].update(drifted=0))[0],
+    "comparison": lambda case: case.pop("baseline"),
+    "row and comparison": lambda case: (remove_row(case), case.pop("baseline"))[0],
+    "verdict of the case by the baseline": lambda case: case["baseline"].update(verdict="pass"),
+    "verdict of the case": lambda case: case.update(verdict="unverified"),
+    "bounds": lambda case: case["criteria"][-1].update(upper=29.0, verdict="pass", margin=0.2),
+    "accepted drift": lambda case: case["baseline"].update(drift_pct=5.0),
+    "number": lambda case: case["baseline"].update(drifted=0),
+    "drift among the criteria": lambda case: case["criteria"][-1].update(baseline=None, trust="provisional"),
+}
+"""Ways to hide one value that drifted."""
+
+
+@pytest.mark.parametrize("forgery", FORGERIES)
+def test_hidden_drift_is_found(results: Results, forgery: str) -> None:
+    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
+    assert find_discrepancies(compared) == []
+    FORGERIES[forgery](compared["cases"][0])
+    assert find_discrepancies(compared)
+
+
+def test_hidden_verdict_of_the_run_by_the_baseline_is_found(results: Results) -> None:
+    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
+    assert any(text.startswith("baseline: ") for text in find_discrepancies(compared | {"baseline_verdict": "pass"}))
+    del compared["baseline_verdict"]
+    assert any(text.startswith("baseline: ") for text in find_discrepancies(compared))
+
+
+def test_results_of_an_older_version_count_a_drift_among_the_criteria(results: Results) -> None:
+    """They have no comparison, and the trust `primary`: still consistent, and a removed row is found."""
+    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
+    del compared["baseline_verdict"], compared["cases"][0]["baseline"], compared["cases"][1]["baseline"]
+    compared["cases"][0]["criteria"][-1]["trust"] = "primary"
+    compared["cases"][0]["criteria_verdict"] = compared["criteria_verdict"] = "fail"
+    assert find_discrepancies(compared) == []
+    compared["cases"][0]["criteria"].pop()
+    assert find_discrepancies(compared)
 
 
 def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:

@@ -19,6 +19,7 @@ from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.criterion_format import CaseVerification
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
@@ -236,6 +237,31 @@ def test_drift_from_a_baseline_counts_whichever_verdict_is_requested() -> None:
     assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
     failed = case_result("a", "fail", "pass")
     assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
+
+
+@given(VERDICTS, st.none() | VERDICTS, VERDICTS, REQUESTS, st.booleans())
+def test_baseline_never_improves_a_verdict(
+    criteria: Verdict,
+    verification: Verdict | None,
+    drift: Verdict,
+    requested: tuple[VerdictName, ...],
+    listed: bool,
+) -> None:
+    """Whether its criteria are listed or only its verdict is stated; the other verdicts do not depend on it."""
+    participation = Participation(requested=requested, accepted_unverified=(example()["system"]["name"],))
+    plain = case_result("a", criteria, verification)
+    comparison = BaselineComparison(verdict=drift, name="b.json", drift_pct=1.0, values=8, drifted=1)
+    row = case_result("a", criteria, verification, drift).criteria
+    compared = plain.model_copy(update={"baseline": comparison, "criteria": row if listed else []})
+    without, results = decide(participation, plain), decide(participation, compared)
+    assert rank(results.verdict) <= rank(without.verdict)
+    assert rank(results.cases[0].verdict) <= rank(without.cases[0].verdict)
+    assert rank(results.cases[0].verdict) <= rank(drift)
+    assert (results.criteria_verdict, results.verification_verdict) == (
+        without.criteria_verdict,
+        without.verification_verdict,
+    )
+    assert read_participation(results).decide_run(results) == results
 
 
 def test_accepted_unverified_record_passes_both_verdicts() -> None:

@@ -1,0 +1,49 @@
+"""Check of a comparison with a baseline: bounds, numbers and verdict must follow from the criteria of drift."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pantocheck.conformance.grading.baseline import bound_drift
+from pantocheck.conformance.grading.case_verdict import judge_baseline
+from pantocheck.conformance.results.criterion_format import is_drift
+
+
+def list_graded(case: dict[str, Any]) -> list[dict[str, Any]]:
+    """Criteria that `criteria_verdict` counts; in results of older versions, those of drift are among them."""
+    criteria: list[dict[str, Any]] = case["criteria"]
+    return criteria if case.get("baseline") is None else [row for row in criteria if not is_drift(row)]
+
+
+def check_baseline(case: dict[str, Any]) -> Iterator[str]:
+    """Find contradictions between a comparison with a baseline and the criteria of drift.
+
+    Parameters
+    ----------
+    case : dict of str
+        Case of results.json.
+
+    Yields
+    ------
+    str
+        One line per contradiction.
+    """
+    comparison = case.get("baseline")
+    if comparison is None:
+        return
+    rows = [row for row in case["criteria"] if is_drift(row)]
+    for row in rows:
+        if row["verdict"] not in ("fail", "skip"):
+            yield f"{row['quantity']}: verdict '{row['verdict']}' among the values that drifted"
+        if row["baseline"] is not None:
+            yield from _check_bounds(row, comparison["drift_pct"])
+    verdict = judge_baseline((row["verdict"] for row in rows), comparison["values"])
+    if comparison["verdict"] != verdict:
+        yield f"baseline '{comparison['verdict']}' stated, '{verdict}' follows from the criteria of drift"
+    drifted = sum(row["baseline"] is not None for row in rows)
+    if comparison["drifted"] != drifted or drifted > comparison["values"]:
+        yield f"{comparison['drifted']} of {comparison['values']} values drifted are stated, {drifted} are listed"
+
+
+def _check_bounds(row: dict[str, Any], drift_pct: float) -> Iterator[str]:
+    if (row["lower"], row["upper"]) != bound_drift(row["quantity"], row["baseline"], drift_pct):
+        yield f"{row['quantity']}: the bounds do not follow from the baseline and the accepted drift"
