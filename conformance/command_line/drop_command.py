@@ -14,6 +14,7 @@ from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
+from pantocheck.conformance.mass_drops.drop_writing import check_drop_sidecar
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
 from pantocheck.conformance.step_log import ShareCallback, StepSequence
 
@@ -41,13 +42,14 @@ def drop_command(
         raise InputError("--drop", f"there is no drop {number}", f"Case {drop_case.id} has {drops}, numbered from 1.")
     check_writable(out.parent)
     files, facts, lines = [], [], []
-    numbers = range(1, drops + 1) if number is None else [number]
+    numbers = list(range(1, drops + 1)) if number is None else [number]
+    paths = [out] if len(numbers) == 1 else [out.with_name(f"{out.stem}-{n}{out.suffix}") for n in numbers]
+    for path in paths:
+        check_drop_sidecar(path)
     with follow_steps("mass drops", len(numbers)) as progress:
-        for n in numbers:
+        for n, path in zip(numbers, paths, strict=True):
             simulation = simulate_drop(drop_case, n, begin_drop(_LOGGER, f"drop {n} of {drops}"))
             progress.finish_task()
-            several = number is None and drops > 1
-            path = out.with_name(f"{out.stem}-{n}{out.suffix}") if several else out
             record = simulation.record
             write(record, path)
             slack = simulation.decay.last_slack
@@ -56,7 +58,7 @@ def drop_command(
             facts.append({"drop": n, "duration_s": record.duration, "last_slack_s": slack})
             lines.append(
                 indent_text(
-                    f"{record.duration:g} s, {len(record.channels)} sensors, {droppers} after the release",
+                    f"{record.duration:g} s, {len(record.channels)} sensor(s), {droppers} after the release",
                     f"drop {n}: ",
                 )
             )

@@ -9,11 +9,16 @@ import tomli_w
 from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 UNWRITABLE = ",;\t\"'"
 """Characters that are not possible in the head line of a CSV file, because it is read without quoting."""
+
+
+SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
+"""Tables of a sidecar."""
 
 
 def write_drop_csv(record: DropRecord, path: Path) -> None:
@@ -87,8 +92,31 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     produce_atomically(path, lambda temporary: write_hdf5_table(temporary, _select_known(attributes), datasets))
 
 
+def check_drop_sidecar(path: Path) -> None:
+    """Check that the sidecar of a record replaces no other file, such as the case of the drop.
+
+    Parameters
+    ----------
+    path : Path
+        The record.
+
+    Raises
+    ------
+    InputError
+        The sidecar would overwrite a file that is not a sidecar of a drop record.
+    """
+    target = path.with_suffix(".toml")
+    if target.exists() and not read_toml(target, "sidecar").keys() <= SIDECAR_TABLES:
+        raise InputError(
+            f"record '{path}'",
+            f"the sidecar would overwrite {target.name}, which is not a sidecar of a drop record",
+            "Give the record another name.",
+        )
+
+
 def write_drop_sidecar(record: DropRecord, path: Path) -> None:
-    """Write the sidecar of the record at `path`; errors as in `write_drop_csv`."""
+    """Write the sidecar of the record at `path`; errors as in `write_drop_csv` and `check_drop_sidecar`."""
+    check_drop_sidecar(path)
     tables: dict[str, dict[str, Any]] = {
         "test": {
             "name": record.name,

@@ -9,7 +9,7 @@ from helpers.drop_records import assert_same_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
+from pantocheck.conformance.mass_drops.drop_writing import check_drop_sidecar, write_drop_csv
 
 
 def test_csv_reads_back(tmp_path: Path, record: DropRecord) -> None:
@@ -32,3 +32,14 @@ def test_decimal_commas(tmp_path: Path, record: DropRecord) -> None:
     text = (tmp_path / "r.csv").read_text()
     (tmp_path / "r.csv").write_text(text.replace(",", ";").replace(".", ","))
     assert_same_record(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)
+
+
+@pytest.mark.parametrize("name", ["plan.csv", "plan.uff"])
+def test_sidecar_replaces_no_other_file(tmp_path: Path, name: str) -> None:
+    """A case `plan.toml` beside the record `plan.csv` stays; a sidecar of an earlier record is replaced."""
+    (tmp_path / "plan.toml").write_text('id = "own/plan"\n[mass_drop]\n')
+    with pytest.raises(InputError, match=r"would overwrite plan\.toml"):
+        check_drop_sidecar(tmp_path / name)
+    (tmp_path / "plan.toml").write_text('[test]\nname = "earlier"\n[drop]\n')
+    check_drop_sidecar(tmp_path / name)
+    check_drop_sidecar(tmp_path / "new.csv")
