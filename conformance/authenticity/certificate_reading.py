@@ -57,7 +57,7 @@ def read_certificate(path: Path) -> Certificate:
     """
     name = str(path)
     if path.is_dir():
-        raise InputError(name, "is a folder", _suggest_document(path))
+        raise InputError(name, "is a folder, not a regular file", _suggest_document(path))
     content = read_bytes(path, name, MAX_DOCUMENT_BYTES)
     beginning = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:HEADER_BYTES]
     if b"%PDF-" in content[:HEADER_BYTES]:

@@ -1,7 +1,7 @@
 """Damping model of a line from its identified modes: the content of damping.json."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -104,7 +104,7 @@ def build_damping_results(
     matched = match_modes(usable, line, element, source)
     measured, shapes = matched.measured, matched.shapes
     energies = component_energies(matched.mesh, shapes)
-    stated = damping_ratios(with_damping(matched.mesh, list_other_damping(line)), shapes)
+    stated = _compute_stated_ratios(matched, line)
     basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies, stated))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
     fit = fit_damping_model(paired_basis, measured)
@@ -119,7 +119,7 @@ def build_damping_results(
             *_warn_about_stated(paired_basis.stated / measured.damping_ratio),
             *_warn_about_coefficients(coefficients),
         ),
-        stated=_list_stated(line),
+        stated=_list_stated(line) if np.any(paired_basis.stated > 0) else (),
         line=comparison,
         matching=matched.matching,
         residual=fit.residual,
@@ -168,6 +168,16 @@ def _compare_models(matched: MatchedModes, rayleigh: RealArray, bands: tuple[Mod
             "Rayleigh + modal": tuple(apply_modal_bands(rayleigh, shapes.frequency, bands)),
         },
     )
+
+
+def _compute_stated_ratios(matched: MatchedModes, line: Catenary) -> RealArray:
+    """Damping ratios by the components that are not fitted, as the line states them, (m,).
+
+    Modal damping of the line replaces the damping of all components in its bands, so that they add nothing there.
+    """
+    ratios = damping_ratios(with_damping(matched.mesh, list_other_damping(line)), matched.shapes)
+    bands = tuple(replace(band, damping_ratio=0.0) for band in line.modal_damping)
+    return apply_modal_bands(ratios, matched.shapes.frequency, bands)
 
 
 def _list_stated(line: Catenary) -> tuple[StatedDamping, ...]:

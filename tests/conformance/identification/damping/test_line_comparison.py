@@ -262,7 +262,9 @@ def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode,
         assert (c.determined, c.reason) == (True, "")
         assert c.value == pytest.approx(getattr(DAMPING[Kind(c.kind)], f"{c.matrix}_coefficient"), rel=0.01)
     text = write_damping_toml(results)
-    assert "#" not in text
+    comments = [line for line in text.splitlines() if line.startswith("#")]
+    assert len(comments) == len(results.coefficients)
+    assert all(": 95 % interval " in line for line in comments)
     assert Damping.model_validate(tomllib.loads(text)["damping"]).contact_wire.stiffness_coefficient_s > 0
 
 
