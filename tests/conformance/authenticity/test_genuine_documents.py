@@ -34,7 +34,7 @@ def test_document_of_this_version_is_consistent(wave_results: Results, tmp_path:
 
 
 def test_folder_is_refused_with_the_documents_in_it(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"is a folder\.\n  Name a file: certificate\.pdf"):
+    with pytest.raises(InputError, match=r"is a folder, not a regular file\.\n  Name a file: certificate\.pdf"):
         verify_document(tmp_path)
     for name in FORMATS[1:]:
         (tmp_path / name).touch()
