@@ -11,6 +11,7 @@ from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.command_output import CommandOutput, list_problems
 from pantocheck.conformance.command_line.console import indent_text
 from pantocheck.conformance.command_line.guard import BAD_INPUT, strip_control_characters
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.own_files.file_check import check_input_file
 from pantocheck.conformance.own_files.folder_search import list_input_files
@@ -54,8 +55,8 @@ def check_command(
             checked.append({"file": str(path), "kind": None, "problems": list_problems(error)})
     lines = [indent_text(f"{item['file']}: valid {item['kind']}", "") for item in checked if item["kind"] is not None]
     if faulty:
-        conclusion = Text(f"{problems} problem(s) in {faulty} of {len(paths)} file(s)")
+        conclusion = Text(f"{count_noun(problems, 'problem')} in {faulty} of {count_noun(len(paths), 'file')}")
         return CommandOutput(conclusion, checked, lines, exit_code=BAD_INPUT)
     if len(lines) == 1 and not files[0].is_dir():
         return CommandOutput(lines[0].text, checked)
-    return CommandOutput(Text(f"{len(paths)} file(s) checked, all valid"), checked, lines)
+    return CommandOutput(Text(f"{count_noun(len(paths), 'file')} checked, all valid"), checked, lines)

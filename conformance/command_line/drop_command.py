@@ -11,6 +11,7 @@ from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import escape_text, indent_text
 from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.command_line.progress_display import follow_steps
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
@@ -53,16 +54,12 @@ def drop_command(
             record = simulation.record
             write(record, path)
             slack = simulation.decay.last_slack
+            sensors = count_noun(len(record.channels), "sensor")
             droppers = "no slack dropper" if slack is None else f"last slack dropper {slack:.2f} s"
             files.append(path)
             facts.append({"drop": n, "duration_s": record.duration, "last_slack_s": slack})
-            lines.append(
-                indent_text(
-                    f"{record.duration:g} s, {len(record.channels)} sensor(s), {droppers} after the release",
-                    f"drop {n}: ",
-                )
-            )
-    return CommandOutput(escape_text(f"{drop_case.id}: {len(files)} drop(s)"), facts, lines, files=files)
+            lines.append(indent_text(f"{record.duration:g} s, {sensors}, {droppers} after the release", f"drop {n}: "))
+    return CommandOutput(escape_text(f"{drop_case.id}: {count_noun(len(files), 'drop')}"), facts, lines, files=files)
 
 
 def begin_drop(logger: logging.Logger, drop: str) -> ShareCallback:

@@ -16,6 +16,7 @@ from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import build_table, format_number, indent_text
 from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.comparison.response_record import read_response
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
 from pantocheck.conformance.identification.pantograph_fit.fit_description import CHAIN_KEYS, name_parameter
 from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
@@ -68,7 +69,8 @@ def fit_pantograph_command(
         selection = fit_chains(records, task)
         fit = build_fitted_pantograph(records, selection, masses or selection.best, title, contact_stiffness)
         files = fit.write(out)
-    conclusion = f"Chain of {fit.report.masses} masses fitted to {len(records)} response(s)"
+    chain = f"Chain of {count_noun(fit.report.masses, 'mass', 'masses')}"
+    conclusion = f"{chain} fitted to {count_noun(len(records), 'response')}"
     details = [*_describe_fit(fit.report)]
     return CommandOutput(Text(conclusion), fit.report, details, files=files, remarks=remark_missing_formats())
 

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from pantocheck.conformance.command_line.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.command_line.console import escape_text
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.own_files.migrated_file import migrate_file
 
 
@@ -22,4 +23,4 @@ def migrate_command(
     Example: pantocheck migrate my-profile.toml --out migrated
     """
     lines = [escape_text(migrate_file(path, out)).plain for path in files]
-    return CommandOutput(Text(f"{len(files)} file(s)"), lines, [Unwrapped(line) for line in lines])
+    return CommandOutput(Text(count_noun(len(files), "file")), lines, [Unwrapped(line) for line in lines])

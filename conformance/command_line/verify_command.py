@@ -15,6 +15,7 @@ from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import escape_text, indent_text
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.interface.verified_report import verify_report
 
 HEADINGS: dict[CheckOutcome, str] = {
@@ -83,7 +84,7 @@ def _exit_code(verification: Verification, any_verdict: bool) -> int:
 
 def _conclude(verification: Verification, word: str) -> str:
     """State of the document in one sentence."""
-    size = f"{_count(verification.cases, 'case', 'cases')}, {_count(verification.criteria, 'criterion', 'criteria')}"
+    size = f"{count_noun(verification.cases, 'case')}, {count_noun(verification.criteria, 'criterion', 'criteria')}"
     verdict = verification.verdict
     match verification.state:
         case "consistent":
@@ -91,7 +92,7 @@ def _conclude(verification: Verification, word: str) -> str:
         case "incomplete":
             return f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared."
         case "contradicted":
-            count = _count(len(verification.discrepancies), "contradiction", "contradictions")
+            count = count_noun(len(verification.discrepancies), "contradiction")
             return f"not consistent: {count} ({size}; stated verdict '{verdict}')."
 
 
@@ -115,7 +116,3 @@ def _describe_verification(verification: Verification) -> dict[str, object]:
         "criteria": verification.criteria,
         "checks": [asdict(check) for check in verification.checks],
     }
-
-
-def _count(number: int, singular: str, plural: str) -> str:
-    return f"{number} {singular if number == 1 else plural}"

@@ -27,6 +27,7 @@ from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS, Res
 from pantocheck.conformance.comparison.response_limits import ResponseLimits
 from pantocheck.conformance.comparison.response_record import ResponseRecord
 from pantocheck.conformance.consistency.receptance import head_receptance
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.results_building import build_suite
@@ -202,7 +203,7 @@ def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[Res
         if not response.modulus_uncertainty_pct:
             yield f"{response.name}: the sidecar states no uncertainty of the measurement"
         if response.missing_rows:
-            yield f"{response.name}: {len(response.missing_rows)} row(s) without a value"
+            yield f"{response.name}: {count_noun(len(response.missing_rows), 'row')} without a value"
 
 
 def _in_words(point: str) -> str:

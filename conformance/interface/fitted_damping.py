@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.damping.damping_format import Coefficient, DampingResults
 from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.rounded_model import write_model
@@ -13,7 +14,7 @@ from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.reports.document import Document
 
 COEFFICIENT_COLUMNS = ("kind", "matrix", "value", "low_95", "high_95", "determined", "reason")

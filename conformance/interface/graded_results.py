@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.grading.verdicts import Verdict
@@ -13,7 +14,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.damping.damping_results import (
     FitOptions,
     WireCoefficients,
@@ -21,7 +22,7 @@ from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.fitted_damping import FittedDamping
 from pantocheck.conformance.interface.missing_formats import warn_missing_formats
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.interface.opened_case import OpenedCase
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records

@@ -9,8 +9,3 @@ LONGEST_DESCRIPTION = 160
 def describe_in_one_line(value: object, *facts: str) -> str:
     """Class of a value with facts about it, shortened to one line."""
     return f"<{type(value).__name__} {textwrap.shorten(', '.join(facts), LONGEST_DESCRIPTION, placeholder=' ...')}>"
-
-
-def count_noun(count: int, noun: str) -> str:
-    """Number of things: `1 pantograph`, `2 pantographs`."""
-    return f"{count} {noun}{'' if count == 1 else 's'}"

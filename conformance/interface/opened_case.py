@@ -10,12 +10,13 @@ from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
 from pantocheck.conformance.cases.library import load_case, load_entry
 from pantocheck.conformance.comparison.compared_run import deliver_case, describe_delivery
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.case_selection import choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.interface.graded_results import GradedResults
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.interface.opened_drop import OpenedDrop
 from pantocheck.conformance.interface.opened_run import SimulatedRun
 from pantocheck.conformance.results.outcome import missing_record_reason

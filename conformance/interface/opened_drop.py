@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.units import SI_UNITS
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord

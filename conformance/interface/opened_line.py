@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_parts import locate_part, read_line_file
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
 from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, static_uplift

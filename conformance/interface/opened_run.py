@@ -7,9 +7,10 @@ from typing import Any
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import ComparedRun, read_record_run
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.interface.column_table import tabulate_columns, tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals

@@ -12,9 +12,10 @@ from pantocheck.conformance.authenticity.record_check import check_record_quanti
 from pantocheck.conformance.authenticity.signatures.signature_check import check_signatures
 from pantocheck.conformance.authenticity.verification import DocumentState, Verification, verify_document
 from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.interface.column_table import tabulate_rows
-from pantocheck.conformance.interface.one_line import count_noun, describe_in_one_line
+from pantocheck.conformance.interface.one_line import describe_in_one_line
 
 
 @dataclass(frozen=True)

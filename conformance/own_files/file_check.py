@@ -15,6 +15,7 @@ from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
 from pantocheck.conformance.comparison.static_record import read_static_table
 from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
 from pantocheck.conformance.input_files.input_error import InputError
@@ -93,7 +94,7 @@ def _check_case(path: Path) -> str:
     case = load_case(path)
     _check_rest(case.line, f"case '{path.name}', line {case.line.title!r}")
     speed = "line at rest" if case.file.speed_km_h is None else f"{case.file.speed_km_h:g} km/h"
-    pantographs = [f"{len(case.pantographs)} pantograph(s)"] if case.pantographs else []
+    pantographs = [count_noun(len(case.pantographs), "pantograph")] if case.pantographs else []
     speeds = [] if case.is_static else speed_warnings(case)
     warnings = [f"\n  warning: {text}" for text in (*speeds, *_warn_of_limits(case.file.limit))]
     description = f"case {case.id}: {', '.join([speed, *pantographs])}; line: {_describe_line(case.line)}"
@@ -150,9 +151,10 @@ def _describe_line(line: LineFile) -> str:
 def _check_record(path: Path) -> str:
     samples, sidecar, table = read_samples(path)
     rows, n = samples.force.shape
+    content = f"record: {n} samples of {count_noun(rows, 'pantograph')}"
     unused = f"\n  columns that are not used: {', '.join(samples.ignored[:20])}" if samples.ignored else ""
     warnings = "".join(f"\n  warning: {text}" for text in _warn_of_record(samples, sidecar, table))
-    return f"record: {n} samples of {rows} pantograph(s) in {table.name}, {sidecar.speed_km_h:g} km/h{unused}{warnings}"
+    return f"{content} in {table.name}, {sidecar.speed_km_h:g} km/h{unused}{warnings}"
 
 
 def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
@@ -184,7 +186,7 @@ def _check_drop_sidecar(path: Path) -> str:
 
 def _check_drops(path: Path) -> str:
     records = read_drop_records(path)
-    return f"mass-drop record: {len(records)} run(s) in {path.name}"
+    return f"mass-drop record: {count_noun(len(records), 'run')} in {path.name}"
 
 
 def _check_static(path: Path) -> str:
@@ -224,8 +226,8 @@ def _check_json(path: Path) -> str:
 
 def _check_dossier(path: Path) -> str:
     dossier = read_dossier(path)
-    pairs, cases = len(dossier.file.pair), len(dossier.cases)
-    return f"dossier: {len(dossier.lines)} line(s), {cases} reference model(s), {pairs} pair(s) of runs"
+    lines, cases = count_noun(len(dossier.lines), "line"), count_noun(len(dossier.cases), "reference model")
+    return f"dossier: {lines}, {cases}, {count_noun(len(dossier.file.pair), 'pair')} of runs"
 
 
 _CHECKS: dict[str, Callable[[Path], str]] = {

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.measured_table import (
@@ -150,7 +151,8 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
             hint = "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are enough."
             if name == "position" and list(numbered) == [1]:
                 found = f"spacing_m is missing from the sidecar, and the table {found}"
-                hint = f"Give spacing_m, {expected - 1} distance(s) between pantographs, or one row per pantograph."
+                distances = count_noun(expected - 1, "distance")
+                hint = f"Give spacing_m, {distances} between pantographs, or one row per pantograph."
             yield InputError(where, found, hint)
 
 

@@ -87,7 +87,8 @@ def test_every_command_runs(outputs: dict[str, list[str]]) -> None:
 
 def test_check_prints_the_lines_of_the_page(outputs: dict[str, list[str]]) -> None:
     (printed,) = outputs["pantocheck check my-line.toml my-pantograph.toml my-case.toml"]
-    assert printed in [text for language, text in list_blocks() if language == ""]
+    lines = "".join(f"{line.rstrip()}\n" for line in printed.splitlines())  # a wrapped line may end with a blank
+    assert lines in [text for language, text in list_blocks() if language == ""]
 
 
 def test_run_prints_values_and_the_limit_decides(outputs: dict[str, list[str]]) -> None:
@@ -125,5 +126,5 @@ def test_errors_of_the_page_are_those_that_are_printed(outputs: dict[str, list[s
     (folder / "wrong" / "my-line.toml").write_text(text)
     code, output = pantocheck(f"pantocheck check {folder}/wrong/my-line.toml")
     assert code == 2
-    messages = output.rpartition("2 problem(s)")[0]
+    messages = output.rpartition("2 problems")[0]
     assert messages in [text for language, text in list_blocks() if language == ""]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
 from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
@@ -119,7 +120,7 @@ def _list_notes(shown: ShownCase) -> tuple[str, ...]:
         for note in shown.case["notes"]
     ]
     counted = {source: sum(other == source for _, other in repeated) for _, source in repeated if source is not None}
-    references = [f"{n} {'note' if n == 1 else 'notes'} as in {source}." for source, n in counted.items()]
+    references = [f"{count_noun(n, 'note')} as in {source}." for source, n in counted.items()]
     return (*(note for note, source in repeated if source is None), *references)
 
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports.document import Figure, SmallPrint
 from pantocheck.conformance.reports.figures.line_figure import draw_line_shape
 
@@ -21,7 +22,7 @@ def line_figures(case: dict[str, Any], earlier: tuple[dict[str, Any], ...]) -> t
         return ()
     views = "side view" if shape["plan"] is None else "side view and plan view"
     masses = sum(point["symbol"] == "mass" for point in shape["side"]["points"])
-    parts = f" {masses} point {'mass' if masses == 1 else 'masses'}." if masses else ""
+    parts = f" {count_noun(masses, 'point mass', 'point masses')}." if masses else ""
     section = case["run"]["evaluated_m"]
     ground = "" if section is None else " Grey ground: analysis section."
     caption = (

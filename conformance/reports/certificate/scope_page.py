@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_tree
@@ -65,7 +66,7 @@ def summarise_identity(results: dict[str, Any]) -> list[str]:
     sentences += [f"Cases with inputs changed with --set: {inputs}."] if inputs else []
     if not changes:
         return sentences
-    cases = "1 case" if len(changes) == 1 else f"{len(changes)} cases"
+    cases = count_noun(len(changes), "case")
     raised = all(raises_trust_only(change) for stated in changes for change in stated)
     effect = "raises the trust of limits" if raised else "weakens limits or changes their trust"
     return [*sentences, f"The limits file {effect} in {cases}."]

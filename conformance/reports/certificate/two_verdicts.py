@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.words import read_words
@@ -88,7 +89,7 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
     shown = {*results["information"], *(results["verification_only"] if name == "criteria" else ())}
     cases = [case for case in results["cases"] if case["id"] not in shown and case_verdict(case, name) is not None]
     verdicts = Counter(case_verdict(case, name) for case in cases)
-    passed = f"{verdicts['pass']} of {len(cases)} {'case' if len(cases) == 1 else 'cases'}"
+    passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
     yield f"{passed} {'passes' if verdicts['pass'] == 1 else 'pass'}." if cases else "No case takes part."
     if name == "baseline":
         yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.certificate.findings_table import count_sentences
@@ -44,7 +45,7 @@ def build_headline(results: dict[str, Any]) -> str:
     grades = Counter(row["verdict"] for row in rows if not is_drift(row))
     drifted = sum(row["verdict"] == "fail" for row in rows if is_drift(row))
     counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
-    total = f"{len(cases)} {'case' if len(cases) == 1 else 'cases'}"
+    total = count_noun(len(cases), "case")
     if not cases:
         sentences = ["No case takes part in the verdict."]
     elif passed == len(cases) and results["verdict"] in ("pass", "unverified"):
@@ -56,7 +57,7 @@ def build_headline(results: dict[str, Any]) -> str:
                 outside = (
                     f" ({grades['fail']} of {counted} counted criteria outside their limits{_count_drifts(drifted)})"
                 )
-                parts.append(f"{number} {one if number == 1 else many}{outside if verdict == 'fail' else ''}")
+                parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
     if accepted:
         sentences.append(f"Accepted by the user: unverified records of {results['system']['name']}.")
@@ -70,7 +71,7 @@ def _count_drifts(number: int) -> str:
     """Further part of a clause: the number of values that drifted from a baseline; empty without any."""
     if not number:
         return ""
-    return f", {number} {'value' if number == 1 else 'values'} drifted from the baseline"
+    return f", {count_noun(number, 'value')} drifted from the baseline"
 
 
 def describe_record(case: dict[str, Any]) -> str | None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.population_figures import draw_test_boxes, draw_test_ratios
 from pantocheck.conformance.reports.page_text import clean_tree, format_percent, format_value
@@ -43,7 +44,7 @@ def build_population_document(population: dict[str, Any]) -> doc.Document:
 def _write_headline(records: list[dict[str, Any]], groups: list[dict[str, Any]]) -> str:
     agreeing = [group for group in groups if group["agrees"]]
     compared = [group for group in groups if group["agrees"] is not None]
-    count = f"{len(records)} test" + ("s" if len(records) > 1 else "")
+    count = count_noun(len(records), "test")
     return (
         f"{count} identified one by one; the medians of {len(agreeing)} of {len(compared)} groups agree with the joint "
         "identification."

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.reports.site.published_results import PublishedResults
@@ -28,7 +29,8 @@ def build_site_index(title: str, published: Sequence[PublishedResults], pages: M
         Page of each case by its id.
     """
     systems = list(dict.fromkeys(run.system for run in published))
-    headline = f"{_count(len(systems), 'system')}, {_count(len(pages), 'case')}, {_count(len(published), 'run')}."
+    counted = ((systems, "system"), (pages, "case"), (published, "run"))
+    headline = f"{', '.join(count_noun(len(items), noun) for items, noun in counted)}."
     blocks: list[doc.Block] = [doc.Paragraph(SITE_STATEMENT)]
     warnings = tuple(
         f"{name_run(run)} {CONTRADICTION.format(count=len(run.discrepancies), first=clean_text(run.discrepancies[0]))}"
@@ -94,7 +96,3 @@ def _describe_run(run: PublishedResults) -> tuple[doc.RichText, ...]:
         f"{passed} of {len(cases)}",
         doc.PageLink("certificate", f"{run.folder}/certificate.html"),
     )
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

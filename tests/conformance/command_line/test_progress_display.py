@@ -60,7 +60,8 @@ def test_begin_of_a_task_ends_the_task_before_it() -> None:
     assert progress.describe().startswith("self-test: 1 of 4 finished, late force, 25 %")
 
 
-def test_cases_of_several_processes_are_all_named() -> None:
+def test_cases_of_several_processes_are_all_named(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO, LOGGER.name)
     progress = TaskProgress("running cases", 4, Clock())
     LOGGER.addHandler(progress)
     try:

@@ -149,7 +149,7 @@ def test_results_and_modes_of_an_earlier_commit_are_read(path: Path, tmp_path: P
 
 
 def test_records_and_damping_tables_of_an_earlier_commit_are_read() -> None:
-    assert check_input_file(FROZEN / "250.toml").startswith("record: 5184 samples of 1 pantograph(s)")
+    assert check_input_file(FROZEN / "250.toml").startswith("record: 5184 samples of 1 pantograph")
     for name in ("damping.toml", "damping_with_modal.toml"):
         assert check_input_file(FROZEN / "T1-fit" / name) == "damping file"
 

@@ -88,7 +88,7 @@ def test_valid_files_give_one_line_each(edited_case: EditedCase) -> None:
     result = check(folder / "250.toml", folder / "line.toml", folder / "pantograph.toml")
     assert (result.exit_code, result.stderr) == (0, "")
     assert [line.removeprefix(f"{folder}/") for line in result.stdout.splitlines()[1:]] == [
-        "250.toml: valid case en50318-2002/250: 250 km/h, 1 pantograph(s); line: 10 spans, 600 m",
+        "250.toml: valid case en50318-2002/250: 250 km/h, 1 pantograph; line: 10 spans, 600 m",
         "line.toml: valid line: 10 spans, 600 m",
         "pantograph.toml: valid pantograph file",
     ]
@@ -120,7 +120,7 @@ def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> 
     edit_toml(path.with_name("pantograph.toml"), {"chain.masses_kg": [-1.0, 7.0]})
     result = check(path)
     assert result.exit_code == 2
-    assert result.stdout == "5 problem(s) in 1 of 1 file(s)\n"
+    assert result.stdout == "5 problems in 1 of 1 file\n"
     messages = result.stderr.splitlines()
     assert [line.partition(":")[0] for line in messages[::2]] == [
         "case '250.toml', key speed_km_h",
@@ -142,7 +142,7 @@ def test_valid_and_faulty_files_are_reported_together(edited_case: EditedCase) -
     result = check(folder / "pantograph.toml", folder / "none.toml", folder / "line.toml")
     assert result.exit_code == 2
     assert result.stdout.splitlines() == [
-        "2 problem(s) in 2 of 3 file(s)",
+        "2 problems in 2 of 3 files",
         f"{folder}/pantograph.toml: valid pantograph file",
     ]
     assert "file 'none.toml': cannot be read" in result.stderr
@@ -157,9 +157,9 @@ def test_folder_of_records_is_checked(tmp_path: Path, two_pantograph_record: Rec
     result = check(tmp_path)
     assert result.exit_code == 0
     assert result.stdout.splitlines() == [
-        "2 file(s) checked, all valid",
+        "2 files checked, all valid",
         *(
-            f"{tmp_path}/{name}.toml: valid record: 400 samples of 2 pantograph(s) in {name}.{suffix}, 216 km/h"
+            f"{tmp_path}/{name}.toml: valid record: 400 samples of 2 pantographs in {name}.{suffix}, 216 km/h"
             for name, suffix in (("a", "csv"), ("b", "h5"))
         ),
     ]
@@ -189,7 +189,7 @@ def test_mass_drop_record_is_checked(tmp_path: Path) -> None:
     write_drop_csv(build_drop_record(), tmp_path / "drop.csv")
     write_drop_sidecar(build_drop_record(), tmp_path / "drop.toml")
     for path in (tmp_path / "drop.csv", tmp_path / "drop.toml"):
-        assert "valid mass-drop record: 1 run(s) in drop.csv" in check(path).stdout
+        assert "valid mass-drop record: 1 run in drop.csv" in check(path).stdout
     edit_toml(tmp_path / "drop.toml", {"record.sampling_rate_hz": -1.0, "channel.0.column": 0})
     result = check(tmp_path / "drop.csv")
     assert result.exit_code == 2
@@ -218,7 +218,7 @@ def test_folder_without_input_files_hides_no_other_result(edited_case: EditedCas
     result = check(tmp_path / "empty", folder / "line.toml")
     assert result.exit_code == 2
     assert result.stdout.splitlines() == [
-        "1 problem(s) in 1 of 2 file(s)",
+        "1 problem in 1 of 2 files",
         f"{folder}/line.toml: valid line: 10 spans, 600 m",
     ]
     assert "there is no input file in it" in result.stderr
@@ -235,7 +235,7 @@ def test_folders_of_tools_are_skipped(name: str, tmp_path: Path) -> None:
     shutil.copy(line, tmp_path / "lines" / "line.toml")
     result = check(tmp_path)
     assert result.exit_code == 0, result.stderr
-    assert result.stdout.splitlines()[:1] == ["1 file(s) checked, all valid"]
+    assert result.stdout.splitlines()[:1] == ["1 file checked, all valid"]
     assert check(tmp_path / name).exit_code == 2
 
 
@@ -259,7 +259,7 @@ def test_static_record_is_checked_with_its_table(tmp_path: Path, suffix: str) ->
     write_static_record(tmp_path, columns | {"elasticity_mm_N": np.array([0.4, -0.5])}, force_N=None)
     result = check(table.with_suffix(suffix))
     assert result.exit_code == 2
-    assert "2 problem(s) in 1 of 1 file(s)" in result.output
+    assert "2 problems in 1 of 1 file" in result.output
 
 
 def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path) -> None:
@@ -324,4 +324,4 @@ def test_all_wrong_columns_of_a_record_are_listed(tmp_path: Path, two_pantograph
     for place in ("column 'force_1_lbf': unknown column", "column 'lift_2_m': unknown column"):
         assert place in result.stderr
     assert "force_2_N: sample 1 has the impossible value 1e+300" in result.stderr
-    assert "3 problem(s) in 1 of 1 file(s)" in result.stdout
+    assert "3 problems in 1 of 1 file" in result.stdout
