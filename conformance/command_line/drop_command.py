@@ -14,8 +14,7 @@ from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
-from pantocheck.conformance.mass_drops.drop_writing import check_drop_sidecar
+from pantocheck.conformance.mass_drops.drop_formats import check_drop_target, select_drop_writer
 from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
 from pantocheck.conformance.step_log import ShareCallback, StepSequence
 
@@ -46,7 +45,7 @@ def drop_command(
     numbers = list(range(1, drops + 1)) if number is None else [number]
     paths = [out] if len(numbers) == 1 else [out.with_name(f"{out.stem}-{n}{out.suffix}") for n in numbers]
     for path in paths:
-        check_drop_sidecar(path)
+        check_drop_target(path)
     with follow_steps("mass drops", len(numbers)) as progress:
         for n, path in zip(numbers, paths, strict=True):
             simulation = simulate_drop(drop_case, n, begin_drop(_LOGGER, f"drop {n} of {drops}"))

@@ -6,7 +6,7 @@ from pathlib import Path
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.table_formats import CSV, HDF5, UFF, TableFormat
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
+from pantocheck.conformance.mass_drops.drop_writing import check_drop_sidecar, write_drop_csv, write_drop_hdf5
 
 
 def _write_universal_file(record: DropRecord, path: Path) -> None:
@@ -22,6 +22,9 @@ DROP_WRITERS: dict[TableFormat, Callable[[DropRecord, Path], None]] = {
 }
 """Writer of a record by its format."""
 
+FORMATS_WITH_SIDECAR = (UFF, CSV)
+"""Formats whose writer puts a sidecar beside the record."""
+
 
 def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
     """Writer of the format of a file, by its suffix.
@@ -36,3 +39,9 @@ def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
         raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(suffixes)}.")
     table_format.require_library(out)
     return DROP_WRITERS[table_format]
+
+
+def check_drop_target(out: Path) -> None:
+    """Check before a simulation that its record replaces no other file, as in `check_drop_sidecar`."""
+    if any(out.suffix.lower() in table_format.suffixes for table_format in FORMATS_WITH_SIDECAR):
+        check_drop_sidecar(out)

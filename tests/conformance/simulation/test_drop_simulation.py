@@ -139,6 +139,26 @@ def test_single_drop_of_a_case_keeps_the_name_of_the_file(drop_case: DropCase, t
     assert [path.name for path in tmp_path.glob("one*.csv")] == ["one.csv"]
 
 
+@pytest.mark.parametrize("suffix", [".uff", ".csv"])
+def test_command_replaces_no_case_by_a_sidecar(drop_case: DropCase, tmp_path: Path, suffix: str) -> None:
+    """The sidecar of the second of three records has the name of another case: nothing is simulated or written."""
+    path, other = drop_case({}), tmp_path / "all-2.toml"
+    other.write_bytes(path.read_bytes())
+    done = pantocheck("drop", path, "--out", tmp_path / f"all{suffix}")
+    assert done.exit_code == 2
+    assert "the sidecar would overwrite all-2.toml" in done.output
+    assert other.read_bytes() == path.read_bytes()
+    assert [file.name for file in tmp_path.glob("all-*")] == ["all-2.toml"]
+
+
+def test_record_without_sidecar_may_have_the_name_of_its_case(drop_case: DropCase) -> None:
+    path = drop_case({})
+    content = path.read_bytes()
+    done = pantocheck("drop", path, "--drop", 2, "--out", path.with_suffix(".h5"))
+    assert done.exit_code == 0, done.output
+    assert path.read_bytes() == content
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -31,7 +31,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.document import WarningBox
 from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.model import Catenary, Kind, Rayleigh, discretise
+from pantocheck.model import Catenary, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 
 CASE = "vovan2015/mass-drop/printed"
@@ -266,6 +266,24 @@ def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode,
     assert len(comments) == len(results.coefficients)
     assert all(": 95 % interval " in line for line in comments)
     assert Damping.model_validate(tomllib.loads(text)["damping"]).contact_wire.stiffness_coefficient_s > 0
+
+
+def test_modal_damping_of_the_line_replaces_the_stated_damping_in_its_bands(
+    measured: tuple[Mode, ...], unequal: Catenary
+) -> None:
+    """The line states damping of its droppers, and modal damping at all frequencies: droppers add nothing to a mode.
+
+    Without the bands, what the droppers add is subtracted, and the coefficients of the wires change.
+    """
+    droppers = replace(unequal, damping=DAMPING | {Kind.DROPPER: Rayleigh(0.0, 2e-3)})
+    banded = replace(droppers, modal_damping=(ModalBand(0.0, 100.0, 0.005),))
+    expected, found, subtracted = (
+        build_damping_results(measured, line, 1.0, "m") for line in (unequal, banded, droppers)
+    )
+    assert found.coefficients == expected.coefficients
+    assert found.stated == ()
+    assert [stated.kind for stated in subtracted.stated] == ["dropper"]
+    assert subtracted.coefficients != found.coefficients
 
 
 def test_other_line_is_refused_before_anything_is_written(tmp_path: Path, measured: tuple[Mode, ...]) -> None:
