@@ -7,9 +7,10 @@ import pytest
 
 from helpers.drop_records import assert_same_record
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.mass_drops.drop_formats import select_drop_writer
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import check_drop_sidecar, write_drop_csv
+from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv
 
 
 def test_csv_reads_back(tmp_path: Path, record: DropRecord) -> None:
@@ -35,11 +36,14 @@ def test_decimal_commas(tmp_path: Path, record: DropRecord) -> None:
 
 
 @pytest.mark.parametrize("name", ["plan.csv", "plan.uff"])
-def test_sidecar_replaces_no_other_file(tmp_path: Path, name: str) -> None:
+def test_sidecar_replaces_no_other_file(tmp_path: Path, record: DropRecord, name: str) -> None:
     """A case `plan.toml` beside the record `plan.csv` stays; a sidecar of an earlier record is replaced."""
-    (tmp_path / "plan.toml").write_text('id = "own/plan"\n[mass_drop]\n')
+    case, write = tmp_path / "plan.toml", select_drop_writer(Path(name))
+    case.write_text('id = "own/plan"\n[mass_drop]\n')
     with pytest.raises(InputError, match=r"would overwrite plan\.toml"):
-        check_drop_sidecar(tmp_path / name)
-    (tmp_path / "plan.toml").write_text('[test]\nname = "earlier"\n[drop]\n')
-    check_drop_sidecar(tmp_path / name)
-    check_drop_sidecar(tmp_path / "new.csv")
+        write(record, tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.toml"]
+    assert case.read_text() == 'id = "own/plan"\n[mass_drop]\n'
+    case.write_text('[test]\nname = "earlier"\n[drop]\n')
+    write(record, tmp_path / name)
+    assert "earlier" not in case.read_text()
