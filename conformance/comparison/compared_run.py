@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, ValuesByOwner
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.figure_data import Traces
@@ -52,6 +52,10 @@ class ComparedRun:
         Thinned curves; empty unless the run was read from results.
     supports : tuple of float
         Positions of the supports [m]; empty if they are not known.
+    unknown_components : tuple of str
+        Components of the uncertainty that are not part of the half-widths.
+    reason : str
+        Reason why no pantograph has a quantity; empty if one has.
     """
 
     kind: Literal["record", "results", "system"]
@@ -65,6 +69,8 @@ class ComparedRun:
     signals: Mapping[int, PantographSignals] = field(default_factory=dict)
     traces: Mapping[int, Traces] = field(default_factory=dict)
     supports: tuple[float, ...] = ()
+    unknown_components: tuple[str, ...] = ()
+    reason: str = ""
 
 
 def read_record_run(path: Path) -> ComparedRun:
@@ -88,6 +94,8 @@ def read_record_run(path: Path) -> ComparedRun:
         uncertainty=record.uncertainty.combined,
         signals={} if prepared is None else prepared.pantographs,
         supports=() if prepared is None else prepared.line.line_supports or (),
+        unknown_components=record.uncertainty.unknown_components,
+        reason=_find_reason(record.values),
     )
 
 
@@ -148,6 +156,8 @@ def describe_delivery(case: Case, system: System, delivered: Delivered) -> Compa
         uncertainty=evaluation.uncertainty.combined,
         signals={} if evaluation.signals is None else evaluation.signals.pantographs,
         supports=case.line.geometry.supports,
+        unknown_components=evaluation.uncertainty.unknown_components,
+        reason=_find_reason(evaluation.evaluation),
     )
 
 
@@ -165,6 +175,13 @@ def _read_case_run(case: CaseResult, results: Results) -> ComparedRun:
         traces={int(owner): traces for owner, traces in case.traces.items()},
         supports=tuple(sorted(supports)),
     )
+
+
+def _find_reason(evaluation: Evaluation) -> str:
+    """Reason why no pantograph has a quantity: the first one of the first pantograph; empty if one has."""
+    if any(values for owner, values in evaluation.values.items() if owner != LINE):
+        return ""
+    return next((reason for skipped in evaluation.skipped.values() for reason in skipped.values()), "")
 
 
 def _read_values(quantities: Mapping[str, Mapping[str, Number]]) -> dict[int, dict[str, Value]]:

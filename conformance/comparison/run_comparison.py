@@ -89,14 +89,16 @@ def _select_run(runs: Sequence[ComparedRun], case: str) -> ComparedRun:
 def _compare_case(case: str, runs: Mapping[str, ComparedRun]) -> ComparedCase:
     first = next(iter(runs.values()))
     owners = sorted({owner for run in runs.values() for owner in run.values})
+    speeds = (
+        f"{name}: {run.speed_km_h:g} km/h, the first subject {first.speed_km_h:g} km/h. Forces are compared at the "
+        "same position."
+        for name, run in runs.items()
+        if run.speed_km_h and first.speed_km_h and abs(run.speed_km_h / first.speed_km_h - 1) > SPEED_TOLERANCE
+    )
+    reasons = (f"{name} has no quantities: {run.reason}." for name, run in runs.items() if run.reason)
     return ComparedCase(
         id=case,
-        notes=tuple(
-            f"{name}: {run.speed_km_h:g} km/h, the first subject {first.speed_km_h:g} km/h. Forces are compared at the "
-            "same position."
-            for name, run in runs.items()
-            if run.speed_km_h and first.speed_km_h and abs(run.speed_km_h / first.speed_km_h - 1) > SPEED_TOLERANCE
-        ),
+        notes=(*reasons, *speeds),
         owners=tuple(_compare_owner(owner, runs) for owner in owners),
     )
 

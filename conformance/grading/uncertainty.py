@@ -50,6 +50,11 @@ class Uncertainty:
         return Uncertainty({name: part for name, part in self.components.items() if name in names})
 
     @property
+    def unknown_components(self) -> tuple[ComponentName, ...]:
+        """Components without a half-width of any quantity."""
+        return tuple(name for name, part in self.components.items() if not part.half_widths)
+
+    @property
     def by_quantity(self) -> dict[int, dict[str, dict[ComponentName, Value]]]:
         """Half-widths by pantograph, quantity and component, for all quantities with a component."""
         found: dict[int, dict[str, None]] = {}

@@ -105,7 +105,7 @@ class OpenedCase:
     def simulate(self) -> SimulatedRun:
         """Simulate the passage once with the reference simulator, with the discretisation of the case.
 
-        The uncertainty of discretisation stays unknown; `run` determines it with further simulations.
+        The uncertainties of discretisation and start stay unknown; `run` determines them with further simulations.
 
         Raises
         ------

@@ -65,7 +65,8 @@ class OpenedRun:
     def to_dataframe(self) -> Any:
         """Quantities with their uncertainty, one per row: a table of pandas, or columns of numpy.
 
-        Quantities with several values, such as the elasticity along a span, are left out.
+        The column `unknown_components` names the components that the uncertainty lacks, such as those of mesh and start
+        after `simulate`. Quantities with several values, such as the elasticity along a span, are left out.
         """
         rows = [
             {
@@ -74,13 +75,16 @@ class OpenedRun:
                 "value": value,
                 "unit": quantity_unit(name),
                 "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
+                "unknown_components": ", ".join(self.run.unknown_components),
                 "label": quantity_label(name),
             }
             for owner, values in self.run.values.items()
             for name, value in values.items()
             if not isinstance(value, tuple)
         ]
-        return tabulate_rows(rows, ("pantograph", "quantity", "value", "unit", "uncertainty", "label"))
+        return tabulate_rows(
+            rows, ("pantograph", "quantity", "value", "unit", "uncertainty", "unknown_components", "label")
+        )
 
     def signals(self, pantograph: int = 1) -> Any:
         """Signals over the analysis section: a table of pandas, or columns of numpy.

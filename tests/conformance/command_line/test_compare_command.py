@@ -2,12 +2,14 @@
 
 import csv
 import json
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 from jsonschema import validate
 from typer.testing import CliRunner, Result
 
@@ -52,6 +54,19 @@ def read(folder: Path) -> dict[str, Any]:
 
 def select_quantity(content: dict[str, Any], owner: int, name: str) -> dict[str, Any]:
     return next(row for row in content["cases"][0]["owners"][owner]["quantities"] if row["name"] == name)
+
+
+def test_record_without_an_analysis_section_is_named_with_the_reason(folder: Path) -> None:
+    path = folder / "other.toml"
+    content = tomllib.loads(path.read_text())
+    del content["evaluated_m"]
+    path.write_text(tomli_w.dumps(content))
+    done = run("first.csv", "other.csv", "--out", "out")
+    assert done.exit_code == 0, done.output
+    (note,) = read(folder)["cases"][0]["notes"]
+    assert note == "other has no quantities: the analysis section is not stated: add evaluated_m to the sidecar."
+    assert note in " ".join(done.output.split())
+    assert note in (folder / "out" / "comparison.html").read_text()
 
 
 def test_two_records_are_compared_for_both_pantographs(folder: Path) -> None:

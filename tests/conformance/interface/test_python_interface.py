@@ -105,7 +105,13 @@ def test_quantities_are_a_table(run: SimulatedRun) -> None:
 
 def test_value_and_unit_stand_before_the_label(run: SimulatedRun) -> None:
     """A terminal of 80 columns shows the first columns of a table of pandas; a label is up to 60 characters long."""
-    assert list(run.to_dataframe()) == ["pantograph", "quantity", "value", "unit", "uncertainty", "label"]
+    columns = ["pantograph", "quantity", "value", "unit", "uncertainty", "unknown_components", "label"]
+    assert list(run.to_dataframe()) == columns
+
+
+def test_components_that_the_uncertainty_lacks_are_named(run: SimulatedRun) -> None:
+    """The wave has no other start, and its section is shorter than the five spans that the component `length` needs."""
+    assert set(read_column(run.to_dataframe(), "unknown_components")) == {"start, length"}
 
 
 def test_values_are_described_in_one_line(run: SimulatedRun, two_pantograph_case: Case) -> None:
