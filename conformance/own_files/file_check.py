@@ -29,6 +29,7 @@ from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
+from pantocheck.conformance.records.logger.sensor_warnings import list_sensor_warnings
 from pantocheck.conformance.records.measured.sample_positions import place_samples
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples
@@ -158,7 +159,8 @@ def _check_record(path: Path) -> str:
 
 
 def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
-    """Reasons why `assess` evaluates no quantity of a record, or none of a pantograph."""
+    """Doubts about a sum of sensors, and reasons why `assess` evaluates no quantity, or none of a pantograph."""
+    yield from list_sensor_warnings(sidecar.columns, samples.left_out_sensors)
     if (missing := find_missing_statement(samples, sidecar)) is not None:
         yield f"`assess` skips every criterion: {missing}"
     if sidecar.evaluated_m is None:

@@ -31,7 +31,7 @@ from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 
-def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[str, ...]]:
+def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[TableColumn, ...]]:
     """Read the table of a record.
 
     Parameters
@@ -45,8 +45,8 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
     -------
     rows : dict of str to dict of int to ndarray
         Rows of each channel by number from 1.
-    ignored : tuple of str
-        Names of the columns that the sidecar does not use.
+    unused : tuple of TableColumn
+        Columns that the sidecar does not use.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
         errors += _find_impossible_values(name, rows[name], where)
     if errors:
         raise join_errors(errors)
-    return rows, () if sidecar.columns is None else _list_ignored(table, sidecar)
+    return rows, () if sidecar.columns is None else _list_unused(table, sidecar)
 
 
-def _list_ignored(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[str, ...]:
+def _list_unused(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[TableColumn, ...]:
     used = list_used_channels(sidecar)
-    return tuple(column.label for column in table.columns if column.label and column.label not in used)
+    return tuple(column for column in table.columns if column.label and column.label not in used)
 
 
 def _read_own_rows(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[ChannelRows, list[InputError]]:

@@ -9,9 +9,11 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.measured_table import TableColumn
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.records.channel_rows import read_channel_rows
 from pantocheck.conformance.records.logger.placed_rows import ARCING, EVENTS, LOADED, MARKS
+from pantocheck.conformance.records.logger.sensor_warnings import list_left_out_sensors
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_channels import CHANNELS, ChannelRows
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -101,8 +103,8 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
     table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
-    rows, ignored = read_channel_rows(table, sidecar)
-    return _build_samples(rows, sidecar, ignored), sidecar, table
+    rows, unused = read_channel_rows(table, sidecar)
+    return _build_samples(rows, sidecar, unused), sidecar, table
 
 
 def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
@@ -153,7 +155,7 @@ def build_record_error(table: Path, error: RecordInvalid) -> InputError:
     )
 
 
-def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str, ...]) -> RecordSamples:
+def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, unused: tuple[TableColumn, ...]) -> RecordSamples:
     """Stack the rows of each channel; supports without a row of uplift are left out."""
     marks = {name: rows.pop(name, {}) for name in MARKS}
     channels: dict[str, RealArray] = {
@@ -169,7 +171,8 @@ def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, ignored: tuple[str
         contact_height=channels.get("contact_height"),
         uplift=channels.get("uplift"),
         support_position=np.array(supports) if supports else None,
-        ignored=ignored,
+        ignored=tuple(column.label for column in unused),
+        left_out_sensors=list_left_out_sensors(sidecar.columns or {}, unused),
         event_level=np.vstack(list(marks[EVENTS].values())) if marks[EVENTS] else None,
         arcing=_fill_rows(marks[ARCING], channels["force"]),
         loaded=_fill_rows(marks[LOADED], channels["force"]),

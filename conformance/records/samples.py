@@ -32,6 +32,8 @@ class RecordSamples:
         Positions of the supports [m].
     ignored : tuple of str
         Names of the columns of the file that are not used.
+    left_out_sensors : tuple of str
+        Those of them that may be further sensors of a sum of force sensors.
     event_level : (k, n) ndarray or None
         Channels that mark events, in the order of the sidecar.
     arcing, loaded : (p, n) ndarray or None
@@ -46,6 +48,7 @@ class RecordSamples:
     uplift: RealArray | None = None
     support_position: RealArray | None = None
     ignored: tuple[str, ...] = ()
+    left_out_sensors: tuple[str, ...] = ()
     event_level: RealArray | None = None
     arcing: RealArray | None = None
     loaded: RealArray | None = None

@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.record_mismatch import find_summary_mismatch
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.records.logger.sensor_warnings import list_sensor_warnings
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped, note_case_version
@@ -46,6 +47,7 @@ class RecordFolder:
             run=sidecar.run,
             start=sidecar.start,
             notes=note_case_version(sidecar.case_digest),
+            warnings=tuple(list_sensor_warnings(sidecar.columns)),
             case_digest=sidecar.case_digest,
             digest=record_digest(path, path.parent / sidecar.file),
             table=sidecar.file,

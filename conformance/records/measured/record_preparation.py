@@ -16,6 +16,7 @@ from pantocheck.conformance.quantities.pantograph_signals import PantographSigna
 from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.events import RecordEvent, TooManyEvents, list_events
+from pantocheck.conformance.records.logger.sensor_warnings import list_sensor_warnings
 from pantocheck.conformance.records.measured.force_checks import detect_filtered, find_outliers
 from pantocheck.conformance.records.measured.sample_positions import PlacedSamples, missing_share, place_samples
 from pantocheck.conformance.records.measured.usable_sections import (
@@ -137,7 +138,7 @@ def prepare_record(
     speed = local_speed(time, position[0])
     recorded = [speed] if samples.speed is None else [speed, samples.speed]
     steady = np.all([np.abs(values / nominal - 1) <= speed_tolerance_pct / 100 for values in recorded], axis=0)
-    warnings = [*placed.warnings]
+    warnings = [*placed.warnings, *list_sensor_warnings(sidecar.columns, samples.left_out_sensors)]
     if not steady.all():
         warnings.append(
             f"{missing_share(~steady)} of the record was cut, first at {position[0][np.argmin(steady)]:.1f} m: "
