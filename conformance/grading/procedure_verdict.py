@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
 from pantocheck.conformance.grading.criterion_grading import criterion_name
-from pantocheck.conformance.grading.verdicts import Verdict, judge_parts, normalise_distance, worst_verdict
+from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict, judge_parts, normalise_distance, worst_verdict
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.procedure_format import Evidence, Procedure, ProcedureStep, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
@@ -43,12 +43,15 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
     references = {name for step in procedure.steps if step.step == "reference_models" for name in step.cases}
     verdicts = {case.id: _judge_case(case, case.id in references, accepted) for case in cases}
     evidence = [item.model_copy(update={"passed": verdicts.get(item.id) == "pass"}) for item in procedure.evidence]
-    claims = [judge_claim(claim, procedure.claims, evidence) for claim in procedure.claims]
-    steps = []
+    steps: list[ProcedureStep] = []
+    claims: list[ValidityClaim] = []
     for step in procedure.steps:
         named = [by_id[name] for name in step.cases if name in by_id]
         parts = [verdicts[case.id] for case in named]
-        parts += [claim.verdict for claim in claims] if step.step == "limits_of_validity" else []
+        if step.step == "limits_of_validity":
+            judged = [judge_claim(claim, procedure.claims, evidence) for claim in procedure.claims]
+            claims = [rest_claim_on_steps(claim, steps) for claim in judged]
+            parts += [claim.verdict for claim in claims]
         if step.step == "reference_models" and not any("reference_models" in case.steps for case in named):
             parts.append("info")
         verdict = judge_step(step, parts, accepted)
@@ -153,6 +156,29 @@ def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence:
     return claim.model_copy(update={"verified": shown, "evidence": found, "verdict": verdict, "reason": reason})
 
 
+def rest_claim_on_steps(claim: ValidityClaim, steps: Sequence[ProcedureStep]) -> ValidityClaim:
+    """Claim that passes only if every step before it passes, required or not.
+
+    A step that fails or has an error leaves the claim not verified: `skip`. Its removal then never improves the claim.
+
+    Parameters
+    ----------
+    claim : ValidityClaim
+        Claim with the verdict of its runs.
+    steps : sequence of ProcedureStep
+        Steps before the limits of validity, with their verdicts.
+    """
+    missing = [(number, step) for number, step in enumerate(steps, 1) if step.verdict != "pass"]
+    if not missing:
+        return claim
+    verdict = max(worst_verdict([claim.verdict, *(step.verdict for _, step in missing)]), "skip", key=WORST_FIRST.index)
+    listed = ", ".join(
+        f"step {number} ({step.step.replace('_', ' ')}) {_describe_state(step)}" for number, step in missing
+    )
+    reason = f"{claim.reason or 'rests on runs only'}; {listed}"
+    return claim.model_copy(update={"verified": None, "verdict": verdict, "reason": reason})
+
+
 def is_reference(case: CaseResult) -> bool:
     """Whether a case is an unchanged case of the library; limits of the user do not change it."""
     return case.library == "identical"
@@ -193,6 +219,10 @@ def _range(claim: ValidityClaim, group: Sequence[Evidence]) -> tuple[float, floa
 def _covers(verified: tuple[float, float], claimed: tuple[float, float]) -> bool:
     slack = SAME_CONDITION * max(map(abs, (*verified, *claimed)))
     return verified[0] <= claimed[0] + slack and claimed[1] <= verified[1] + slack
+
+
+def _describe_state(step: ProcedureStep) -> str:
+    return "not done" if step.state == "not done" else f"has the verdict {step.verdict.upper()}"
 
 
 def _describe_run(line: str, pantograph: str) -> str:

@@ -85,7 +85,9 @@ class ValidityClaim(ResultsPart):
     evidence: Annotated[
         list[str], Field(description="ids of the cases and pairs that passed under these conditions")
     ] = []
-    verdict: Annotated[Verdict, Field(description="pass: inside the verified range; skip: not verified")] = "skip"
+    verdict: Annotated[
+        Verdict, Field(description="pass: inside the verified range, and every step before passes; skip: not verified")
+    ] = "skip"
     reason: str | None = None
 
 

@@ -12,7 +12,9 @@ from pantocheck.conformance.grading.procedure_verdict import (
     describe_closest,
     judge_claim,
     judge_procedure,
+    rest_claim_on_steps,
 )
+from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict, worst_verdict
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.procedure_format import (
     STEP_NAMES,
@@ -107,6 +109,37 @@ def test_a_required_step_that_is_missing_prevents_a_pass() -> None:
         decided = decide_procedure(build_procedure(static_check=state), [], accepted=False)
         assert decided.steps[1].verdict == verdict
         assert judge_procedure(decided.steps) == verdict
+
+
+def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClaim:
+    """Claim on a line with a passed run, after five steps with these verdicts; without one, a step passes."""
+    steps = [
+        ProcedureStep(step=name, required=False, state=states.get(name, "done"), verdict=verdicts.get(name, "pass"))
+        for name in STEP_NAMES[:-1]
+    ]
+    line = claim("line", "A")
+    return rest_claim_on_steps(judge_claim(line, [line], [run(1, 160)]), steps)
+
+
+@pytest.mark.parametrize(("number", "name"), list(enumerate(STEP_NAMES[:-1], 1)))
+def test_a_claim_rests_on_every_step(number: int, name: str) -> None:
+    """It is not verified without one of them, whether the dossier requires it or not."""
+    assert judge_line({}, {}).verdict == "pass"
+    judged = judge_line({name: "not done"}, {name: "skip"})
+    assert (judged.verdict, judged.verified, judged.evidence) == ("skip", None, ["pair/1"])
+    assert judged.reason == f"rests on runs only; step {number} ({name.replace('_', ' ')}) not done"
+
+
+@pytest.mark.parametrize("first", WORST_FIRST)
+@pytest.mark.parametrize("second", WORST_FIRST)
+def test_a_removed_step_never_improves_a_claim(first: Verdict, second: Verdict) -> None:
+    """A claim is at most as good as every step; a step that fails leaves it `skip`, as a removed one does."""
+    verdicts = {"pantograph_model": first, "static_check": second}
+    before = judge_line({}, verdicts).verdict
+    assert before == max(worst_verdict([first, second]), "skip", key=WORST_FIRST.index)
+    for name in STEP_NAMES[:-1]:
+        after = judge_line({name: "not done"}, verdicts | {name: "skip"}).verdict
+        assert WORST_FIRST.index(after) <= WORST_FIRST.index(before)
 
 
 def test_a_step_for_information_decides_nothing() -> None:
