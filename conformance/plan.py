@@ -10,9 +10,9 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
-from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
+from pantocheck.conformance.cases.library import find_entries, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_selection import CaseSelection, VerdictChoice, choose_verdicts
@@ -103,6 +103,8 @@ class PreparedPlan:
         Earlier results that values are compared with.
     participation : Participation
         Cases shown for information, and accepted unverified records.
+    added : dict of str to tuple of str
+        Cases that are not named themselves, each with the cases that require it.
     """
 
     plan: Plan
@@ -111,6 +113,7 @@ class PreparedPlan:
     out: Path
     baseline: Results | None
     participation: Participation
+    added: dict[str, tuple[str, ...]]
 
     def start_system(self) -> System:
         """System under test; a program is started once to learn its name.
@@ -141,7 +144,8 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     """
     if plan.set and not plan.cases:
         raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
-    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set), open_catalogue(plan.case_folders))
+    catalogue = open_catalogue(plan.case_folders)
+    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set), catalogue)
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
     requested = choose_verdicts(plan.verdicts, plan.system, [case.id for case in cases])
@@ -150,6 +154,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
         cases = selection.keep_counting(cases)
         if not cases:
             raise InputError("cases", f"no limit counts at trust '{plan.trust}'", "Name a case, or lower the trust.")
+    own = _keep_named(cases, plan.cases, catalogue) if plan.cases else list(filter(selection.counts, cases))
     if plan.damping_study:
         cases = [add_damping_study(case) for case in cases]
     formats = check_formats(plan.formats)
@@ -160,7 +165,24 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
         requested=requested,
         verification_only=() if plan.cases else selection.list_verification_only(cases),
     )
-    return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation)
+    return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation, _list_added(cases, own))
+
+
+def _keep_named(cases: Sequence[Case], names: Sequence[str], catalogue: Catalogue) -> list[Case]:
+    """Cases without those that no name selects, and that only other cases require."""
+    required = {name for case in cases for name in case.file.requires}
+    entries = find_entries(names, catalogue)
+    return [case for case in cases if case.id not in required or catalogue.find_id(case.id) in entries]
+
+
+def _list_added(cases: Sequence[Case], own: Sequence[Case]) -> dict[str, tuple[str, ...]]:
+    """Cases of a run that are not its own, each with the cases that require it."""
+    added = {case.id for case in cases} - {case.id for case in own}
+    return {
+        case.id: tuple(other.id for other in cases if case.id in other.file.requires)
+        for case in cases
+        if case.id in added
+    }
 
 
 def _list_information(cases: Sequence[Case], plan: Plan, selection: CaseSelection) -> tuple[str, ...]:

@@ -161,7 +161,13 @@ class CaseFile(SourcedTable):
     ] = False
     requires: Annotated[
         tuple[str, ...],
-        Field(strict=False, max_length=100, description="ids of the cases that must pass before this case counts"),
+        Field(
+            strict=False,
+            max_length=100,
+            description="ids of the cases that are run first; this case is skipped if one of them, or a case that it "
+            "requires in turn, fails, ends with an error or was not run; after any other verdict, skip included, this "
+            "case runs and counts",
+        ),
     ] = ()
     speed_km_h: Annotated[float | None, Field(ge=1, le=FASTEST_KM_H, description="speed of the train [km/h]")] = None
     evaluated_spans: Annotated[

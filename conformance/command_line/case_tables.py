@@ -33,6 +33,12 @@ def build_case_tables(case: Case) -> list[RenderableType]:
     if not case.is_static:
         start, end = case.analysis_section
         parts.append(escape_text(f"{case.file.speed_km_h:g} km/h, analysis section {start:g} m to {end:g} m"))
+        places = ", ".join(f"{place:g} m" for place in case.start_positions)
+        noun = "pantographs" if len(case.pantographs) > 1 else "pantograph"
+        parts.append(escape_text(f"start of the {noun}: {places}"))
+    if case.file.requires:
+        remark = "added to a run; this case is skipped if a required case fails or ends with an error"
+        parts.append(escape_text(f"requires: {', '.join(case.file.requires)} ({remark})"))
     for number, force in list_law_forces(case).items():
         parts.append(escape_text(f"force law of pantograph {number}: {force.text}"))
     parts.append(escape_text(f"mesh of the reference simulator: {mesh.element_m:g} m, {mesh.time_step_s:g} s"))
@@ -55,6 +61,8 @@ def describe_case(case: Case) -> dict[str, object]:
         "id": case.id,
         "title": case.file.title,
         "digest": case.digest,
+        "requires": list(case.file.requires),
+        "start_m": list(case.start_positions),
         "analysis_section_m": None if case.is_static else list(case.analysis_section),
         "inputs": {name: table.model_dump(mode="json") for name, table in case.sourced_tables.items()},
         "limits": [limit.model_dump(mode="json") for limit in case.limits],

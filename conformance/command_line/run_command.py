@@ -8,6 +8,7 @@ import typer
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import error_console, escape_text
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -22,10 +23,11 @@ from pantocheck.conformance.command_line.options import (
     build_options,
     state_administration,
 )
+from pantocheck.conformance.command_line.output_settings import current_settings
 from pantocheck.conformance.command_line.progress_display import report_cases
 from pantocheck.conformance.command_line.results_output import EXIT_CODES, build_results_output
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.plan import prepare_plan
+from pantocheck.conformance.plan import PreparedPlan, prepare_plan
 from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.reference_run import add_reference
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
@@ -121,6 +123,7 @@ def run_command(
     prepared = prepare_plan(options)
     places = locate_plan(options, plan)
     system_under_test, cases = prepared.start_system(), prepared.cases
+    _state_added_cases(prepared)
     interrupted = 0
     jobs = min(options.jobs, len(cases))
     try:
@@ -139,6 +142,13 @@ def run_command(
     files = write_all(results, prepared.out, prepared.formats, places)
     remarks = remark_missing_formats(options.formats)
     return build_results_output(results, files, interrupted or EXIT_CODES[results.verdict], remarks)
+
+
+def _state_added_cases(prepared: PreparedPlan) -> None:
+    """One line on standard error, before the run, on the cases that run only because others require them."""
+    if prepared.added and current_settings().detail != "quiet":
+        parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
+        error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
 
 
 def _refuse_reference_beside_itself(system: str) -> None:

@@ -49,6 +49,9 @@ def test_required_case_without_limits_is_run_for_information_only(tmp_path: Path
         name for name in required if not any(limit_counts(i.trust, "secondary") for i in cases[name].limits)
     }
     assert set(information) == without_limits
+    added = prepare_plan(Plan(out=str(tmp_path))).added
+    assert added == {name: tuple(id for id, case in cases.items() if name in case.file.requires) for name in added}
+    assert set(added) == without_limits
     assert required <= set(cases)
     participation = Participation(information)
     verdicts: list[tuple[str, Verdict]] = [(name, "info" if name in without_limits else "pass") for name in cases]

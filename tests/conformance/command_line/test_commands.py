@@ -324,6 +324,47 @@ def test_show_leaves_out_required_cases_only() -> None:
     assert shown("en50318-2018/ac-stitched/*") == ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"]
 
 
+def test_show_states_requirements_start_and_section() -> None:
+    """Both pantographs are 200 m apart; the last one starts at 55 m."""
+    name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
+    text = " ".join(pantocheck("show", name).output.split())
+    assert "analysis section 1650 m to 2200 m" in text
+    assert "start of the pantographs: 255 m, 55 m" in text
+    assert f"requires: {required}" in text
+    (facts,) = json.loads(pantocheck("show", name, "--json").output)["result"]
+    assert (facts["requires"], facts["start_m"]) == ([required], [255.0, 55.0])
+    static = pantocheck("show", required).output
+    assert "requires" not in static
+    assert "start of" not in static
+
+
+def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
+    """Only cases that no name selects are added, and the line precedes the results."""
+    program = f"command:{sys.executable} {write_refusal(tmp_path)}"
+    name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
+    out = ("--system", program, "--out", tmp_path / "out", "--formats", "json")
+    assert pantocheck("run", name, *out).stderr.startswith(f"cases added: {required} (required by {name})\n")
+    assert "cases added" not in pantocheck("run", name, required, *out).stderr
+    assert "cases added" not in pantocheck("-q", "run", name, *out).stderr
+
+
+def write_refusal(folder: Path) -> Path:
+    """Program that skips every case."""
+    path = folder / "refusal.py"
+    path.write_text(
+        "import json, sys\n"
+        "for line in sys.stdin:\n"
+        "    message = json.loads(line)\n"
+        "    started = {'message': 'started', 'protocol': 'pantocheck.command/2', 'name': 'none', 'version': ''}\n"
+        "    skipped = {'message': 'skipped', 'id': message.get('id'), 'reason': 'no solver'}\n"
+        "    answer = {'start': started, 'run': skipped}.get(message['message'])\n"
+        "    if answer is None:\n"
+        "        break\n"
+        "    print(json.dumps(answer), flush=True)\n"
+    )
+    return path
+
+
 def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
