@@ -53,7 +53,7 @@ class ListedLengthChanges(InputTable):
 class RandomLengthChanges(InputTable):
     """Random changes of the lengths of the droppers, uniformly distributed within a tolerance."""
 
-    tolerance_m: Annotated[float, Field(gt=0, le=0.2, description="largest change of a length [m]")]
+    tolerance_m: Annotated[float, Field(ge=0, le=0.2, description="largest change of a length [m]")]
     seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the changes")]
 
 
@@ -74,7 +74,7 @@ class SupportVariation(InputTable):
     """Random changes of the stagger at the supports, uniformly distributed within a tolerance."""
 
     stagger_tolerance_m: Annotated[
-        float, Field(gt=0, le=0.5, description="largest lateral change of the contact wire at a support [m]")
+        float, Field(ge=0, le=0.5, description="largest lateral change of the contact wire at a support [m]")
     ]
     seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the changes")]
 

@@ -109,6 +109,15 @@ def test_random_length_changes_are_uniform_and_repeatable() -> None:
     assert other != varied(table)
 
 
+def test_tolerance_of_zero_is_the_nominal_line() -> None:
+    """The first point of a tolerance study, for lengths of droppers and staggers."""
+    table = {"droppers": {"tolerance_m": 0.0, "seed": 4}, "supports": {"stagger_tolerance_m": 0.0, "seed": 4}}
+    nominal, line = (build_catenary(changed_line(STAGGERED | tables)) for tables in ({}, {"variation": table}))
+    assert [wire.stagger for wire in line.wires] == [wire.stagger for wire in nominal.wires]
+    lengths = [compute_unloaded_lengths(catenary, VARIATION_ELEMENT_M) for catenary in (nominal, line)]
+    np.testing.assert_allclose(lengths[1], lengths[0], atol=2e-9)  # equilibrium of the line at rest
+
+
 def test_derived_values_state_the_varied_line() -> None:
     """A program receives the varied tension as a stretch, and the heights that the droppers give."""
     tables = {"contact_wire": {"tension_change_share": 0.05}, "droppers": {"tolerance_m": 0.003, "seed": 1}}
