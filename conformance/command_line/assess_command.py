@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import Limit, spread_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.interruption import receive_signals
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -33,7 +34,12 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan_places import locate_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports.formats.report_writers import check_formats, remark_missing_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import (
+    FILES,
+    check_formats,
+    remark_missing_formats,
+    write_all,
+)
 
 
 def assess_command(
@@ -95,12 +101,13 @@ def assess_command(
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     results = results.model_copy(update={"administration": options.administration})
-    if earlier is not None and baseline is not None:
-        write_all(results, folder, ("json",))  # kept if the comparison fails
-        results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-    files = write_all(results, folder, report_formats, places)
-    remarks = remark_missing_formats(options.formats)
-    return build_results_output(results, files, EXIT_CODES[results.verdict], remarks)
+    with receive_signals(folder / FILES["json"], open_cases=0) as interruption:
+        if earlier is not None and baseline is not None:
+            write_all(results, folder, ("json",))  # kept if the comparison fails
+            results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
+        files = write_all(results, folder, report_formats, places)
+        remarks = remark_missing_formats(options.formats)
+        return build_results_output(results, files, interruption.exit_code or EXIT_CODES[results.verdict], remarks)
 
 
 def _build_line_table(**values: float | None) -> LineTable:

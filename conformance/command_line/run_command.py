@@ -9,6 +9,7 @@ from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import error_console, escape_text
+from pantocheck.conformance.command_line.interruption import Interruption, receive_signals
 from pantocheck.conformance.command_line.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
@@ -30,8 +31,10 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import PreparedPlan, prepare_plan
 from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.reference_run import add_reference
-from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import FILES, remark_missing_formats, write_all
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
+from pantocheck.conformance.systems.process_control import interruption_exit_code
 
 
 def run_command(
@@ -122,26 +125,40 @@ def run_command(
         _refuse_reference_beside_itself(options.system)
     prepared = prepare_plan(options)
     places = locate_plan(options, plan)
-    system_under_test, cases = prepared.start_system(), prepared.cases
+    with receive_signals(prepared.out / FILES["json"], len(prepared.cases)) as interruption:
+        results, exit_code = _run_cases(prepared, with_reference, interruption)
+        if exit_code:
+            typer.echo("Interrupted: the results of the finished cases are written.", err=True)
+        results = results.model_copy(update={"administration": options.administration})
+        if prepared.baseline is not None:
+            write_all(results, prepared.out, ("json",))  # kept if the comparison fails
+            results = prepared.compare(results)
+        files = write_all(results, prepared.out, prepared.formats, places)
+        remarks = remark_missing_formats(options.formats)
+        exit_code = exit_code or interruption.exit_code or EXIT_CODES[results.verdict]
+        return build_results_output(results, files, exit_code, remarks)
+
+
+def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Interruption) -> tuple[Results, int]:
+    """Results of the finished cases, and the exit code of an interruption or 0."""
+    system, cases, plan = prepared.start_system(), prepared.cases, prepared.plan
     _state_added_cases(prepared)
-    interrupted = 0
-    jobs = min(options.jobs, len(cases))
+    jobs = min(plan.jobs, len(cases))
     try:
         with report_cases(len(cases)) as progress:
-            results = run_cases(cases, system_under_test, options.trust, jobs, progress, prepared.participation)
-        if with_reference:
-            with report_cases(len(cases), "reference simulator") as progress:
-                results = add_reference(results, cases, jobs, progress)
-    except RunInterrupted as interruption:
-        results, interrupted = interruption.results, interruption.exit_code
-        typer.echo("Interrupted: the results of the finished cases are written.", err=True)
-    results = results.model_copy(update={"administration": options.administration})
-    if prepared.baseline is not None:
-        write_all(results, prepared.out, ("json",))  # kept if the comparison fails
-        results = prepared.compare(results)
-    files = write_all(results, prepared.out, prepared.formats, places)
-    remarks = remark_missing_formats(options.formats)
-    return build_results_output(results, files, interrupted or EXIT_CODES[results.verdict], remarks)
+            follow = interruption.follow(progress, len(cases))
+            results = run_cases(cases, system, plan.trust, jobs, follow, prepared.participation)
+    except RunInterrupted as interrupted:
+        return interrupted.results, interrupted.exit_code
+    if not with_reference or interruption.exit_code:
+        return results, 0
+    try:
+        with report_cases(len(cases), "reference simulator") as progress:
+            return add_reference(results, cases, jobs, interruption.follow(progress, len(cases))), 0
+    except RunInterrupted as interrupted:
+        return interrupted.results, interrupted.exit_code
+    except KeyboardInterrupt as interrupted:  # before the first case of the reference simulator
+        return results, interruption_exit_code(interrupted)
 
 
 def _state_added_cases(prepared: PreparedPlan) -> None:
