@@ -18,7 +18,7 @@ from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.command_line.remark_notes import list_footnotes, mark_footnotes
 from pantocheck.conformance.command_line.value_table import build_quantities_table, list_names, select_main
 from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.quantities.limit_text import format_graded, format_margin, name_value
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
 from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.scope_page import describe_changes
 from pantocheck.conformance.reports.certificate.two_verdicts import describe_comparison
@@ -33,7 +33,7 @@ EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip":
 LEGEND = (
     "+-: uncertainty of the value; shift: its change when the analysis section is shifted span by span; margin: "
     "relative distance to the nearer limit, 1 in the middle between two limits, 0 on a limit, negative outside; with "
-    "one limit, the distance divided by it"
+    "one limit, the distance divided by it, and the distance itself with its unit if this limit is 0"
 )
 
 
@@ -140,7 +140,7 @@ def _build_criterion_table(criteria: Sequence[Criterion]) -> FittedTable:
             "+-": format_number(error, 2),
             "shift": format_number(item.spread, 2),
             "limits": texts.bounds,
-            "margin": "-" if item.margin is None else format_margin(item.margin),
+            "margin": format_criterion_margin(item.margin, item.lower, item.upper, item.unit),
             "verdict": style_verdict(item.verdict),
             "trust": item.trust or "-",
         }

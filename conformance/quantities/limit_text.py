@@ -62,6 +62,33 @@ def format_margin(margin: float) -> str:
     return next((text for text in texts if float(text) != 0), f"{margin:+.1e}")
 
 
+def is_relative_margin(lower: float | None, upper: float | None) -> bool:
+    """Whether a margin is relative: a limit of 0 alone gives no scale, so that the margin has the unit of the value."""
+    return bool(lower) or bool(upper)
+
+
+def format_criterion_margin(margin: float | None, lower: float | None, upper: float | None, unit: str) -> str:
+    """A margin as a number, or with the unit of the value beside a limit of 0 alone, in ASCII characters.
+
+    Parameters
+    ----------
+    margin : float or None
+        Margin of the criterion; None if there is none.
+    lower, upper : float or None
+        Limits in the unit of the value.
+    unit : str
+        Unit of the value.
+
+    Returns
+    -------
+    str
+        `+0.48`, `+78.49 N`, or `-` without a margin.
+    """
+    if margin is None:
+        return "-"
+    return format_margin(margin) if is_relative_margin(lower, upper) else f"{format_margin(margin)} {unit}".rstrip()
+
+
 def format_bounds(lower: float | None, upper: float | None) -> str:
     """Stated bounds of a limit in ASCII characters.
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from pantocheck.conformance.quantities.limit_text import format_margin
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.case_figures import name_figure
 from pantocheck.conformance.reports.certificate.reference_values import insert_reference
@@ -13,7 +13,8 @@ from pantocheck.conformance.reports.words import name_owner, quantity_label, rea
 
 MARGIN_KEY = (
     "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
-    "0 on a limit and negative outside. Bars: the grey band shows the range between the limits. A disc is a value "
+    "0 on a limit and negative outside. With one limit, the distance is divided by this limit; if it is 0, the margin "
+    "is the distance itself with its unit. Bars: the grey band shows the range between the limits. A disc is a value "
     "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
     "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known."
 )
@@ -43,6 +44,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
     error, margin = _select_error(criterion), criterion["margin"]
     unit = "" if value is None else criterion["unit"]
     shown, limits = format_beside_limits(value, lower, upper)
+    ascii_margin = format_criterion_margin(margin, lower, upper, criterion["unit"])
     close = criterion["close"] if is_close(criterion) else ()
     return CriterionTexts(
         label=criterion_title(criterion),
@@ -50,7 +52,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
         value=f"{shown} {unit}".rstrip(),
         error="–" if error is None else f"± {format_value(error, 2)}",
         limits=limits,
-        margin="–" if margin is None else replace_minus(format_margin(margin)),
+        margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion["trust"] or "",
         remarks=tuple(filter(None, (criterion["reason"], *close, remark_shift(criterion), _remark_limit(criterion)))),
     )

@@ -12,7 +12,8 @@ from pantocheck.conformance.reports.words import read_words
 PROCEDURE_KEY = (
     "Margin and uncertainty belong to the criterion of the step with the smallest margin. The margin is the distance "
     "to the nearer limit, divided by half the distance between the limits, or by the limit. The uncertainty is the "
-    "half-width of the 95 % interval of value and limit together, divided in the same way. Steps that are not "
+    "half-width of the 95 % interval of value and limit together, divided in the same way. With a limit of 0 alone, "
+    "both are in the unit of the value. Steps that are not "
     "required are for information and have no part in the verdict. The steps follow the style of EN 50318; the text "
     "of the standard is not reproduced."
 )

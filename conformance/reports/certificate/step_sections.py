@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from pantocheck.conformance.quantities.limit_text import is_relative_margin
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.certificate.procedure_page import anchor_step, name_step
@@ -104,6 +105,7 @@ def _reference_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
         for place, case in enumerate(cases)
         for row in case["criteria"]
         if row["verdict"] in ("pass", "fail") and row["margin"] is not None and row["lower"] != row["upper"]
+        if is_relative_margin(row["lower"], row["upper"])
     ]
     if not points:
         return ()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.counted_noun import count_noun
-from pantocheck.conformance.quantities.limit_text import format_margin
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.certificate.findings_table import count_sentences
 from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
@@ -87,7 +87,11 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
     """Sentences under headings, errors first; a heading without sentences is left out."""
     passed = _select(results, "pass")
     drifts = [(case, row) for case in results["cases"] for row in select_criteria(results, case) if is_drift(row)]
-    bounded = [(case, criterion) for case, criterion in passed if criterion["lower"] != criterion["upper"]]
+    ranked = [
+        (case, row)
+        for case, row in passed
+        if row["lower"] != row["upper"] and is_relative_margin(row["lower"], row["upper"])
+    ]
     groups = {
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
@@ -99,7 +103,7 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
             _close_value(pair) for pair in _criteria(results) if is_close(pair[1])
         ],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
-        "Smallest margins": [_value(pair) for pair in bounded[:MARGINS_SHOWN]],
+        "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],
     }
     return tuple(
         Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
@@ -156,7 +160,8 @@ def _record_reasons(results: dict[str, Any]) -> list[str]:
 def _value(pair: CaseCriterion) -> str:
     case, criterion = pair
     value, limits = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
-    margin = "" if criterion["margin"] is None else f", margin {replace_minus(format_margin(criterion['margin']))}"
+    shown = format_criterion_margin(*(criterion[key] for key in ("margin", "lower", "upper", "unit")))
+    margin = "" if criterion["margin"] is None else f", margin {replace_minus(shown)}"
     text = f"{_subject(case, criterion)}: {value} {criterion['unit']}".rstrip()
     return f"{text}, limits {limits}{margin}."
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pantocheck.conformance.quantities.limit_text import format_graded
+from pantocheck.conformance.quantities.limit_text import format_graded, is_relative_margin
 from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, list_criteria, select_criteria
 from pantocheck.conformance.reports.words import name_owner
 
@@ -94,7 +94,8 @@ def _test_criterion(group: str, row: dict[str, Any]) -> GradedTest:
     kind = "verification: " if row["trust"] == "computed" else "" if row["baseline"] is None else "drift of "
     number, bounds = format_graded(row["value"], row["lower"], row["upper"])
     value = "no value" if row["value"] is None else f"{number} {row['unit']}".rstrip()
-    margin = "" if row["margin"] is None else f", margin {row['margin']:.4g}"
+    relative = is_relative_margin(row["lower"], row["upper"])
+    margin = "" if row["margin"] is None else f", margin {row['margin']:.4g} {'' if relative else row['unit']}".rstrip()
     reason = f" ({row['reason']})" if row["reason"] else ""
     name = f"{kind}{row['quantity']} of {name_owner(row)}"
     basis = row["trust"] or "bounds of the baseline"

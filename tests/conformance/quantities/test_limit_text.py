@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from pantocheck.conformance.grading.verdicts import judge
 from pantocheck.conformance.quantities.limit_text import (
     format_bounds,
+    format_criterion_margin,
     format_graded,
     format_margin,
     format_rounded,
@@ -85,3 +86,21 @@ def test_rounded_number_has_no_final_point() -> None:
 def test_item_of_a_quantity_stands_in_brackets() -> None:
     assert name_value("std_force_N", None) == "std_force_N"
     assert name_value("damping_ratio", 2) == "damping_ratio[2]"
+
+
+@pytest.mark.parametrize(
+    ("margin", "lower", "upper", "shown"),
+    [
+        (78.49, 0.0, None, "+78.49 N"),
+        (-2.0, None, 0.0, "-2.00 N"),
+        (-2.0, 0.0, 0.0, "-2.00 N"),
+        (0.35, 0.0, 10.0, "+0.35"),
+        (0.35, None, 10.0, "+0.35"),
+        (None, None, None, "-"),
+    ],
+)
+def test_margin_beside_a_limit_of_zero_has_its_unit(
+    margin: float | None, lower: float | None, upper: float | None, shown: str
+) -> None:
+    """A limit of zero alone gives no scale: the margin is the distance, as in `grading.verdicts.margin`."""
+    assert format_criterion_margin(margin, lower, upper, "N") == shown

@@ -84,6 +84,16 @@ def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, 
     assert text[: text.index('id="cases"')].count("119.9 N") == 2  # close, and the smallest margin
 
 
+def test_margin_beside_a_limit_of_zero_is_a_distance_and_not_ranked(passing: dict[str, Any]) -> None:
+    """A distance in newtons is no relative margin: it is not compared with those of other criteria."""
+    row = passing["cases"][0]["criteria"][0]
+    row |= {"value": 0.004, "lower": 0.0, "upper": None, "margin": 0.004, "close": [], "unit": "N"}
+    assert describe_criterion(row).margin == "+0.004 N"
+    ranked = "".join(sentences(list_reasons(passing)[-1]))
+    assert list_reasons(passing)[-1].heading == "Smallest margins"
+    assert "+0.004" not in ranked
+
+
 def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
     groups = {section.heading: sentences(section) for section in list_reasons(results)}
     assert list(groups) == ["Failed", "Not evaluated", "Smallest margins"]
