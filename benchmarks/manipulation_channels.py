@@ -15,7 +15,7 @@ def change_support(dossier: Dossier, chance: random.Random) -> str | None:
     names = dossier.names("uplift")
     if not names:
         return None
-    worst = max(names, key=lambda name: float(dossier.columns[name].max()))
+    worst = max(names, key=lambda name: float(np.nanmax(dossier.columns[name])))
     name = chance.choice((worst, chance.choice(names)))
     uplift, kind, share = (
         dossier.columns[name],
@@ -23,11 +23,11 @@ def change_support(dossier: Dossier, chance: random.Random) -> str | None:
         chance.choice((0.5, 0.8, 0.95)),
     )
     if kind == "hold":  # from a share of the largest uplift until it falls below that share for the last time
-        above = np.flatnonzero(uplift >= share * uplift.max())
+        above = np.flatnonzero(uplift >= share * np.nanmax(uplift))
         uplift = uplift.copy()
         uplift[above[0] : above[-1]] = uplift[above[0]]
     elif kind == "clip":
-        uplift = np.minimum(uplift, share * uplift.max())
+        uplift = np.minimum(uplift, share * np.nanmax(uplift))
     else:
         uplift = share * uplift
     dossier.columns[name] = uplift

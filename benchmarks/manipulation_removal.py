@@ -36,7 +36,7 @@ def drop_support(dossier: Dossier, chance: random.Random) -> str | None:
     names = [name for name in dossier.names("uplift") if name.endswith("_m")]
     if len(names) < 2:
         return None
-    worst = max(names, key=lambda name: float(dossier.columns[name].max()))
+    worst = max(names, key=lambda name: float(np.nanmax(dossier.columns[name])))
     name = chance.choice((worst, chance.choice(names)))
     _remove_support(dossier, int(name.split("_")[1]))
     return "drop the support of the largest uplift" if name == worst else "drop a support"

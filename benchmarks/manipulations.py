@@ -197,7 +197,7 @@ def build_bases(runs: Runs) -> tuple[list[tuple[str, Dossier]], list[Base]]:
     start, end = twin.sidecar["evaluated_m"]
     supports = twin.sidecar["support_position_m"]
     inside = [i for i, x in enumerate(supports, 1) if start <= x <= end]
-    uplift = {i: 1e3 * float(twin.columns[f"uplift_{i}_m"].max()) for i in inside}
+    uplift = {i: 1e3 * float(np.nanmax(twin.columns[f"uplift_{i}_m"])) for i in inside}
     worst = max(uplift, key=lambda i: uplift[i])
     between = 1.05 * uplift[worst]
     dossier = tightened("max_uplift_at_support_mm", 0, upper=between)
