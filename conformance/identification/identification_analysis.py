@@ -18,6 +18,7 @@ from pantocheck.conformance.identification.identify import Identification
 from pantocheck.conformance.identification.line_fit import LineFit, RecordFit
 from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.identification.order_search import describe_search
+from pantocheck.conformance.identification.overlapping_bands import warn_about_overlap
 from pantocheck.conformance.identification.repeatability import compare_records, overlay_records, round_curve
 from pantocheck.conformance.identification.spectrogram import compute_spectrogram
 from pantocheck.model.one_thread import use_one_thread
@@ -35,7 +36,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         quantity=decays[0].record.quantity,
         band_Hz=(fit.band.low, fit.band.high),
         misfit=fit.misfit,
-        warnings=identification.warnings,
+        warnings=(*identification.warnings, *warn_about_overlap(modes)),
         spans_m=decays[0].record.line.spans,
         records=tuple(_record(decay) for decay in decays),
         groups=_groups(modes),

@@ -66,6 +66,8 @@ from pantocheck.conformance.grading import (
     validity_warnings,
     verification_limits,
 )
+from pantocheck.conformance.identification import overlapping_bands
+from pantocheck.conformance.identification.damping import damping_results
 from pantocheck.conformance.procedure import compared_sides
 from pantocheck.conformance.quantities import (
     bands,
@@ -104,7 +106,7 @@ MODULES: list[ModuleType] = [
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
     response_columns, response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,
-    certificates, cms_signing, detached_file, key_files, timestamp_client,
+    certificates, cms_signing, detached_file, key_files, timestamp_client, damping_results, overlapping_bands,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}
 FOLDERS = ("quantities", "consistency", "grading", "records", "results", "authenticity", "comparison", "procedure")

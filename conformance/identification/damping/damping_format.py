@@ -108,7 +108,8 @@ class PairedMode(RoundedModel):
     group: int | None
     measured: Annotated[Rounded, Field(description="measured damping ratio [-]")]
     fitted: Annotated[Rounded, Field(description="damping ratio of the fitted model [-]")]
-    used: Annotated[bool, Field(description="false: outlier of its group, left out of the fit")]
+    used: Annotated[bool, Field(description="false: outlier of its group or overlapping, left out of the fit")]
+    overlapping: Annotated[bool, Field(description="true: another mode lies within the half-power bandwidth")] = False
 
 
 class WireShape(RoundedModel):

@@ -52,6 +52,10 @@ class MeasuredModes:
     std: RealArray
     group: IntegerArray
 
+    def select(self, modes: IntegerArray) -> "MeasuredModes":
+        """Selected modes, by index."""
+        return MeasuredModes(self.frequency[modes], self.damping_ratio[modes], self.std[modes], self.group[modes])
+
 
 @dataclass(frozen=True)
 class DampingFit:
@@ -110,7 +114,8 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
         raise InputError(
             "modes",
             f"only {measured.frequency.size} modes for a fit of {len(terms)} coefficients",
-            f"Identify at least {len(terms) + 1} modes, or name the line of the record with --line.",
+            f"Identify at least {len(terms) + 1} modes whose half-power bands overlap no other mode, or name the "
+            "line of the record with --line.",
         )
     columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
     target, std = measured.damping_ratio - basis.stated, fit_deviation(measured)

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.damping.damping_format import (
     Coefficient,
     DampingResults,
@@ -18,7 +19,6 @@ from pantocheck.conformance.identification.damping.damping_format import (
 )
 from pantocheck.conformance.identification.damping.damping_model import (
     MODAL_GROUPS,
-    DampingFit,
     fit_damping_model,
     fit_modal_bands,
 )
@@ -52,7 +52,10 @@ COEFFICIENTS_OF_WIRES: dict[WireCoefficients, Callable[[DampingBasis], DampingBa
 
 
 NOTICEABLE_SHARE = 0.01
-"""Share of the measured damping by other components from which the fit warns: the error of the line model."""
+"""Largest share of the measured damping of a mode by other components up to which the fit does not warn.
+
+It is the error of the line model.
+"""
 
 
 @dataclass(frozen=True)
@@ -107,16 +110,22 @@ def build_damping_results(
     stated = _compute_stated_ratios(matched, line)
     basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies, stated))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
-    fit = fit_damping_model(paired_basis, measured)
-    observability = tuple(row for row in compute_observability(paired_basis, measured, fit) if row.largest_share > 0)
+    overlapping = matched.overlapping
+    separate = np.flatnonzero(~overlapping)
+    fitted_basis, fitted_modes = paired_basis.select_modes(separate), measured.select(separate)
+    fit = fit_damping_model(fitted_basis, fitted_modes)
+    observability = tuple(
+        row for row in compute_observability(fitted_basis, fitted_modes, fit) if row.largest_share > 0
+    )
     coefficients = judge_coefficients(fit.coefficients, observability, matched.matching)
     bands = fit_modal_bands(measured, options.modal_groups)
-    rayleigh = basis.stated + basis.ratios @ np.array([fit.values.get(term, 0.0) for term in basis.terms])
+    rayleigh = basis.predict(fit.values)
     return DampingResults(
         modes_file=source,
         warnings=(
             *warn_about_line(comparison),
-            *_warn_about_stated(paired_basis.stated / measured.damping_ratio),
+            *_warn_about_overlap(measured.frequency[overlapping]),
+            *_warn_about_stated(fitted_basis.stated / fitted_modes.damping_ratio),
             *_warn_about_coefficients(coefficients),
         ),
         stated=_list_stated(line) if np.any(paired_basis.stated > 0) else (),
@@ -129,15 +138,15 @@ def build_damping_results(
         ),
         observability=observability,
         thresholds=THRESHOLDS,
-        pairs=_list_pairs(matched, fit),
+        pairs=_list_pairs(matched, paired_basis.predict(fit.values), set(separate[fit.used])),
         shapes=list_paired_shapes(matched, line),
         comparison=_compare_models(matched, rayleigh, bands),
         unpaired=tuple(mode.frequency_Hz for mode in matched.unpaired),
     ).rounded()
 
 
-def _list_pairs(matched: MatchedModes, fit: DampingFit) -> tuple[PairedMode, ...]:
-    """Pairs with their measured and fitted damping ratios."""
+def _list_pairs(matched: MatchedModes, predicted: RealArray, used: set[int]) -> tuple[PairedMode, ...]:
+    """Pairs with their measured and predicted damping ratios; `used` holds the indices of those in the fit."""
     return tuple(
         PairedMode(
             measured_Hz=mode.frequency_Hz,
@@ -145,10 +154,13 @@ def _list_pairs(matched: MatchedModes, fit: DampingFit) -> tuple[PairedMode, ...
             mac=pair.mac,
             group=mode.group,
             measured=mode.damping_ratio,
-            fitted=predicted,
-            used=bool(used),
+            fitted=ratio,
+            used=i in used,
+            overlapping=bool(overlapping),
         )
-        for pair, mode, predicted, used in zip(matched.pairs, matched.paired, fit.predicted, fit.used, strict=True)
+        for i, (pair, mode, ratio, overlapping) in enumerate(
+            zip(matched.pairs, matched.paired, predicted, matched.overlapping, strict=True)
+        )
     )
 
 
@@ -193,14 +205,27 @@ def _list_stated(line: Catenary) -> tuple[StatedDamping, ...]:
     )
 
 
-def _warn_about_stated(share: RealArray) -> list[str]:
-    """Warning where the stated damping of other components is a noticeable part of the measured damping ratios."""
-    if share.max(initial=0.0) < NOTICEABLE_SHARE:
+def _warn_about_overlap(frequency: RealArray) -> list[str]:
+    """Warning about measured modes [Hz] that are left out of the fit because they overlap other modes."""
+    if not frequency.size:
         return []
+    listed = ", ".join(f"{each:.3f}" for each in frequency)
     return [
-        "Droppers, steady arms and supports have the damping that the line states, which gives "
-        f"{100 * np.median(share):.2g} % of the measured damping ratios (median; largest {100 * share.max():.2g} %). "
-        "The errors of the coefficients can exceed their intervals if that damping is wrong."
+        f"{count_noun(frequency.size, 'mode')} left out of the fit: {listed} Hz. Another measured or computed mode "
+        "lies within the half-power bandwidth, so that the measured damping ratio can be a mixture of both."
+    ]
+
+
+def _warn_about_stated(share: RealArray) -> list[str]:
+    """Warning if the stated damping of other components is a noticeable part of the damping ratio of any mode."""
+    if share.max(initial=0.0) <= NOTICEABLE_SHARE:
+        return []
+    modes = count_noun(int(np.sum(share > NOTICEABLE_SHARE)), "mode")
+    return [
+        "The damping of droppers, steady arms and supports that the line states is subtracted from the measured "
+        f"damping ratios. It is more than {100 * NOTICEABLE_SHARE:g} % of the damping ratio of {modes} "
+        f"(largest {100 * share.max():.2g} %, median of all modes {100 * np.median(share):.2g} %). "
+        "If it is wrong, the errors of the coefficients can exceed their intervals."
     ]
 
 

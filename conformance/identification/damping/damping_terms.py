@@ -5,6 +5,7 @@ With C = sum over kinds e of a_e K_e + b_e M_e, a mass-normalised mode phi_j has
     zeta_j = sum_e (a_e k_ej + b_e m_ej) / (2 w_j),    k_ej = phi_j' K_e phi_j,   m_ej = phi_j' M_e phi_j
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,6 +77,10 @@ class DampingBasis:
     def select_modes(self, modes: IntegerArray) -> "DampingBasis":
         """Basis of selected modes, by index."""
         return DampingBasis(self.terms, self.ratios[modes], self.stated[modes])
+
+    def predict(self, values: Mapping[Term, float]) -> RealArray:
+        """Damping ratios for coefficients by term, (m,); a coefficient that is not named is 0."""
+        return np.asarray(self.stated + self.ratios @ np.array([values.get(term, 0.0) for term in self.terms]))
 
     def join_wires(self) -> "DampingBasis":
         """Basis in which the wires of `WIRES` share their coefficients, as terms of the kind `JOINED_WIRES`."""

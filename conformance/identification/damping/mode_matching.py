@@ -4,16 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.conformance.identification.damping.damping_format import Matching
 from pantocheck.conformance.identification.damping.damping_model import MeasuredModes
 from pantocheck.conformance.identification.damping.mode_pairing import (
     ModePair,
     compute_sensor_shapes,
+    find_overlapping_modes,
     find_sensor_positions,
     pair_modes,
 )
 from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.overlapping_bands import half_power_bandwidth
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, DiscretisedLine, discretise
 from pantocheck.model.modal.modes import Modes, compute_modes_below
@@ -60,6 +63,13 @@ class MatchedModes:
         """Identified modes without a computed counterpart."""
         paired = {pair.measured for pair in self.pairs}
         return [mode for i, mode in enumerate(self.usable) if i not in paired]
+
+    @property
+    def overlapping(self) -> NDArray[np.bool_]:
+        """Mask of the pairs whose half-power band overlaps that of another mode, (p,)."""
+        frequency = np.array([mode.frequency_Hz for mode in self.usable])
+        bandwidth = np.array([half_power_bandwidth(mode) for mode in self.usable])
+        return find_overlapping_modes(frequency, bandwidth, self.shapes.frequency, self.pairs)
 
     @property
     def measured(self) -> MeasuredModes:

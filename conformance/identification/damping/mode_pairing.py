@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.identification.overlapping_bands import overlaps
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.model import Catenary, DiscretisedLine, Kind
 from pantocheck.model.catenary import Wire
@@ -96,6 +98,39 @@ def _common_factor(measured: RealArray, computed: RealArray, similarity: RealArr
         return float(np.sum(np.minimum((distance**2 + 4 * (1 - similarity)).min(axis=1), 4.0)))
 
     return float(min(trials, key=misfit))
+
+
+def find_overlapping_modes(
+    measured: RealArray, bandwidth: RealArray, computed: RealArray, pairs: Sequence[ModePair]
+) -> NDArray[np.bool_]:
+    """Mark the pairs whose half-power band overlaps that of another mode, (p,).
+
+    Computed modes that overlap cannot be told apart by a few sensors: the measured mode can be a mixture of them, whose
+    damping ratio belongs to none. Measured modes that overlap share their decay.
+
+    Parameters
+    ----------
+    measured : (m,) ndarray
+        Frequencies of the measured modes [Hz].
+    bandwidth : (m,) ndarray
+        Half-power bandwidths of the measured modes [Hz].
+    computed : (n,) ndarray
+        Frequencies of the computed modes [Hz].
+    pairs : sequence of ModePair
+        The p pairs.
+
+    Returns
+    -------
+    (p,) bool ndarray
+        True: another measured or computed mode lies within `OVERLAP` bandwidths.
+    """
+    return np.array(
+        [
+            overlaps(measured, pair.measured, width) or overlaps(computed, pair.computed, width)
+            for pair, width in ((pair, float(bandwidth[pair.measured])) for pair in pairs)
+        ],
+        dtype=np.bool_,
+    )
 
 
 def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) -> Positions:

@@ -26,7 +26,7 @@ def build_damping_document(results: dict[str, Any], block: str) -> doc.Document:
     results = clean_tree(results)
     kinds = dict.fromkeys(_component(row) for row in results["observability"] if row["observable"])
     headline = (
-        f"Rayleigh damping is fitted to {len(results['pairs'])} modes; the residual is "
+        f"Rayleigh damping is fitted to {sum(pair['used'] for pair in results['pairs'])} modes; the residual is "
         f"{100 * results['residual']:.2g} % of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}. "
         f"{sum(row['determined'] for row in results['coefficients'])} of {len(results['coefficients'])} coefficients "
         f"are determined. {LINE_STATES[results['line']['state']]}"
@@ -132,6 +132,11 @@ def _observability_table(rows: list[dict[str, Any]]) -> doc.Table:
     return doc.make_grid("Information of the modes on each coefficient", rows, cells)
 
 
+def _explain_omission(pair: dict[str, Any]) -> str:
+    # Results of an earlier version do not state overlaps.
+    return "no: overlaps another mode" if pair.get("overlapping") else "no: outlier of its group"
+
+
 def _pair_table(pairs: list[dict[str, Any]]) -> doc.Table:
     cells = {
         "Measured [Hz]": lambda pair: format_value(pair["measured_Hz"], 5),
@@ -140,6 +145,6 @@ def _pair_table(pairs: list[dict[str, Any]]) -> doc.Table:
         "Group": lambda pair: str(pair["group"]),
         "Measured ζ [%]": lambda pair: format_percent(pair["measured"]),
         "Fitted ζ [%]": lambda pair: format_percent(pair["fitted"]),
-        "Used": lambda pair: "yes" if pair["used"] else "no: outlier of its group",
+        "Used": lambda pair: "yes" if pair["used"] else _explain_omission(pair),
     }
     return doc.make_grid("Measured modes and their computed counterparts", pairs, cells)
