@@ -144,6 +144,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         },
     )
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
+    force_digest = _force_digest(samples)
     missing = find_missing_statement(samples, sidecar)
     evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)
     return AssessedRecord(
@@ -152,9 +153,10 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         line=known_line,
         digest=digest,
         record_digest=record_digest(path, table),
-        force_digest=_force_digest(samples),
+        force_digest=force_digest,
         values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
-        uncertainty=assess_uncertainty(prepared, _block_length(known_line, sidecar), digest),
+        # The samples alone seed the bootstrap: options, names and formats of files do not change an interval.
+        uncertainty=assess_uncertainty(prepared, _block_length(known_line, sidecar), force_digest),
         prepared=prepared,
         notes=prepared.notes,
         warnings=(*prepared.warnings, *exclusion_warnings),
@@ -229,7 +231,7 @@ def _add_line_quantities(evaluation: Evaluation, line: LineTable, speed_km_h: fl
 
 def _force_digest(samples: RecordSamples) -> str:
     """SHA-256 of the force, rounded to 1 mN: units and formats of files change the last digits only."""
-    return hashlib.sha256(np.round(samples.force, 3).tobytes()).hexdigest()
+    return hashlib.sha256((np.round(samples.force, 3) + 0.0).tobytes()).hexdigest()  # + 0.0: -0.0 is 0.0
 
 
 def find_equal_pantograph(subject: AssessedRecord, other: AssessedRecord) -> int | None:

@@ -29,7 +29,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
     span_m : float
         Length of a span [m].
     digest : str
-        SHA-256 of the record in hexadecimal, the seed of the bootstrap.
+        SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
     """
     return Uncertainty(
         {

@@ -97,7 +97,7 @@ def bootstrap_uncertainties(
     block_s : float
         Length of a block: one span [s].
     digest : str
-        SHA-256 of the record in hexadecimal, which is the seed of the random numbers.
+        SHA-256 of the case or of the samples in hexadecimal, which is the seed of the random numbers.
 
     Returns
     -------

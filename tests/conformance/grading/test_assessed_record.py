@@ -65,15 +65,30 @@ def load(tmp_path: Path) -> Load:
 def test_bootstrap_block_is_a_span(load: Load, line: LineTable, keys: dict[str, Any], length: float) -> None:
     """The span that the user states, that of the record, the median plausible distance of its supports, or 60 m.
 
-    The uncertainties are the same numbers as with blocks of that length: the digest seeds the bootstrap.
+    The uncertainties are the same numbers as with blocks of that length: the samples seed the bootstrap.
     """
     record = load(keys, line)
     assert record.prepared is not None
+    assert record.force_digest is not None
     component = record.uncertainty.components["length"]
     assert component.basis.endswith(f"blocks of {length:g} m")
     for number, pooled in record.prepared.pantographs.items():
-        assert component.half_widths[number] == bootstrap_uncertainties(pooled, length / SPEED, record.digest)
+        assert component.half_widths[number] == bootstrap_uncertainties(pooled, length / SPEED, record.force_digest)
     assert component.half_widths[1] != component.half_widths[2]
+
+
+def test_same_samples_give_the_same_interval(load: Load) -> None:
+    """Facts that determine no value of the force, from the user or in the sidecar, leave every half-width as it is."""
+    plain = load({})
+    others = [
+        load({}, LineTable(wave_speed_m_s=122.0, uplift_space_mm=120.0)),
+        load({"run": {"wall_s": 1.5}, "system": {"name": "other"}}),
+    ]
+    expected = plain.uncertainty.components["length"].half_widths
+    assert expected[1]["cov_20"] > 0
+    for record in others:
+        assert record.digest != plain.digest
+        assert record.uncertainty.components["length"].half_widths == expected
 
 
 def test_fact_of_the_user_replaces_that_of_the_record(load: Load) -> None:
