@@ -75,7 +75,9 @@ class RuleGrading:
         except BoundMissing as reason:
             requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))
             value = _finite_value(self.subject, owner, rule.quantity)
-            return build_criterion(requirement, value, str(reason), self.trust)
+            unavailable = self.subject.values.skipped.get(owner, {}).get(rule.quantity) if value is None else None
+            reasons = "; ".join(filter(None, (unavailable, str(reason))))
+            return build_criterion(requirement, value, reasons, self.trust)
 
     def _grade_limit(self, limit: Limit) -> Criterion:
         return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))

@@ -90,7 +90,7 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
     cases = [case for case in results["cases"] if case["id"] not in shown and case_verdict(case, name) is not None]
     verdicts = Counter(case_verdict(case, name) for case in cases)
     passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
-    yield f"{passed} {'passes' if verdicts['pass'] == 1 else 'pass'}." if cases else "No case takes part."
+    yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}." if cases else "No case takes part."
     if name == "baseline":
         yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)
         return

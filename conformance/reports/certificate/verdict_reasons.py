@@ -51,7 +51,7 @@ def build_headline(results: dict[str, Any]) -> str:
     elif passed == len(cases) and results["verdict"] in ("pass", "unverified"):
         sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
     else:
-        parts = [f"{passed} of {total} {'passes' if passed == 1 else 'pass'}"]
+        parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
             if number := verdicts[verdict]:
                 outside = (

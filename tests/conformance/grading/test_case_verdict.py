@@ -128,7 +128,7 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
         "For information, not part of the verdict: 0, 1, 2, 3."
     )
     unverified = passing | {"cases": [first | {"verdict": "unverified"}]}
-    assert build_headline(unverified) == "0 of 1 case pass, 1 has an unverified record."
+    assert build_headline(unverified) == "0 of 1 case passes, 1 has an unverified record."
     name = passing["system"]["name"]
     accepted = build_headline(unverified | {"accepted_unverified": [name]})
     assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")

@@ -236,7 +236,8 @@ def test_rule_without_its_fact_of_the_line_is_skipped(train: Train) -> None:
     reasons = {row.quantity: row.reason for row in results.cases[0].criteria if row.verdict == "skip"}
     assert reasons == {
         "speed_over_wave_speed": "the wave speed of the line is not known: add wave_speed_m_s",
-        "max_uplift_at_support_mm": "the record does not state uplift_space_mm in its table [line]",
+        "max_uplift_at_support_mm": "the record does not state span_m, the length of the longest span, so that the "
+        "supports of the analysis section are not known; the record does not state uplift_space_mm in its table [line]",
     }
     assert find_discrepancies(results.to_dict()) == []
 
@@ -245,7 +246,13 @@ def test_uplift_rule_without_an_uplift_is_skipped(train: Train) -> None:
     path = train()
     table = path.with_suffix(".csv")
     table.write_text("\n".join(",".join(line.split(",")[:3]) for line in table.read_text().splitlines()))
-    assert by_quantity(graded(path))["max_uplift_at_support_mm"].verdict == "skip"
+    rows = by_quantity(graded(path))
+    assert rows["max_uplift_at_support_mm"].verdict == "skip"
+    assert rows["max_uplift_at_support_mm"].reason == "the record has no uplift at supports"
+    without_space = by_quantity(graded(edit_toml(path, {"line": {"wave_speed_m_s": 122.0, "span_m": 60.0}})))
+    assert without_space["max_uplift_at_support_mm"].reason == (
+        "the record has no uplift at supports; the record does not state uplift_space_mm in its table [line]"
+    )
 
 
 FAILING: dict[str, dict[str, Any]] = {
@@ -387,7 +394,8 @@ def test_line_test_compares_with_the_measured_record(train: Train, tmp_path: Pat
     rows = by_quantity(results)
     assert results.verdict == "skip"
     height = rows["contact_height_range_mm"]
-    assert (height.verdict, height.reason) == ("skip", "the measured record does not have this quantity")
+    assert height.verdict == "skip"
+    assert height.reason == "the record has no contact height; the measured record does not have this quantity"
     assert (rows["mean_force_N"].lower, rows["mean_force_N"].upper) == pytest.approx((115.7, 120.7))
     assert (rows["std_force_N"].lower, rows["std_force_N"].upper) == pytest.approx((0.8 * 27.6, 1.2 * 27.6))
     assert "around the measured value 27.6 of 250" in rows["std_force_N"].source

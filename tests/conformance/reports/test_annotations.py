@@ -193,7 +193,7 @@ def test_run_without_a_limit_that_counts_has_one_warning(passing: dict[str, Any]
     case |= {"verdict": "info", "criteria": [row | {"verdict": "info"} for row in case["criteria"]]}
     passing |= {"verdict": "info", "cases": [case]}
     [annotation] = list_annotations(passing, ReportPlaces())
-    assert (annotation.severity, annotation.text) == ("warning", "0 of 1 case pass, 1 has no limit that counts.")
+    assert (annotation.severity, annotation.text) == ("warning", "0 of 1 case passes, 1 has no limit that counts.")
 
 
 def test_paths_are_relative_to_the_checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,7 +61,7 @@ def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     assert "All 16 counted criteria in 1 case lie inside their limits." in shown
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL (for information)." in shown
     decided = build_headline(decide(failing, *BOTH))
-    assert "0 of 1 case pass, 1 fails (1 of 17 counted criteria outside their limits)." in decided
+    assert "0 of 1 case passes, 1 fails (1 of 17 counted criteria outside their limits)." in decided
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL." in decided
     alone = build_headline(decide(failing, "verification"))
     assert "(1 of 1 counted criteria outside their limits)" in alone
