@@ -12,6 +12,14 @@ for _library in ("OMP", "OPENBLAS", "MKL"):
 settings.register_profile("suite", deadline=None, derandomize=True, database=None)
 settings.load_profile("suite")
 
+
+def pytest_report_header() -> str:
+    """Folder of the package that is tested, which may be another one than that of the checkout."""
+    import pantocheck.conformance
+
+    return f"pantocheck.conformance: {pantocheck.conformance.__path__[0]}"
+
+
 pytest_plugins = [
     "helpers.case_fixtures",
     "helpers.converged_fixtures",

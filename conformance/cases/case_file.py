@@ -142,7 +142,12 @@ class CaseFile(SourcedTable):
     """Content of a case file. A case without a speed is a static check of the line."""
 
     id: Annotated[
-        str, Field(pattern=r"^[A-Za-z0-9._-]+(/[A-Za-z0-9._-]+)*$", max_length=200, description="path-like name")
+        str,
+        Field(
+            pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*(/[A-Za-z0-9_-][A-Za-z0-9._-]*)*$",
+            max_length=200,
+            description="path-like name; no part begins with a dot",
+        ),
     ]
     title: Annotated[str, Field(max_length=200, description="title in reports")]
     edition: Annotated[

@@ -81,7 +81,7 @@ def _check_profile(path: Path, tree: Mapping[str, Any]) -> Iterator[InputError]:
 
 
 def _check_id(path: Path, name: str, prefix: str) -> Iterator[InputError]:
-    where, hint = f"case '{path}', key id", f'Begin the id with {prefix} , e.g. id = "{prefix}{path.stem}" .'
+    where, hint = f"case '{path}', key id", f'Begin the id with {prefix}, for example id = "{prefix}{path.stem}".'
     if (library := _library_files().get(name)) is not None:
         yield InputError(where, f"{name!r} is the id of the library file {library}", hint)
     elif not name.startswith(prefix):
