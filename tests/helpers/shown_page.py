@@ -8,5 +8,6 @@ from pantocheck.conformance.reports.formats.html import render_html
 
 
 def shown_certificate(results: dict[str, Any]) -> str:
-    """HTML of a certificate without its data block."""
-    return render_html(replace(build_certificate(results), results=None))
+    """HTML of a certificate without its data block, with ordinary spaces between numbers and units."""
+    page = render_html(replace(build_certificate(results), results=None))
+    return page.replace("\N{NO-BREAK SPACE}", " ")

@@ -19,6 +19,9 @@ from pantocheck.conformance.reports.figures.uplift_figure import draw_uplift
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 from pantocheck.conformance.results.criterion_format import is_drift
 
+LISTED_SUPPORTS = 3
+"""Largest number of supports that a caption lists one by one."""
+
 
 def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterator[Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift.
@@ -46,13 +49,24 @@ def draw_case_figures(case: dict[str, Any], number: int, anchor: str) -> Iterato
             yield _histogram_figure(key, trace)
     supports = [support for support in case["uplift"] if support["time_s"]]
     if supports:
-        peaks = ", ".join(
-            f"{format_plain(round(max(support['uplift_mm'])))} mm at {format_plain(support['support_m'])} m"
-            for support in supports
-        )
-        caption = f"Uplift at the supports. Largest: {peaks}."
         drawing = draw_uplift(supports, limited)
-        yield Figure(drawing, caption, caption, anchor=name_figure(anchor, "0"), curves=Curves("uplift", number))
+        alternative = f"Uplift at the supports. Largest: {', '.join(map(_describe_peak, supports))}."
+        caption = _describe_uplift(supports)
+        yield Figure(drawing, alternative, caption, anchor=name_figure(anchor, "0"), curves=Curves("uplift", number))
+
+
+def _describe_uplift(supports: list[dict[str, Any]]) -> str:
+    """Caption of the uplift: every support of a few, or the number, the ends and the largest of many."""
+    if len(supports) <= LISTED_SUPPORTS:
+        return f"Uplift at the supports. Largest: {', '.join(map(_describe_peak, supports))}."
+    places = [support["support_m"] for support in supports]
+    first, last = format_plain(min(places)), format_plain(max(places))
+    highest = max(supports, key=lambda support: max(support["uplift_mm"]))
+    return f"Uplift at {len(supports)} supports from {first} m to {last} m. Largest: {_describe_peak(highest)}."
+
+
+def _describe_peak(support: dict[str, Any]) -> str:
+    return f"{format_plain(round(max(support['uplift_mm'])))} mm at {format_plain(support['support_m'])} m"
 
 
 def name_figure(anchor: str, owner: str) -> str:

@@ -226,16 +226,16 @@ def _format_range(limits: list[float] | None, unit: str) -> str:
 
 
 def _draw_evidence(claims: list[dict[str, Any]], evidence: list[dict[str, Any]]) -> doc.Figure:
-    """Speeds of all runs, with the claimed range."""
-    numbered = list(enumerate(evidence))
+    """Speeds of all runs, with the claimed range. A run on a line without a claim is not evidence for the speeds."""
+    lines = {claim["name"] for claim in claims if claim["kind"] == "line"}
+    labels = [_label_run(item, lines) for item in evidence]
     series = [
         {
             "label": label, "style": "points", "error": None,
-            "x": [place for place, item in numbered if item["passed"] == passed],
-            "y": [item["speed_km_h"] for item in evidence if item["passed"] == passed],
+            "x": [place for place, other in enumerate(labels) if other == label],
+            "y": [item["speed_km_h"] for item, other in zip(evidence, labels, strict=True) if other == label],
         }
-        for label, passed in (("passed", True), ("not passed", False))
-        if any(item["passed"] == passed for item in evidence)
+        for label in RUN_LABELS if label in labels
     ]  # fmt: skip
     marks = [
         {"label": "claimed speeds", "axis": "y", "low": claim["claimed"][0], "high": claim["claimed"][1]}
@@ -245,6 +245,16 @@ def _draw_evidence(claims: list[dict[str, Any]], evidence: list[dict[str, Any]])
     caption = "Speeds of the runs, numbered as in the table, and the claimed range."
     chart = _chart(caption, ("run", "speed [km/h]"), _number(len(evidence))) | {"series": series, "marks": marks}
     return doc.Figure(draw_chart(chart), f"{caption} The table has the values.", caption)
+
+
+RUN_LABELS = ("passed", "not passed", "another line")
+"""Labels of the runs in the figure of the speeds."""
+
+
+def _label_run(item: dict[str, Any], lines: set[str]) -> str:
+    if lines and item["line"] not in lines:
+        return "another line"
+    return "passed" if item["passed"] else "not passed"
 
 
 def _build_evidence_table(evidence: list[dict[str, Any]]) -> doc.Table:

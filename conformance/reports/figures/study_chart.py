@@ -25,6 +25,7 @@ MARKERS = "os^Dv"
 FILLS = ("#3a424a", "#aab3bc", "white", "white")
 HATCHES = ("", "", "////", "....")
 BAND_OPACITY = 0.18
+CROSS = "#8c1d18"
 TICK_WIDTH = 10
 """Characters on a line of a tick label."""
 
@@ -55,7 +56,7 @@ def draw_chart(data: dict[str, Any], y_range: tuple[float, float] | None = None)
     for number, series in enumerate(bars):
         _draw_bars(axes, series, number, len(bars))
     for number, series in enumerate(others):
-        {"line": _draw_line, "points": _draw_points, "boxes": _draw_boxes}[series["style"]](axes, series, number)
+        STYLES[series["style"]](axes, series, number)
     for number, series in enumerate(bands):  # each belongs to the line of the same number
         shade = SHADES[number % 3]
         axes.fill_between(series["x"], series["y"], series["high"], color=shade, alpha=BAND_OPACITY, linewidth=0)
@@ -97,6 +98,11 @@ def _draw_points(axes: Axes, series: dict[str, Any], number: int) -> None:
     axes.margins(x=0.03)
 
 
+def _draw_crosses(axes: Axes, series: dict[str, Any], number: int) -> None:
+    """Coloured crosses over points of other series."""
+    axes.plot(series["x"], series["y"], "x", color=CROSS, markersize=8, label=series["label"], zorder=3)
+
+
 def _draw_boxes(axes: Axes, series: dict[str, Any], number: int) -> None:
     x, y = np.array(series["x"]), np.array(series["y"])
     for place in np.unique(x):
@@ -105,6 +111,10 @@ def _draw_boxes(axes: Axes, series: dict[str, Any], number: int) -> None:
         axes.plot(np.full(values.size, place + 0.36), values, "o", color=INK, markersize=3, markerfacecolor="white")
     axes.set_xlim(x.min() - 0.6, x.max() + 0.6)
     axes.set_xticks(np.unique(x))
+
+
+STYLES = {"line": _draw_line, "points": _draw_points, "crosses": _draw_crosses, "boxes": _draw_boxes}
+"""Drawing of a series by its style; bars and bands are drawn together."""
 
 
 def _draw_bars(axes: Axes, series: dict[str, Any], number: int, count: int) -> None:

@@ -14,6 +14,7 @@ from pantocheck.conformance.reports.formats.embedded_results import BLOCK_ID, en
 from pantocheck.conformance.reports.formats.inline_figure import inline_figure
 from pantocheck.conformance.reports.formats.page_code import read_plain_code, read_results_code
 from pantocheck.conformance.reports.formats.reproducibility import format_date
+from pantocheck.conformance.reports.unit_spaces import bind_page_units
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 
@@ -24,7 +25,7 @@ def render_html(document: Document) -> str:
     code = read_plain_code() if document.results is None else read_results_code()
     page = _build_environment().get_template("page.html")
     return page.render(
-        document=to_plain(replace(document, results=None)),
+        document=bind_page_units(to_plain(replace(document, results=None))),
         styles=tuple(map(Markup, code.styles)),
         scripts=tuple(map(Markup, code.scripts)),
         policy=Markup(code.policy),

@@ -13,6 +13,7 @@ from pantocheck.conformance.input_files.extras import refuse_missing_package
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
 from pantocheck.conformance.reports.page_text import change_texts
+from pantocheck.conformance.reports.unit_spaces import bind_page_units
 from pantocheck.conformance.reports.words import TEMPLATES, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
@@ -27,7 +28,7 @@ def render_pdf(document: Document) -> bytes:
     """
     words = read_words()
     data = {
-        "document": to_plain(replace(document, results=None)),
+        "document": bind_page_units(to_plain(replace(document, results=None))),
         "attachment": None,
         "verdicts": words["verdict"],
         "trusts": words["trust"],

@@ -17,7 +17,8 @@ VALIDATION_SCOPE = (
 
 SCATTER_KEY = (
     "A point is the computed value against the middle of the published range, a bar is the range. A bar that crosses "
-    "the line of equal values contains the computed value. Ranges with one bound stand in the tables only."
+    "the line of equal values contains the computed value. A cross marks a value outside its range. Ranges with one "
+    "bound stand in the tables only."
 )
 
 FAMILIES = {
@@ -112,7 +113,8 @@ def _draw_scatters(cases: list[dict[str, Any]]) -> Iterator[doc.Figure]:
         family = next((name for start, name in FAMILIES.items() if case["case"].startswith(start)), case["case"])
         for row in case["published"]:
             if row["value"] is not None and row["lower"] is not None and row["upper"] is not None:
-                by_unit.setdefault(quantity_unit(row["quantity"]), {}).setdefault(family, []).append(row)
+                named = row | {"case": case["case"]}
+                by_unit.setdefault(quantity_unit(row["quantity"]), {}).setdefault(family, []).append(named)
     for unit, families in by_unit.items():
         if sum(map(len, families.values())) >= FEWEST_RANGES:
             yield _draw_scatter(unit or "-", families)
@@ -134,6 +136,15 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
         }
         for family, points in families.items()
     ]
+    outside = [row for row in rows if row["inside"] is False]
+    missed = {
+        "label": "outside its range",
+        "style": "crosses",
+        "x": [row["value"] for row in outside],
+        "y": [(row["lower"] + row["upper"]) / 2 for row in outside],
+        "error": None,
+        "high": None,
+    }
     equal = {"label": "equal values", "style": "line", "x": [low, high], "y": [low, high], "error": None, "high": None}
     chart = {
         "x_label": f"computed [{unit}]",
@@ -141,7 +152,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
         "x_scale": "linear",
         "y_scale": "linear",
         "ticks": None,
-        "series": [equal, *series],
+        "series": [equal, *series, *([missed] if outside else [])],
         "marks": [],
         "wide": True,
     }
@@ -149,6 +160,15 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
     return doc.Figure(
         draw_chart(chart, (low - margin, high + margin)),
         f"{inside} of {len(rows)} published ranges in {unit} contain the computed value, from {format_value(low, 3)} "
-        f"to {format_value(high, 3)} {unit}.",
-        f"Published against computed values [{unit}].",
+        f"to {format_value(high, 3)} {unit}.{_list_outside(outside)}",
+        f"Published against computed values [{unit}].{_list_outside(outside)}",
     )
+
+
+def _list_outside(rows: list[dict[str, Any]]) -> str:
+    """Sentence that names the values outside their range, by case."""
+    by_case: dict[str, list[str]] = {}
+    for row in rows:
+        by_case.setdefault(row["case"], []).append(_name_value(row))
+    cases = "; ".join(f"{case}: {', '.join(dict.fromkeys(names))}" for case, names in by_case.items())
+    return f" Outside their range: {cases}." if rows else ""

@@ -130,7 +130,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     page = (folder / "fit" / "damping.html").read_text()
     assert "Mode shapes" in page
     first = results["shapes"]["modes"][0]
-    assert f"{first['measured_Hz']:.4f} Hz, MAC {first['mac']:.3f}" in page
+    assert f"{first['measured_Hz']:.4f}\N{NO-BREAK SPACE}Hz, MAC {first['mac']:.3f}" in page
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ import pytest
 
 from pantocheck.conformance.guide.guide_building import list_deviations
 from pantocheck.conformance.guide.guide_values import count_results, list_guide_values
+from pantocheck.conformance.reports.figures import study_chart
 from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.reports.guide import validation_section
 from pantocheck.conformance.reports.guide.guide_page import build_guide_page
 from pantocheck.conformance.results.guide_format import Guide
 
@@ -113,3 +115,21 @@ def test_guide_without_self_test_and_timings_is_complete(data: dict[str, Any]) -
     assert "Not computed: self-test/all: RuntimeError: no record" in text
     assert "## Self-test" not in text
     assert "self-test/all" in list_deviations(Guide.model_validate(changed))
+
+
+def test_scatter_plot_marks_and_names_the_values_outside_their_range(
+    data: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three ranges of 10 N to 30 N: only the value of 31 N lies outside."""
+    data["library"][0]["published"] = [_published(20.3), _published(31.0), _published(25.0)]
+    charts: list[dict[str, Any]] = []
+
+    def keep_chart(chart: dict[str, Any], y_range: tuple[float, float]) -> str:
+        charts.append(chart)
+        return study_chart.draw_chart(chart, y_range)
+
+    monkeypatch.setattr(validation_section, "draw_chart", keep_chart)
+    text = render_markdown(build_guide_page(data)).replace("\\", "")
+    [crosses] = [series for series in charts[-1]["series"] if series["style"] == "crosses"]
+    assert (crosses["x"], crosses["y"]) == ([31.0], [20.0])
+    assert "Outside their range: own/twin: " in text

@@ -9,6 +9,7 @@ import pytest
 from helpers.toml_edit import change_keys
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.certificate import step_sections
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline, list_step_reasons
 from pantocheck.conformance.reports.certificate.summary_page import build_summary
@@ -140,3 +141,21 @@ def test_changed_number_is_found(content: dict[str, Any], key: str, value: Any, 
     changed = copy.deepcopy(content)
     change_keys(changed, {key: value})
     assert any(found in text for text in find_discrepancies(changed)), key
+
+
+def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
+    content: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The line of the first run has no claim, so its point is neither passed nor not passed."""
+    changed = copy.deepcopy(content)
+    evidence = changed["procedure"]["evidence"]
+    claimed = {claim["name"] for claim in changed["procedure"]["claims"] if claim["kind"] == "line"}
+    own = [item for item in evidence if item["line"] in claimed]
+    assert own
+    charts: list[dict[str, Any]] = []
+    monkeypatch.setattr(step_sections, "draw_chart", lambda chart: charts.append(chart) or "<svg/>")
+    changed["procedure"]["evidence"] = [own[0] | {"line": "a line without a claim", "speed_km_h": 999.0}, *own]
+    build_certificate(changed)
+    points = {series["label"]: series["y"] for series in charts[-1]["series"]}
+    assert points.pop("another line") == [999.0]
+    assert sorted(speed for speeds in points.values() for speed in speeds) == sorted(item["speed_km_h"] for item in own)

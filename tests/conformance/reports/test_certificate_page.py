@@ -6,6 +6,7 @@ from typing import Any
 from helpers.shown_page import shown_certificate
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.reports.certificate.case_facts import list_case_facts
+from pantocheck.conformance.reports.certificate.case_figures import draw_case_figures
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks, describe_criterion
 from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table, list_definitions
@@ -167,3 +168,14 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     [table] = sections["All quantities"].blocks
     assert isinstance(table, Table)
     assert "1.0170, 0.89600" in [row[-1] for row in table.rows]
+
+
+def test_caption_of_many_supports_has_their_number_ends_and_largest_uplift(passing: dict[str, Any]) -> None:
+    """The alternative text keeps every support."""
+    case = passing["cases"][0]
+    support = case["uplift"][0]
+    case["uplift"] = [support | {"support_m": 60.0 * n, "uplift_mm": [0.0, 40.0 + n]} for n in range(5)]
+    case["uplift"] = [item | {"time_s": [0.0, 1.0]} for item in case["uplift"]]
+    *_, figure = draw_case_figures(case, 0, "case")
+    assert figure.caption == "Uplift at 5 supports from 0 m to 240 m. Largest: 44 mm at 240 m."
+    assert figure.alternative.count(" mm at ") == 5

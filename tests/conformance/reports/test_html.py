@@ -93,8 +93,10 @@ def test_figures_of_a_page_keep_their_text_and_share_no_id(page_text: str) -> No
 def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], page_text: str) -> None:
     outline = Outline(page_text)
     place = results["cases"][0]["places"]["1"]["max_force_N"]["position_m"]
-    assert f'<code>max_force_N</code> <a href="#case-1-force-1">at {round(place, 1):g} m</a>' in page_text
-    assert '<a href="#case-1-uplift">at 300 m</a>' in page_text
+    assert (
+        f'<code>max_force_N</code> <a href="#case-1-force-1">at {round(place, 1):g}\N{NO-BREAK SPACE}m</a>' in page_text
+    )
+    assert '<a href="#case-1-uplift">at 300\N{NO-BREAK SPACE}m</a>' in page_text
     figures = [attrs for tag, attrs in outline.tags if tag == "figure" and "data-curves" in attrs]
     assert [(attrs["id"], attrs["data-curves"], attrs["data-case"], attrs["data-owner"]) for attrs in figures] == [
         ("case-1-force-1", "force", "0", "1"),

@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from pypdf import PdfReader
@@ -16,6 +16,7 @@ from pypdf import PdfReader
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion
+from pantocheck.conformance.reports.document import Code, Column, Document, Paragraph, PlainHeader, Section, Table
 from pantocheck.conformance.reports.formats.embedded_results import strip_times
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
@@ -141,3 +142,76 @@ def test_write_report_into_an_unwritable_folder_is_an_input_error(passing: dict[
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError):
         write_report(build_certificate(passing), Path(tmp_path, "file", "a.pdf"))
+
+
+def _page_texts(document: Document) -> list[str]:
+    pages = PdfReader(io.BytesIO(render_pdf(document))).pages
+    return [page.extract_text().replace("\u200b", "") for page in pages]
+
+
+@pytest.mark.parametrize("layout", ["grid", "cards"])
+def test_no_page_begins_or_ends_with_a_single_row_of_a_table(layout: Literal["grid", "cards"]) -> None:
+    """Tables of 10 to 13 rows begin at many heights of a page; three rows stay together at both ends of each table."""
+    columns = (Column("Quantity", share=1), Column("Value", number=True))
+    rows = [[(f"row-{table}-{row}.", Code("name")) for row in range(10 + table % 4)] for table in range(30)]
+    sections = tuple(
+        Section(f"Table {table}", (Table(columns, tuple((name, "1") for name in names), layout=layout),))
+        for table, names in enumerate(rows)
+    )
+    counts = [
+        sum(f"row-{table}-{row}." in text for row in range(len(names)))
+        for text in _page_texts(Document("Tables", PlainHeader("Tables", "Text"), sections))
+        for table, names in enumerate(rows)
+    ]
+    assert sum(counts) == sum(map(len, rows))
+    assert sum(0 < count < 10 for count in counts) >= 6  # some tables are divided
+    assert min(count for count in counts if count) >= 3
+
+
+def test_heading_and_its_first_paragraphs_stay_with_the_table_below() -> None:
+    """Sections begin at many heights of a page; each has its first row on the page of its heading."""
+    columns = (Column("Quantity", share=1), Column("Value"))
+    sections = tuple(
+        Section(
+            f"Heading {number}.",
+            (Paragraph("Verdict"), Paragraph("Reason"), Table(columns, ((f"row {number}.", "1"),) * (3 + number % 4))),
+        )
+        for number in range(30)
+    )
+    for text in _page_texts(Document("Sections", PlainHeader("Sections", "Text"), sections)):
+        lines = text.splitlines()  # a line of the contents ends with a page
+        for number in range(30):
+            assert (f"Heading {number}." in lines) == (f"row {number}. 1" in lines)
+
+
+def test_table_without_rows_shows_its_headings() -> None:
+    table = Table((Column("Quantity", share=1), Column("Value")), ())
+    [text] = _page_texts(Document("Empty", PlainHeader("Empty", "Text"), (Section("Table", (table,)),)))
+    assert "Quantity" in text
+
+
+def test_long_row_of_a_table_is_divided_rather_than_lost() -> None:
+    """A text of 2000 characters in a narrow column is higher than a page."""
+    columns = (Column("Name", share=1), Column("Value", share=9))
+    words = " ".join(f"w{number}" for number in range(400))
+    table = Table(columns, ((words, "1"),))
+    text = "".join(_page_texts(Document("Long", PlainHeader("Long", "Text"), (Section("Table", (table,)),))))
+    assert all(f"w{number}" in text for number in range(400))
+
+
+def test_file_name_is_not_divided_before_its_ending() -> None:
+    """A file name stands at many places of a line, and some lines end within it."""
+    fillers = tuple(Paragraph("a " * count + "benchmarks/finite_differences.py.") for count in range(60, 180))
+    lines = "\n".join(_page_texts(Document("File", PlainHeader("File", "Text"), fillers))).splitlines()
+    assert "differences.py." in lines
+    assert "py." not in lines
+
+
+@pytest.mark.parametrize("lines", range(48, 51))
+def test_note_on_the_attachment_stands_below_the_last_section(passing: dict[str, Any], lines: int) -> None:
+    """Some of these documents have no room for the note on their first page."""
+    last = Section("Last section", (Paragraph("Closing words"),))
+    filler = tuple(Paragraph(f"line {line}") for line in range(lines))
+    pages = _page_texts(Document("Note", PlainHeader("Note", "Text"), (*filler, last), results=passing, date=1))
+    assert "Last section" in pages[-1]
+    assert "Attached results" in pages[-1]
