@@ -1,6 +1,7 @@
 """`pantocheck guide`: verification and validation guide from results of this version."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,7 @@ from pantocheck.conformance.guide.guide_driver import compute_parts
 from pantocheck.conformance.guide.guide_store import GuideStore
 from pantocheck.conformance.guide.guide_tasks import list_tasks, list_timings
 from pantocheck.conformance.guide.guide_values import list_guide_values
+from pantocheck.conformance.guide.part_durations import sum_durations
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
@@ -41,8 +43,14 @@ def guide_command(
     store = GuideStore(out, guide_identity())
     tasks, timings = list_tasks(), list_timings()
     with follow_steps("guide", len(tasks) + len(timings)) as progress:
-        parts = compute_parts(tasks, store, jobs, lambda part, done, _: progress.reach(part, done))
-        timed = compute_parts(timings, store, 1, lambda part, done, _: progress.reach(part, len(tasks) + done))
+        names = [task.name for task in tasks]
+        total = sum_durations([*names, *(task.name for task in timings)])
+
+        def report(part: str, finished: Sequence[str]) -> None:
+            progress.reach(part, len(finished), sum_durations(finished) / total)
+
+        parts = compute_parts(tasks, store, jobs, report)
+        timed = compute_parts(timings, store, 1, lambda part, finished: report(part, [*names, *finished]))
     guide = build_guide(parts.join(timed))
     write_model(out / "guide.json", guide)
     write_atomically(out / VALUES_FILE, _encode_values(guide))

@@ -35,8 +35,8 @@ LOG_INTERVAL_S = 10.0
 REDRAWS_PER_S = 3.0
 """Redraws on a terminal [1/s]: a log of the terminal grows by some kilobytes a minute."""
 
-SMALLEST_SHARE = 0.02
-"""Completed share from which the remaining time is estimated; below, the estimate is an extrapolation by 50 times."""
+SMALLEST_SHARE = 0.1
+"""Completed share from which the remaining time is estimated; below, the estimate is an extrapolation by 10 times."""
 
 
 @contextmanager
@@ -107,6 +107,7 @@ class TaskProgress(logging.Handler):
         self._begin, self._finished = clock(), 0
         self._steps: dict[str, TaskStep] = {}
         self._task: str | None = None
+        self._reached: list[tuple[float, float]] = []
 
     def begin_task(self, name: str) -> None:
         """Begin a task that may report no steps; the task before it is finished."""
@@ -115,13 +116,19 @@ class TaskProgress(logging.Handler):
         self._task = name
         _LOGGER.info("%s", name)
 
-    def reach(self, task: str, finished: int) -> None:
-        """State the number of finished tasks and the latest one."""
-        self._task, self._finished = task or None, finished
+    def reach(self, task: str, finished: int, share: float) -> None:
+        """State the latest finished task, the number of finished ones and their share of the duration of all.
+
+        The first statement counts the tasks that an earlier run has finished.
+        """
+        self._task, self._finished, self._steps = task or None, finished, {}
+        self._reached = [*self._reached[:1], (self._clock(), share)]
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep the step of a record."""
         if isinstance(step := getattr(record, "step", None), TaskStep):
+            if self._reached:  # a part has cases without an end of their own: only the latest is named
+                self._steps = {}
             self._steps[step.task] = step
 
     def finish_task(self, name: str = "") -> None:
@@ -143,14 +150,26 @@ class TaskProgress(logging.Handler):
             parts += [f"{step.task}: {step.name}" for step in steps]
         elif self._task is not None:
             parts.append(self._task)
-        share = min((self._finished + sum(step.completed for step in steps)) / self._total, 1.0)
+        now, (share, remaining) = self._clock(), self._estimate()
         parts.append(f"{100 * share:.0f} %")
-        elapsed = self._clock() - self._begin
-        if share >= SMALLEST_SHARE:
-            parts.append(f"about {timedelta(seconds=round(elapsed * (1 - share) / share))} remaining")
+        if remaining is None:
+            parts.append(f"{timedelta(seconds=round(now - self._begin))} elapsed")
         else:
-            parts.append(f"{timedelta(seconds=round(elapsed))} elapsed")
+            parts.append(f"about {timedelta(seconds=round(remaining))} remaining")
         return ", ".join(parts)
+
+    def _estimate(self) -> tuple[float, float | None]:
+        """Completed share, and remaining time [s]; None: too little is done, or the time of the estimate is over."""
+        now = self._clock()
+        if self._reached:
+            (begin, first), (latest, share) = self._reached[0], self._reached[-1]
+        else:
+            completed = self._finished + sum(step.completed for step in self._steps.values())
+            begin, first, latest, share = self._begin, 0.0, now, min(completed / self._total, 1.0)
+        if share - first < SMALLEST_SHARE:
+            return share, None
+        remaining = (latest - begin) * (1 - share) / (share - first) - (now - latest)
+        return share, remaining if remaining >= 1 or share >= 1 else None
 
 
 @contextmanager

@@ -11,8 +11,8 @@ from pantocheck.conformance.results.guide_format import FailedPart
 from pantocheck.conformance.results.results_part import ResultsPart
 from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
 
-Report = Callable[[str, int, int], None]
-"""Callback with the name of a finished part, the number of finished parts and the number of all parts."""
+Report = Callable[[str, Sequence[str]], None]
+"""Callback with the name of the part that is finished now (empty: none), and the names of all finished parts."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,14 @@ def compute_parts(tasks: Sequence[GuideTask], store: GuideStore, jobs: int, repo
     known = {task.name: content for task in tasks if (content := store.read(task)) is not None}
     failed: dict[str, FailedPart] = {}
     waiting = [task for task in tasks if task.name not in known]
-    report("", len(known), len(tasks))
+    report("", list(known))
     for task, outcome in _run_here(waiting) if jobs == 1 else _run_in_processes(waiting, jobs):
         if isinstance(outcome, FailedPart):
             failed[task.name] = outcome
         else:
             store.write(task, outcome)
             known[task.name] = outcome
-        report(task.name, len(known) + len(failed), len(tasks))
+        report(task.name, [*known, *failed])
     names = [task.name for task in tasks]
     return GuideParts({name: known[name] for name in names if name in known}, [failed[n] for n in names if n in failed])
 

@@ -128,3 +128,39 @@ def test_reference_simulator_reports_its_steps(caplog: pytest.LogCaptureFixture)
     assert completed == sorted(completed)
     assert completed[-1] <= 1
     assert len({step.completed for step in steps if step.name == OWN_MESH}) > 3
+
+
+def test_remaining_time_follows_the_durations_of_the_parts_of_this_run() -> None:
+    """An earlier run has done 20 %; 30 % more take 60 s, so the other half takes 100 s, of which 40 s pass."""
+    clock = Clock()
+    progress = TaskProgress("guide", 4, clock)
+    progress.reach("", 1, 0.2)
+    clock.now = 60.0
+    progress.reach("library/long", 2, 0.5)
+    clock.now = 100.0
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, about 0:01:00 remaining"
+    clock.now = 160.0  # the estimate is over, but not the work
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
+
+
+def test_no_remaining_time_before_a_tenth_is_done() -> None:
+    clock = Clock()
+    progress = TaskProgress("guide", 4, clock)
+    progress.reach("", 0, 0.0)
+    clock.now = 10.0
+    progress.reach("library/short", 1, 0.09)
+    assert progress.describe() == "guide: 1 of 4 finished, library/short, 9 %, 0:00:10 elapsed"
+
+
+def test_steps_within_a_part_add_no_share_and_only_the_latest_is_named(caplog: pytest.LogCaptureFixture) -> None:
+    """A part such as the self-test runs many cases, which end without a message."""
+    caplog.set_level(logging.INFO, LOGGER.name)
+    progress = TaskProgress("guide", 4, Clock())
+    progress.reach("", 0, 0.0)
+    LOGGER.addHandler(progress)
+    try:
+        for case in ("line/250", "line/300"):
+            StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
+    finally:
+        LOGGER.removeHandler(progress)
+    assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"

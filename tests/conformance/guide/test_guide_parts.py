@@ -9,7 +9,9 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.guide import peers
 from pantocheck.conformance.guide.guide_building import list_effects
+from pantocheck.conformance.guide.guide_tasks import list_tasks, list_timings
 from pantocheck.conformance.guide.known_limitations import LIMITATIONS_FILE, read_limitations
+from pantocheck.conformance.guide.part_durations import DURATIONS_S
 from pantocheck.conformance.guide.peers.peer_list import PEERS
 from pantocheck.conformance.guide.peers.peer_package import Peer, run_peer
 from pantocheck.conformance.guide.peers.salib_indices import evaluate_ishigami
@@ -109,3 +111,8 @@ def test_effects_of_the_exact_model_are_those_of_the_library() -> None:
     free, fixed = list_effects()
     assert (free.relative_pct["max_uplift_at_support_mm"], free.absolute["min_force_N"]) == (2.5, 4.6)
     assert (fixed.relative_pct["max_uplift_at_support_mm"], fixed.absolute["min_force_N"]) == (4.3, 1.4)
+
+
+def test_long_parts_of_the_guide_are_parts() -> None:
+    """A duration of a part that is renamed would be lost."""
+    assert DURATIONS_S.keys() <= {task.name for task in (*list_tasks(), *list_timings())}
