@@ -17,6 +17,9 @@ GAP_INTERVALS = 1.5
 HELD_SHARE = 0.5
 """Share of unchanged samples from which a channel counts as recorded at a lower rate than the others."""
 
+SELDOM_SHARE = 0.95
+"""Share of unchanged samples from which a channel counts as slow or coarsely resolved: one change in twenty samples."""
+
 TIME_WORDS = (*TIME_NAMES, "zeit", "tiempo", "tempo")
 """Words of a time, as whole names or at the end of a name."""
 
@@ -110,9 +113,20 @@ def _list_remarks(numbers: RealArray, smallest: float, largest: float) -> Iterat
         inner = ~np.isin(numbers[1:], (smallest, largest))
         held = float(np.mean(np.diff(numbers)[inner] == 0))
         if held >= HELD_SHARE:
-            yield f"{100 * held:.0f} % of the samples repeat the one before"
+            yield _describe_held(numbers, held)
         elif clipped := find_clipping(numbers):
             yield f"flat at its extreme {len(clipped)} times: overloaded?"
+
+
+def _describe_held(numbers: RealArray, held: float) -> str:
+    """Remark on a channel of which a share of the samples repeats the one before."""
+    if held < SELDOM_SHARE:
+        return f"{100 * held:.0f} % of the samples repeat the one before: recorded at a lower rate?"
+    values = np.unique(numbers)
+    return (
+        f"changes seldom: {values.size} different values in {numbers.size} samples, at least "
+        f"{np.diff(values).min():.3g} apart. A slow quantity with a coarse resolution or a lower rate looks like this; a dead channel is constant"
+    )
 
 
 def _find_equal(table: MeasuredTable) -> dict[int, str]:

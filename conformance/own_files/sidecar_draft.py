@@ -78,6 +78,9 @@ def _list_columns(
             name = CHANNELS[channel].column(number)
             remark = f"   # {TO_DO} support_position_m above" if several else ""
             yield f"{'# ' if several else ''}{_column_line(name, fact, None)}{remark}"
+    if len(guesses.get("force", [])) > 1:
+        yield "# forces of one pantograph (left and right): one [columns.force_1_N] with sum = [...], see"
+        yield f"# {DocumentationPage.LOGGER_FILES}"
     signals = list_force_signals(facts)
     used |= {id(fact) for fact in signals}
     for number, fact in enumerate(signals, 1):

@@ -128,17 +128,36 @@ def test_force_sensors_in_volts_are_proposed_with_a_scale(tmp_path: Path) -> Non
     assert "the sum of several sensors" in draft
 
 
+def test_draft_of_several_forces_points_to_their_sum(tmp_path: Path) -> None:
+    """Two sensors of one pantograph have the same units as the forces of two pantographs."""
+    rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 60 + np.sin(PLACE), strict=True))
+    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;N;N\n" + rows)
+    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
+    draft = (tmp_path / "a.toml").read_text()
+    assert 'force_2_N = { column = "Kraft rechts", unit = "N" }' in draft
+    assert "[columns.force_1_N] with sum = [...]" in draft
+
+
 def test_suspicious_contents_are_named() -> None:
     values = np.column_stack(
-        [np.sin(PLACE), np.sin(PLACE), np.clip(np.sin(PLACE), -0.5, 0.5), np.floor(TIME), 0 * TIME]
+        [
+            np.sin(PLACE),
+            np.sin(PLACE),
+            np.clip(np.sin(PLACE), -0.5, 0.5),
+            np.repeat(np.sin(PLACE), 4)[: TIME.size],
+            0 * TIME,
+            np.round(200 + TIME / TIME[-1], 1),
+        ]
     )
-    table = MeasuredTable("a.csv", values, tuple(TableColumn(name) for name in "abcde"))
+    table = MeasuredTable("a.csv", values, tuple(TableColumn(name) for name in "abcdef"))
     remarks = [fact.remarks for fact in list_channel_facts(table)]
     assert remarks[0] == ()
     assert remarks[1] == ("same numbers as 'a'",)
     assert "overloaded" in remarks[2][0]
-    assert "repeat the one before" in remarks[3][0]
+    assert "repeat the one before: recorded at a lower rate?" in remarks[3][0]
     assert remarks[4] == ("constant",)
+    # A speed with a resolution of 0.1 km/h is no dead channel.
+    assert remarks[5][0].startswith(f"changes seldom: 11 different values in {TIME.size} samples, at least 0.1 apart. ")
 
 
 def test_gaps_and_repetitions_of_the_time_are_named() -> None:
