@@ -20,6 +20,19 @@ def ignore_progress(share: float) -> None:
     """Follow no progress."""
 
 
+def follow_part(progress: ShareCallback, begin: float, end: float) -> ShareCallback:
+    """Callback of a part of a computation.
+
+    Parameters
+    ----------
+    progress : callable
+        Callback of the whole computation.
+    begin, end : float
+        Completed shares of the whole before and after the part, 0 to 1.
+    """
+    return lambda share: progress(begin + (end - begin) * share)
+
+
 @dataclass(frozen=True)
 class TaskStep:
     """Position in a task.

@@ -1,5 +1,6 @@
 """`pantocheck compare-drop`: a recorded mass drop beside its simulation under one or more damping models."""
 
+import logging
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -39,6 +40,9 @@ from pantocheck.conformance.reports.comparison.drop_comparison_page import (
     name_criterion,
 )
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
+from pantocheck.conformance.step_log import StepSequence
+
+_LOGGER = logging.getLogger(__name__)
 
 DEFAULT_WINDOWS = ((0.0, 10.0), (60.0, 70.0))
 """Windows after the release [s]: the first ten seconds, and ten seconds a minute later."""
@@ -95,8 +99,10 @@ def compare_drop_command(
     )
     drop = _choose_run(record, run)
     check_writable(out)
-    with follow_steps("simulating the drop"):
-        comparison = compare_drop(drop, task)
+    with follow_steps("comparison of the drop"):
+        steps = StepSequence(_LOGGER, drop.name, {"simulation": 0.95, "report": 0.05})
+        comparison = compare_drop(drop, task, steps.begin("simulation"))
+        steps.begin("report")
         files = _write(comparison, out)
     return CommandOutput(
         style_verdict(comparison.verdict) + escape_text(f" {DROP_HEADLINES[comparison.verdict]}"),

@@ -14,6 +14,7 @@ from pantocheck.conformance.identification.release import MIN_REST, Release, fin
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.drop_simulation import ORDER, decimate
 from pantocheck.conformance.simulation.time_steps import integrate_mass_drop
+from pantocheck.conformance.step_log import ShareCallback, follow_part, ignore_progress
 from pantocheck.model import Catenary
 from pantocheck.model.dynamics.drop_values import MassDropSetup
 
@@ -120,7 +121,12 @@ class DropMotion:
         return ORDER[motion] - ORDER[self.quantity]
 
 
-def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings: DropSimulation) -> DropMotion:
+def simulate_models(
+    drop: RecordedDrop,
+    models: Mapping[str, Catenary],
+    settings: DropSimulation,
+    progress: ShareCallback = ignore_progress,
+) -> DropMotion:
     """Simulate a recorded drop under several models, and align the record with the first one.
 
     Parameters
@@ -131,6 +137,8 @@ def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings
         Line with the damping of each model; the first one finds the release.
     settings : DropSimulation
         Settings of the simulations.
+    progress : callable
+        Called from time to time with the completed share of all simulations, 0 to 1.
 
     Returns
     -------
@@ -163,8 +171,9 @@ def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings
     lead = round(LEAD_S * rate)
     duration = min(settings.last + MARGIN_S + TAPER_S, available)
     simulated, slack = {}, {}
-    for name, catenary in models.items():
-        simulated[name], slack[name] = _simulate(drop, catenary, settings, (rate, lead, duration))
+    for number, (name, catenary) in enumerate(models.items()):
+        part = follow_part(progress, number / len(models), (number + 1) / len(models))
+        simulated[name], slack[name] = _simulate(drop, catenary, settings, (rate, lead, duration), part)
     first = next(iter(simulated.values()))[:, aligned]
     record_part, model_part = (filter_motion(part, rate, 0, GRAPHIC_BAND) for part in (samples[:, aligned], first))
     # Without rest, the planned release stands in place of the first motion.
@@ -190,7 +199,11 @@ def simulate_models(drop: RecordedDrop, models: Mapping[str, Catenary], settings
 
 
 def _simulate(
-    drop: RecordedDrop, catenary: Catenary, settings: DropSimulation, grid: tuple[float, int, float]
+    drop: RecordedDrop,
+    catenary: Catenary,
+    settings: DropSimulation,
+    grid: tuple[float, int, float],
+    progress: ShareCallback,
 ) -> tuple[RealArray, float | None]:
     """Motion in the quantity of the record on a grid of a rate [Hz], a number of samples before the release and a
     duration after it [s]; last time with a slack dropper [s].
@@ -212,6 +225,7 @@ def _simulate(
             time_step=1 / (rate * steps),
             sensors=drop.places,
         ),
+        progress,
     )
     motion = decay.motion[:, :, ORDER[drop.record.quantity]].T
     return decimate(motion - motion[0], steps), decay.last_slack

@@ -1,6 +1,7 @@
 """`pantocheck compare-drop`: files, exit codes, damping files, and messages that name file and key."""
 
 import json
+import logging
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from helpers.recorded_drops import ELEMENT, damp_masses, read_short_line, record
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_hdf5
 from pantocheck.conformance.schemas import build_schema
+from pantocheck.conformance.step_log import TaskStep
 
 LIMITS = """
 schema = "pantocheck.drop-limits/1"
@@ -52,6 +54,17 @@ def test_two_damping_files_are_compared_and_the_first_is_graded(folder: Path) ->
     validate(results, build_schema("drop-comparison"))
     assert [model["name"] for model in results["models"]] == ["own", "other"]
     assert (folder / "out" / "drop_comparison.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_progress_has_a_share(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """The shares of two models and of the refined simulation increase to the begin of the report, at 95 %."""
+    with caplog.at_level(logging.DEBUG, "pantocheck"):
+        run("--damping", "own.toml", "--damping", "other.toml", "--limits", "limits.toml")
+    steps = [record.step for record in caplog.records if isinstance(getattr(record, "step", None), TaskStep)]
+    shares = [step.completed for step in steps]
+    assert len(set(shares)) > 4
+    assert shares == sorted(shares)
+    assert (shares[0], steps[-1].name, shares[-1]) == (0.0, "report", pytest.approx(0.95))
 
 
 def test_exit_codes_follow_the_verdict(folder: Path) -> None:
