@@ -123,9 +123,10 @@ def _describe_held(numbers: RealArray, held: float) -> str:
     if held < SELDOM_SHARE:
         return f"{100 * held:.0f} % of the samples repeat the one before: recorded at a lower rate?"
     values = np.unique(numbers)
+    step = float(np.diff(values).min())
     return (
-        f"changes seldom: {values.size} different values in {numbers.size} samples, at least "
-        f"{np.diff(values).min():.3g} apart. A slow quantity with a coarse resolution or a lower rate looks like this; a dead channel is constant"
+        f"changes seldom: {values.size} different values in {numbers.size} samples, at least {step:.3g} apart. "
+        "A slow quantity with a coarse resolution or a lower rate looks like this; a dead channel is constant"
     )
 
 
