@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -115,15 +115,34 @@ def compare_drop_command(
 
 
 def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
-    """Damping models by the stem of their file; the damping of the line if there is no file."""
+    """Damping models by the name of their file; the damping of the line if there is no file."""
     if not paths:
         return {"line": DampingChoice(line.title, line.damping)}
-    models: dict[str, DampingChoice] = {}
-    for path in paths:
-        if path.stem in models:
-            raise InputError("--damping", f"two files have the name {path.stem}", "Rename one: reports name the stem.")
-        models[path.stem] = DampingChoice(path.name, read_model(path, DampingFile, "damping").damping)
-    return models
+    names = name_damping_files(paths)
+    return {
+        name: DampingChoice(path.name, read_model(path, DampingFile, "damping").damping)
+        for name, path in zip(names, paths, strict=True)
+    }
+
+
+def name_damping_files(paths: Sequence[Path]) -> list[str]:
+    """Stems of the files; with the name of the folder in front where several files have the same stem.
+
+    Raises
+    ------
+    InputError
+        Two files have the same stem in folders of the same name.
+    """
+    stems = [path.stem for path in paths]
+    names = [
+        f"{path.absolute().parent.name}/{path.stem}" if stems.count(path.stem) > 1 else path.stem for path in paths
+    ]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(
+                "--damping", f"two files have the name {name}", "Rename a file or its folder: reports name both."
+            )
+    return names
 
 
 def _parse_window(text: str) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.recorded_drops import ELEMENT, damp_masses, read_short_line, record_drop
 from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.command_line.compare_drop_command import name_damping_files
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_hdf5
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.step_log import TaskStep
@@ -77,13 +78,26 @@ def test_exit_codes_follow_the_verdict(folder: Path) -> None:
     assert [model["name"] for model in results["models"]] == ["line"]
 
 
+def test_files_of_the_same_name_take_the_name_of_their_folder(folder: Path) -> None:
+    """`fit-damping` names its file damping.toml in every folder."""
+    paths = [Path("fit4/damping.toml"), Path("fit/damping.toml"), Path("own.toml")]
+    for path in paths[:2]:
+        path.parent.mkdir()
+        path.write_bytes(Path("own.toml").read_bytes())
+    assert name_damping_files(paths) == ["fit4/damping", "fit/damping", "own"]
+    assert name_damping_files([Path("damping.toml"), paths[1]]) == [f"{folder.name}/damping", "fit/damping"]
+    done = run("--damping", "fit4/damping.toml", "--damping", "fit/damping.toml")
+    results = json.loads((folder / "out" / "drop_comparison.json").read_text())
+    assert [model["name"] for model in results["models"]] == ["fit4/damping", "fit/damping"], done.output
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["--window", "4:1"], "--window: '4:1' is not a window after the release"),
         (["--window", "abc"], "--window: 'abc' is not a window after the release"),
         (["--run", "3"], "--run: there is no run 3"),
-        (["--damping", "own.toml", "--damping", "own.toml"], "--damping: two files have the name own"),
+        (["--damping", "own.toml", "--damping", "own.toml"], "--damping: two files have the name "),
         (["--damping", "line.toml"], "damping 'line.toml', key title: unknown key"),
         (["--limits", "own.toml"], "limits 'own.toml', key"),
     ],
