@@ -72,10 +72,14 @@ def restrict_fit(
         if window.sum() < MIN_LOCAL_LINES:
             continue
         omega = data.omega[window]
+        terms = far_pole_columns(omega, 2)
+        # Real and imaginary part of each line are equations; one pole may be added. A crowded short record has too few.
+        if 2 * omega.size < 2 * (int(near.sum()) + 1) + terms.shape[1]:
+            continue
         residues = np.concatenate([fit.residues[near], fit.residues[near].conj()])
         kernels = decay_kernel(join_conjugates(poles[near]), omega, data.dt, data.n)
         spectrum = fit.residual[window] + kernels @ residues
-        local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, far_pole_columns(omega, 2)))
+        local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, terms))
     return LocalFit(poles[near], near, local)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.array_types import ComplexArray
+from pantocheck.conformance.identification.decay_kernel import far_pole_columns
 from pantocheck.conformance.identification.local_fit import (
     crowded_poles,
     find_best_candidate,
@@ -87,3 +88,17 @@ def test_crowded_poles_are_closer_than_one_and_a_half_lines_of_the_longest_recor
     blocks = [build_data(poles, duration) for duration in (40.0, 100.0)]
     assert list(crowded_poles(poles, blocks)) == [True, True, False, False]
     assert list(crowded_poles(poles[:1], blocks)) == [False]
+
+
+def test_lines_must_determine_the_local_poles_and_one_more() -> None:
+    """Nine lines at the edge of the band hold 18 equations; a pole takes two, the distant modes the others."""
+    block = build_data(np.array([-0.02 + 2j * np.pi]), 60.0)
+    lines, no_poles = 9, np.zeros(0, dtype=np.complex128)
+    terms = far_pole_columns(block.omega[:lines], 2)
+    edge = DataBlock(block.lines[:lines], block.spectrum[:lines], block.dt, block.n, terms)
+    centre = float(edge.omega.mean())
+    spare = 2 * lines - terms.shape[1]
+    for count, expected in ((spare // 2 - 1, 1), (spare // 2, 0)):
+        poles = -0.02 + 1j * (centre + 0.01 * np.arange(count))
+        fit = replace(solve_residues(no_poles, edge), residues=np.zeros((count, 2), dtype=complex))
+        assert len(restrict_fit(poles, [edge], [fit], centre).blocks) == expected
