@@ -24,11 +24,11 @@ def find_gaps(results: Results) -> list[str]:
     results : Results
         Results of a document.
     """
-    gaps = [f"{key} is missing" for key in STATED_BY_EVERY_RUN if _is_absent(getattr(results, key))]
+    only_verified = bool(results.cases) and all(case.id in results.verification_only for case in results.cases)
+    keys = [key for key in STATED_BY_EVERY_RUN if not (key == "criteria_verdict" and only_verified)]
+    gaps = [f"{key} is missing" for key in keys if _is_absent(getattr(results, key))]
     if results.suite.digest is None:
         gaps.append("suite.digest is missing")
-    if results.criteria_verdict is None and all(case.id in results.verification_only for case in results.cases):
-        gaps = [gap for gap in gaps if not gap.startswith("criteria_verdict")]
     return gaps + [f"{case.id}: {gap}" for case in results.cases for gap in _find_case_gaps(case)]
 
 

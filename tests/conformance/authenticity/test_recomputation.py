@@ -174,6 +174,15 @@ def test_record_of_a_passage_has_a_state(ungraded: Results, changes: dict[str, A
     assert any("the state of the record is missing" in text for text in gaps) is found
 
 
+def test_results_without_cases_lack_the_verdict_of_the_criteria(ungraded: Results) -> None:
+    """It may be absent only if every case, and there is one, takes part in the verification alone."""
+    ungraded["criteria_verdict"] = None
+    only = {**ungraded, "verification_only": [case["id"] for case in ungraded["cases"]]}
+    for results, missing in ((ungraded, True), (only, False), ({**ungraded, "cases": []}, True)):
+        gaps = find_gaps(ResultsModel.model_validate(results))
+        assert ("criteria_verdict is missing" in gaps) is missing
+
+
 def test_minimum_above_maximum_is_found_without_samples(ungraded: Results) -> None:
     """A summary has no curve; its printed statistics may be rounded, but not in the wrong order."""
     case = ungraded["cases"][0]
