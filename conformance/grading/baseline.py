@@ -28,6 +28,9 @@ LARGEST_VALUE = 1e12
 MOST_VALUES = 10_000
 """Largest number of values of a case of a baseline; real cases are far below."""
 
+KEYS_SHOWN = 5
+"""Number of changed keys of the inputs that a reason names."""
+
 
 class _Key(NamedTuple):
     """Owner, quantity and item of one number of a case."""
@@ -101,7 +104,7 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
     )
     sizes = (len(earlier_values), len(drifted))
     if changes := _list_changes(case, earlier):
-        drifted.append(_skipped_comparison(f"baseline {name} has other {' and '.join(changes)}; renew the baseline"))
+        drifted.append(_skipped_comparison(f"baseline {name} has other {', '.join(changes)}; renew the baseline"))
     compared = _add_criteria(case, drifted, sizes, drift_pct, name)
     return compared.model_copy(update={"notes": [*case.notes, note]})
 
@@ -109,12 +112,25 @@ def _compare_case(case: CaseResult, earlier: CaseResult | None, drift_pct: float
 def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
     """Parts of a case that differ from the baseline; for an assessment, the inputs are the graded record itself."""
     parts = {
-        "inputs": case.profile is None and case.input_digest != earlier.input_digest,
+        f"inputs{_name_inputs(case, earlier)}": case.profile is None and case.input_digest != earlier.input_digest,
         "limits": case.limits_digest != earlier.limits_digest,
         "converged values": _verification_digest(earlier) not in {None, _verification_digest(case)},
         "texts or sources": case.library != earlier.library,
     }
     return [name for name, differs in parts.items() if differs]
+
+
+def _name_inputs(case: CaseResult, earlier: CaseResult) -> str:
+    """Keys of the inputs that differ, in brackets; empty if results state none, such as those of older versions."""
+    groups, earlier_groups = ({group.group: group.values for group in each.inputs} for each in (case, earlier))
+    keys = []
+    for group in dict.fromkeys([*groups, *earlier_groups]):
+        values, earlier_values = groups.get(group, {}), earlier_groups.get(group, {})
+        names = dict.fromkeys([*values, *earlier_values])
+        prefix = "" if group == "case" else f"{group}."
+        keys += [f"{prefix}{name}" for name in names if values.get(name) != earlier_values.get(name)]
+    more = f" and {len(keys) - KEYS_SHOWN} more" if len(keys) > KEYS_SHOWN else ""
+    return f" ({', '.join(keys[:KEYS_SHOWN])}{more})" if keys else ""
 
 
 def _verification_digest(case: CaseResult) -> str | None:

@@ -106,12 +106,16 @@ class Participation:
     def decide_run(self, results: Results) -> Results:
         """Results with the verdicts of their cases and of the run.
 
-        A requested verdict in which no case takes part is `info`. With a procedure, its required steps decide.
+        A requested verdict in which no case takes part is `info`. With a procedure, its required steps decide. Where
+        some cases are compared with a baseline, a case that is not, such as an interrupted one, is skipped.
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
         by_name = {name: self.judge_name(name, cases, system) for name in get_args(VerdictName)}
         overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
-        compared = [(case.id, case.baseline.verdict) for case in cases if case.baseline is not None]
+        compared: list[tuple[str, Verdict]] = [
+            (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases
+        ]
+        has_baseline = any(case.baseline is not None for case in cases)
         verdict = worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)])
         procedure = results.procedure
         if procedure is not None:
@@ -124,7 +128,7 @@ class Participation:
                 "procedure": procedure,
                 "criteria_verdict": by_name["criteria"],
                 "verification_verdict": by_name["verification"],
-                "baseline_verdict": self.judge_run(compared, system) if compared else None,
+                "baseline_verdict": self.judge_run(compared, system) if has_baseline else None,
                 "requested": list(self.requested),
                 "information": list(self.information),
                 "accepted_unverified": list(self.accepted_unverified),

@@ -69,8 +69,15 @@ class PlanSession:
         """Whether the plan accepts unverified records of its system."""
         return self._start_system().name in self.prepared.participation.accepted_unverified
 
-    def results(self) -> tuple[Results, int, Verdict] | None:
-        """Results of the plan, number of values that drifted from its baseline, verdict of the cases that ran.
+    def compare(self, case: Case) -> CaseResult:
+        """Result of a case with its criteria of drift from the baseline of the plan."""
+        finished, system = self.result(case), self._start_system()
+        identity = SystemIdentity(name=system.name, version=system.version, kind=system.kind)
+        results = build_results([finished], identity, self.prepared.plan.trust, utc_now(), self.prepared.participation)
+        return self.prepared.compare(results).cases[0]
+
+    def results(self) -> tuple[Results, Verdict] | None:
+        """Results of the plan, compared with its baseline, and the verdict of the cases that ran.
 
         A deselected case has the verdict `skip` in the results. None if no case ran.
         """
@@ -87,7 +94,7 @@ class PlanSession:
         compared = self.prepared.compare(results)
         executed = ((case.id, case.verdict) for case in compared.cases if self._file(case.id).is_file())
         verdict = participation.judge_run(executed, identity.name)
-        return compared, _count_criteria(compared) - _count_criteria(results), verdict
+        return compared, verdict
 
     def _start_system(self) -> System:
         """System under test, started once in this process."""
@@ -115,10 +122,6 @@ def list_registered(shared: Path) -> Iterator[Path]:
     """Plans with a finished case in a session, sorted by name."""
     plans = [json.loads(path.read_text(encoding="utf-8"))["plan"] for path in shared.glob("*/session.json")]
     return map(Path, sorted(plans))
-
-
-def _count_criteria(results: Results) -> int:
-    return sum(len(case.criteria) for case in results.cases)
 
 
 def _hash(text: str) -> str:

@@ -17,6 +17,7 @@ from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_regi
 from pantocheck.conformance.pytest_plugin.session import shared_folder
 from pantocheck.conformance.pytest_plugin.user_fixtures import (
     criterion_line,
+    criterion_name,
     is_unverified,
     list_verdict_criteria,
     unverified_line,
@@ -74,7 +75,7 @@ class CaseNode(pytest.Collector):
             # With --dist loadgroup one worker takes all criteria of a case, so no worker waits for another.
             self.add_marker(pytest.mark.xdist_group(case.id))
 
-    def collect(self) -> "Iterator[VerdictNode | PantographNode | CaseItem]":
+    def collect(self) -> "Iterator[VerdictNode | PantographNode | CaseItem | BaselineItem]":
         """Pantographs of the criteria, and the line if a quantity of the line has a limit; then the verification."""
         targets: dict[VerdictName, list[Target]] = {
             "criteria": [limit.target for limit in self.case.limits],
@@ -87,6 +88,8 @@ class CaseNode(pytest.Collector):
             yield VerdictNode.from_parent(self, name="verification", targets=targets["verification"])
         if not requested:
             yield CaseItem.from_parent(self, name="run")
+        if self.campaign.prepared.baseline is not None:
+            yield BaselineItem.from_parent(self, name="baseline")
 
     def result(self) -> CaseResult:
         """Result of the case, computed once per session.
@@ -181,6 +184,28 @@ class CaseItem(OneLineItem):
             self.parent.result()
 
 
+class BaselineItem(OneLineItem):
+    """Test of the drift of a case from the baseline of the plan."""
+
+    def runtest(self) -> None:
+        """Run the case if necessary; a value that has drifted fails."""
+        if not isinstance(self.parent, CaseNode):
+            raise TypeError("a test of a baseline belongs to a case")
+        self.parent.result()
+        compared = self.parent.campaign.compare(self.parent.case)
+        lines = "\n".join(list_drifts(compared))
+        verdict = compared.baseline.verdict if compared.baseline is not None else "skip"
+        if verdict == "fail":
+            self.parent.report(lines)
+        if verdict != "pass":
+            pytest.skip(lines or "no value is compared with the baseline")
+
+
+def list_drifts(case: CaseResult) -> list[str]:
+    """Lines of the values of a case that drifted from its baseline or are missing, and of an impossible comparison."""
+    return [f"{criterion_name(row)}: {row.reason}" for row in case.criteria if row.is_drift and row.verdict != "pass"]
+
+
 class CriterionItem(OneLineItem):
     """Test of one criterion of a case."""
 
@@ -221,7 +246,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
         session = _open_session(config, path, folder)
         if (session_results := session.results()) is None:
             continue
-        (results, drifted, verdict), prepared = session_results, session.prepared
+        (results, verdict), prepared = session_results, session.prepared
         not_passed |= verdict != "pass"
         write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
@@ -229,6 +254,5 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
             f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"
         )
         lines += (f"{path.name}: {remark}" for remark in remark_missing_formats(prepared.plan.formats))
-        if drifted:
-            lines.append(f"{path.name}: {drifted} values drifted from the baseline {prepared.plan.baseline}")
+        lines += (f"{path.name}: {case.id}: {line}" for case in results.cases for line in list_drifts(case))
     return lines, not_passed

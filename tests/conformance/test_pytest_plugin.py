@@ -193,12 +193,27 @@ def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan
     content = json.loads((pytester.path / "baseline.json").read_text())
     content["cases"][case]["quantities"]["1"]["std_force_N"] *= 1.05
     (pytester.path / "baseline.json").write_text(json.dumps(content))
+    earlier = content["cases"][case]["quantities"]["1"]["std_force_N"]
+    text = f"std_force_N of pantograph 1: drifted by -4.76 % from the baseline of {earlier:.6g} N"
     done = session(pytester, *chosen)
-    done.assert_outcomes(passed=2, deselected=14)
+    done.assert_outcomes(passed=2, deselected=16)
     assert done.ret == 1
-    done.stdout.fnmatch_lines(
-        ["*= pantocheck =*", "conformance.toml: 1 values drifted from the baseline *baseline.json"]
-    )
+    summary = f"conformance.toml: {content['cases'][case]['id']}: {text}"
+    done.stdout.fnmatch_lines(["*= pantocheck =*", summary])
+    every = session(pytester, "conformance.toml", "--junitxml", "tests.xml")
+    every.assert_outcomes(passed=17, failed=1)
+    every.stdout.fnmatch_lines([text, summary])
+    assert f'<failure message="{text}' in (pytester.path / "tests.xml").read_text()
+
+
+def test_case_that_the_baseline_does_not_have_is_skipped(pytester: pytest.Pytester, plan: Path) -> None:
+    edit_toml(plan, {"system": PUBLISHED, "accept_unverified": [CODE], "cases": ["en50318-2002/250"]})
+    session(pytester, "conformance.toml", "--pantocheck-out", "before")
+    edit_toml(plan, {"baseline": "before/results.json", "cases": ["en50318-2002/*"]})
+    done = session(pytester, "conformance.toml", "-rs")
+    done.assert_outcomes(passed=17, skipped=1)
+    done.stdout.fnmatch_lines(["SKIPPED*baseline results.json has no case en50318-2002/300"])
+    assert done.ret == 1
 
 
 def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, plan: Path) -> None:

@@ -93,6 +93,9 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
     yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}." if cases else "No case takes part."
     if name == "baseline":
         yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)
+        others = [case for case in results["cases"] if case["id"] not in shown and case.get("baseline") is None]
+        if others:
+            yield f"{count_noun(len(others), 'case was', 'cases were')} not compared."
         return
     rows = Counter(row["verdict"] for case in cases for row in list_criteria(case, name))
     counted = sum(rows[verdict] for verdict in ("pass", "fail", "skip"))

@@ -33,6 +33,10 @@ CLAUSES = {
 """Parts of the headline by verdict, in the singular and the plural, the worst first."""
 
 
+CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
+"""A case and one of its criteria."""
+
+
 def build_headline(results: dict[str, Any]) -> str:
     """The verdict in sentences: passed cases, reasons against a better verdict, and the exceptions of the user."""
     if "procedure" in results:
@@ -41,9 +45,8 @@ def build_headline(results: dict[str, Any]) -> str:
     verdicts = Counter(case["verdict"] for case in cases)
     accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0
     passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
-    rows = [row for case in cases for row in select_criteria(results, case)]
-    grades = Counter(row["verdict"] for row in rows if not is_drift(row))
-    drifted = sum(row["verdict"] == "fail" for row in rows if is_drift(row))
+    pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
+    grades = Counter(row["verdict"] for _, row in pairs if not is_drift(row))
     counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
     total = count_noun(len(cases), "case")
     if not cases:
@@ -54,9 +57,7 @@ def build_headline(results: dict[str, Any]) -> str:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
             if number := verdicts[verdict]:
-                outside = (
-                    f" ({grades['fail']} of {counted} counted criteria outside their limits{_count_drifts(drifted)})"
-                )
+                outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if is_drift(pair[1])])
                 parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
     if accepted:
@@ -67,11 +68,16 @@ def build_headline(results: dict[str, Any]) -> str:
     return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
 
 
-def _count_drifts(number: int) -> str:
-    """Further part of a clause: the number of values that drifted from a baseline; empty without any."""
-    if not number:
-        return ""
-    return f", {count_noun(number, 'value')} drifted from the baseline"
+def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
+    """Numbers of criteria outside their limits and of drifted values, with the largest drift; empty without any."""
+    parts = [f"{failed} of {counted} counted criteria outside their limits"] if counted else []
+    if drifted := [pair for pair in drifts if pair[1]["verdict"] == "fail"]:
+        # The margin is the drift in units of the accepted one.
+        case, row = min(drifted, key=lambda pair: pair[1]["margin"] or 0.0)
+        change = (row["reason"] or "").partition(" from ")[0].removeprefix("drifted ")
+        largest = f"{row['quantity']} of {case['id']} {change}".rstrip()
+        parts.append(f"{count_noun(len(drifted), 'value')} drifted from the baseline, most {largest}")
+    return f" ({', '.join(parts)})" if parts else ""
 
 
 def describe_record(case: dict[str, Any]) -> str | None:
@@ -126,10 +132,6 @@ def summarise_case(case: dict[str, Any]) -> str:
         if parts
         else "No criteria: there is no published limit."
     )
-
-
-CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
-"""A case and one of its criteria."""
 
 
 def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:

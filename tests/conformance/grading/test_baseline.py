@@ -16,9 +16,12 @@ from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
+from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -191,7 +194,7 @@ def test_missing_value_is_skipped(results: Results) -> None:
         ({"limits_digest": "sha256:0"}, "limits"),
         ({"limits_digest": None}, "limits"),
         ({"library": "modified"}, "texts or sources"),
-        ({"input_digest": "sha256:0", "limits_digest": "sha256:0"}, "inputs and limits"),
+        ({"input_digest": "sha256:0", "limits_digest": "sha256:0"}, "inputs, limits"),
     ],
 )
 def test_baseline_of_another_case_is_no_pass(results: Results, change: dict[str, Any], difference: str) -> None:
@@ -205,6 +208,33 @@ def test_baseline_of_another_case_is_no_pass(results: Results, change: dict[str,
     assert [case.verdict for case in compared.cases] == ["skip", "unverified"]
     assert compared.verdict == "skip"
     assert find_discrepancies(compared.to_dict()) == []
+
+
+def test_changed_inputs_are_named(results: Results) -> None:
+    first, second = results.cases
+    inputs = [
+        group.model_copy(update={"values": {**group.values, "speed_km_h": 251.0}}) if group.group == "case" else group
+        for group in first.inputs
+    ]
+    change = {"input_digest": "sha256:0", "library": "modified", "inputs": inputs}
+    other = results.model_copy(update={"cases": [first.model_copy(update=change), second]})
+    reason = compare_with_baseline(results, other, 1.0, "b.json").cases[0].criteria[-1].reason
+    assert reason == "baseline b.json has other inputs (speed_km_h), texts or sources; renew the baseline"
+
+
+def test_case_without_values_is_no_pass_of_the_baseline(results: Results) -> None:
+    """An interrupted case was not compared."""
+    first, second = results.cases
+    second = build_ungraded(select_cases([second.id])[0], "skip", "the run was interrupted")
+    compared = compare_with_baseline(results.model_copy(update={"cases": [first, second]}), results, 1.0, "b.json")
+    assert compared.cases[0].baseline == BaselineComparison(
+        verdict="pass", name="b.json", drift_pct=1.0, values=8, drifted=0
+    )
+    assert compared.baseline_verdict == "skip"
+    assert find_discrepancies(compared.to_dict()) == []
+    text = render_markdown(build_summary(compared.to_dict()))
+    assert "| Drift from the baseline | SKIP | decides | 1 of 1 case passes. 0 of 8 values drifted" in text
+    assert "1 case was not compared." in text
 
 
 def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_path: Path) -> None:

@@ -47,7 +47,10 @@ def test_criteria_pass_and_the_baseline_fails(drifted: dict[str, Any]) -> None:
 
 def test_headline_states_the_drift_apart_from_the_criteria(drifted: dict[str, Any]) -> None:
     text = build_headline(drifted)
-    assert "1 fails (0 of 16 counted criteria outside their limits, 1 value drifted from the baseline)" in text
+    drift = f"1 value drifted from the baseline, most {DRIFTED} of {drifted['cases'][0]['id']} by +100 %"
+    assert f"1 fails (0 of 16 counted criteria outside their limits, {drift})" in text
+    uncounted = [row for row in drifted["cases"][0]["criteria"] if row["baseline"] is not None]
+    assert f"1 fails ({drift})" in build_headline(drifted | {"cases": [drifted["cases"][0] | {"criteria": uncounted}]})
     assert "EN 50318 criteria: PASS; Drift from the baseline: FAIL." in text
 
 
