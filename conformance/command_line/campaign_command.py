@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 from rich.text import Text
 
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
@@ -24,7 +25,9 @@ from pantocheck.conformance.command_line.campaign_progress import report_campaig
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.cases_option import CasesOption
 from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import indent_text
 from pantocheck.conformance.command_line.options import SetOption, TrustOption
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml, validate_model
@@ -39,6 +42,9 @@ STOPPED: dict[CampaignEnding, str] = {
     "time budget": "Stopped: the time budget is used up. ",
     "interrupted": "Interrupted: the same command resumes the campaign. ",
 }
+
+REASONS_SHOWN = 3
+"""Number of reasons of failed runs below the conclusion."""
 
 
 def campaign_command(
@@ -143,10 +149,21 @@ def campaign_command(
     return CommandOutput(
         Text(STOPPED[ending] + counts),
         results,
+        _list_reasons(results),
         files=files,
         exit_code=exit_code,
         remarks=remark_missing_formats(),
     )
+
+
+def _list_reasons(results: CampaignResults) -> list[RenderableType]:
+    """Most frequent reasons of runs without a result."""
+    reasons = list(results.reasons.items())
+    lines: list[RenderableType] = [
+        indent_text(f"{count_noun(runs, 'run')}: {reason}") for reason, runs in reasons[:REASONS_SHOWN]
+    ]
+    more = len(reasons) - REASONS_SHOWN
+    return [*lines, *([indent_text(f"{count_noun(more, 'further reason')}: see the table")] if more > 0 else [])]
 
 
 def _prepare(

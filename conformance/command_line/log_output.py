@@ -18,7 +18,9 @@ class _ErrorLog(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a record without control characters."""
-        error_console().print(Text(strip_control_characters(self.format(record))))
+        errors = error_console()
+        # Outside of a terminal a line stays whole, for a search in a log.
+        errors.print(Text(strip_control_characters(self.format(record))), soft_wrap=not errors.is_terminal)
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
@@ -77,6 +77,10 @@ def state_administration(file: Path | None, report_number: str | None) -> dict[s
     return stated if report_number is None else {**stated, "report_number": report_number}
 
 
+OPTIONS = {"drift_pct": "--drift", "jobs": "--jobs", "timeout_s": "--timeout", "trust": "--trust"}
+"""Options of the command line by their key in a plan, for messages."""
+
+
 def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
     """Combine the options of the command line with those of a plan.
 
@@ -106,7 +110,14 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
     try:
         return Plan.model_validate(base | given)
     except ValidationError as error:
-        raise build_input_error(error, Plan, "command line") from None
+        problems = build_input_error(error, Plan, "command line").problems
+        raise join_errors([InputError(_name_option(each.where), each.found, each.hint) for each in problems]) from None
+
+
+def _name_option(where: str) -> str:
+    """Option of the command line in place of the key of a plan."""
+    key = where.removeprefix("command line, key ")
+    return f"option {OPTIONS[key]}" if key in OPTIONS else where
 
 
 def choose_case(

@@ -77,7 +77,7 @@ def _print_periodically(describe: Callable[[], str], output: Console) -> Iterato
     def print_lines() -> None:
         while not ended.wait(LOG_INTERVAL_S):
             if line := strip_control_characters(describe()):
-                output.print(Text(f"{time.strftime('%H:%M:%S')} {line}"))
+                output.print(Text(f"{time.strftime('%H:%M:%S')} {line}"), soft_wrap=True)  # for a search in a log
 
     thread = threading.Thread(target=print_lines, daemon=True)
     thread.start()
@@ -151,7 +151,8 @@ class TaskProgress(logging.Handler):
         elif self._task is not None:
             parts.append(self._task)
         now, (share, remaining) = self._clock(), self._estimate()
-        parts.append(f"{100 * share:.0f} %")
+        if steps or self._reached or self._total > 1:  # the share of a program, a task without steps, is not known
+            parts.append(f"{100 * share:.0f} %")
         if remaining is None:
             parts.append(f"{timedelta(seconds=round(now - self._begin))} elapsed")
         else:

@@ -29,7 +29,7 @@ def migrate_file(path: Path, folder: Path) -> str:
     Returns
     -------
     str
-        Old and new version, or that the file needs no migration.
+        Old and new version and the command that checks the new file, or that the file needs no migration.
 
     Raises
     ------
@@ -47,14 +47,15 @@ def migrate_file(path: Path, folder: Path) -> str:
     name, number = stated
     content = read_json(path, "file", MAX_RESULTS_BYTES) if is_json else read_toml(path, "file")
     if number == VERSIONED_FORMATS[name].version:
-        return f"{path}: {name} {number} is the current version"
+        return f"{path}: {name} {number} is the current version; no file is written"
     target = folder / path.name
     if target.exists():
         raise InputError(f"file '{target}'", "exists already", "Give another folder. No file is overwritten.")
     text = json.dumps(content, indent=1, ensure_ascii=False) + "\n" if is_json else tomli_w.dumps(content)
     write_atomically(target, text.encode())
     kept = "" if is_json else "; comments are not kept"
-    return f"{target}: {name} {number} converted to {VERSIONED_FORMATS[name].version}{kept}"
+    converted = f"{target}: {name} {number} converted to {VERSIONED_FORMATS[name].version}{kept}"
+    return f"{converted}; now run pantocheck check {target}"
 
 
 def _read_unchanged(path: Path, where: str, is_json: bool) -> object:

@@ -9,6 +9,7 @@ import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.grading.case_verification import find_obstacle
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.verification_limits import build_requirements
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import prepare_plan, read_plan
@@ -17,7 +18,6 @@ from pantocheck.conformance.pytest_plugin.campaign import PlanSession, list_regi
 from pantocheck.conformance.pytest_plugin.session import shared_folder
 from pantocheck.conformance.pytest_plugin.user_fixtures import (
     criterion_line,
-    criterion_name,
     is_unverified,
     list_verdict_criteria,
     unverified_line,

@@ -56,7 +56,8 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
     out, folder = tmp_path / "out", tmp_path / "one"
     result = call("campaign", campaign, "--out", out, "--workers", 2)
     assert result.exit_code == 1, result.output
-    assert "3 of 3 runs finished, 1 failed" in result.output
+    assert "3 of 3 runs finished, 1 failed\n  1 run: " in result.output
+    assert "must be greater than 0" in " ".join(result.output.split())
     assert {path.suffix for path in out.iterdir()} >= {".csv", ".json", ".html", ".pdf", ".sqlite"}
     rows = list(csv.DictReader((out / "campaign.csv").read_text().splitlines()))
     assert [row["verdict"] for row in rows] == ["pass", "fail", "error"]

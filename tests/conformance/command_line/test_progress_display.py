@@ -2,12 +2,16 @@
 
 import logging
 import threading
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 
 import pytest
 
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line import progress_display
+from pantocheck.conformance.command_line.log_output import write_log
 from pantocheck.conformance.command_line.output_settings import OutputSettings, use_settings
 from pantocheck.conformance.command_line.progress_display import REDRAWS_PER_S, TaskProgress, follow_steps, show_line
 from pantocheck.conformance.step_log import StepSequence, report_remote, use_part
@@ -101,6 +105,36 @@ def test_line_is_printed_periodically_outside_of_a_terminal(
     captured = capsys.readouterr()
     assert captured.out == ""
     assert ("case 1? of 2" in captured.err) == lines
+
+
+@pytest.mark.parametrize("prepare", [write_log, lambda: follow_steps("running cases")])
+def test_long_lines_of_a_log_stay_whole(
+    prepare: Callable[[], AbstractContextManager[object]],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """120 characters: more than the 80 columns of a pipe, so a search for the end of the line finds it."""
+    monkeypatch.setattr(progress_display, "LOG_INTERVAL_S", 0.01)
+    text = "word " * 24 + "end"
+    with use_settings(OutputSettings(detail="verbose")), prepare():
+        StepSequence(LOGGER, "line/250", {text: 1.0}).begin(text)
+        limit, printed = time.monotonic() + 10.0, ""
+        while f"line/250: {text}" not in printed and time.monotonic() < limit:
+            time.sleep(0.01)
+            printed += capsys.readouterr().err
+    assert f"line/250: {text}" in printed
+
+
+def test_single_task_shows_the_share_of_its_steps_or_none(caplog: pytest.LogCaptureFixture) -> None:
+    progress = TaskProgress("running cases", 1, Clock())
+    assert progress.describe() == "running cases, 0:00:00 elapsed"
+    LOGGER.addHandler(progress)
+    try:
+        with caplog.at_level(logging.DEBUG, "pantocheck"):
+            StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
+    finally:
+        LOGGER.removeHandler(progress)
+    assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
 
 
 def test_line_is_redrawn_a_few_times_a_second() -> None:

@@ -123,13 +123,15 @@ def test_migrate_writes_a_new_file_and_overwrites_none(tmp_path: Path) -> None:
     path, out = earlier_profile(tmp_path, "required"), tmp_path / "out"
     done = CliRunner().invoke(app, ["migrate", str(path), "--out", str(out)])
     assert done.exit_code == 0, done.stderr
-    assert "profile 1 converted to 2; comments are not kept" in done.output
+    checked = f"now run pantocheck check {out / 'profile.toml'}"
+    assert f"profile 1 converted to 2; comments are not kept; {checked}" in done.output
     assert load_profile(str(out / "profile.toml")) == load_profile(str(path))
     assert 'schema = "pantocheck.profile/2"' in (out / "profile.toml").read_text("utf-8")
     again = CliRunner().invoke(app, ["migrate", str(path), "--out", str(out)])
     assert (again.exit_code, "exists already" in again.stderr) == (2, True)
     current = CliRunner().invoke(app, ["migrate", str(out / "profile.toml"), "--out", str(tmp_path / "more")])
-    assert (current.exit_code, "is the current version" in current.output) == (0, True)
+    assert (current.exit_code, "is the current version; no file is written" in current.output) == (0, True)
+    assert not (tmp_path / "more").exists()
     plain = CliRunner().invoke(app, ["migrate", str(library_folder() / "sources.toml"), "--out", str(out)])
     assert (plain.exit_code, "states no version of a format" in plain.stderr) == (2, True)
 
