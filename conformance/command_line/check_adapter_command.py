@@ -1,4 +1,4 @@
-"""`pantocheck check-adapter`: the adapter of a simulator, with a short case."""
+"""`pantocheck check-adapter`: the adapter of a simulator, with short cases."""
 
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -20,12 +20,13 @@ ADAPTER_TIMEOUT_S = 600.0
 
 def check_adapter_command(
     command: Annotated[str, typer.Argument(help="Program and arguments in quotes, as after `command:` of `run`.")],
-    timeout: Annotated[float, typer.Option(help="Time limit of the short case [s].")] = ADAPTER_TIMEOUT_S,
+    timeout: Annotated[float, typer.Option(help="Time limit of each short case [s].")] = ADAPTER_TIMEOUT_S,
 ) -> CommandOutput:
-    """Check the adapter of a simulator with a short case.
+    """Check the adapter of a simulator with short cases.
 
     The program is started, receives a case of a few seconds, and its record is checked. The output names all that is
-    missing or wrong, and lays the values beside those of the reference simulator. Exit code 0: nothing is missing or
+    missing or wrong, and lays the values beside those of the reference simulator. Two further messages are the line at
+    rest and the case with two pantographs; the program may refuse them. Exit code 0: nothing is missing or
     wrong. Exit code 1: something is missing or wrong. Exit code 2: the program does not exist.
 
     Example: pantocheck check-adapter 'python3 adapter.py'

@@ -52,7 +52,7 @@ class CaseEvaluation:
             return other
         for name in sorted(self.delivered.static):
             if name not in QUANTITIES:
-                return f"the system delivered an unknown quantity {name!r}"
+                return f"the system delivered an unknown quantity {name!r}{_suggest_list(name)}"
             if QUANTITIES[name].scope != "static":
                 return f"the system delivered {name!r} in 'static', but this quantity is computed from the record"
         if case.is_static:
@@ -165,3 +165,10 @@ def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation
     for owner, extra in ((LINE, delivered.static), *delivered.study.findings.items()):
         values[owner] = {**values.get(owner, {}), **{name: extra[name] for name in QUANTITIES if name in extra}}
     return Evaluation(values, evaluation.skipped)
+
+
+def _suggest_list(name: str) -> str:
+    """Remedy for the name of one value of a list, as limits print it; empty for any other name."""
+    quantity, bracket, _ = name.partition("[")
+    known = bracket and quantity in QUANTITIES and QUANTITIES[quantity].scope == "static"
+    return f"; give the list {quantity!r}, with the value of item 1 first" if known else ""

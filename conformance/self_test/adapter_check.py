@@ -1,29 +1,21 @@
-"""Check of an adapter: a short case runs on it and on the reference simulator, and gaps of the record are named."""
+"""Check of an adapter: short cases run on it, one of them on the reference simulator too, and gaps are named."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.outcome import Delivered, Skipped
+from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.self_test.adapter_cases import build_short_case
+from pantocheck.conformance.self_test.adapter_finding import AdapterFinding, FindingState
+from pantocheck.conformance.self_test.further_messages import check_line_at_rest, check_two_pantographs
 from pantocheck.conformance.self_test.record_zeros import describe_other_height, describe_other_position
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.systems.system import System
-
-BASE_CASE = "en50318-2002/250"
-"""Case of the library that is shortened: a level line in one plane, one pantograph, fixed uplift force."""
-
-SHORT_SPANS = 5
-"""Spans of the short line."""
-
-SHORT_SECTION = (3, 4)
-"""Spans of the analysis section, with one span before and one behind it."""
 
 USUAL_DIFFERENCE = 0.1
 """Relative difference from the reference simulator that needs no explanation: the string example differs by less."""
@@ -42,17 +34,6 @@ ADAPTER_QUANTITIES = (
     "max_uplift_at_support_mm",
 )
 """Quantities that are compared with the reference simulator."""
-
-FindingState = Literal["ok", "missing", "wrong", "note"]
-
-
-@dataclass(frozen=True)
-class AdapterFinding:
-    """One line of the check: its state, its subject, and a text that says what to do next."""
-
-    state: FindingState
-    subject: str
-    text: str
 
 
 @dataclass(frozen=True)
@@ -82,23 +63,10 @@ class AdapterCheck:
         return all(finding.state in ("ok", "note") for finding in self.findings)
 
 
-def build_short_case() -> Case:
-    """Case of a few seconds: the EN 50318:2002 line at 250 km/h on five spans."""
-    (case,) = select_cases([BASE_CASE])
-    file = case.file.model_copy(
-        update={
-            "id": "check-adapter/short",
-            "title": f"{case.file.title}, shortened to {SHORT_SPANS} spans",
-            "evaluated_spans": SHORT_SECTION,
-            "compared_spans": None,
-        }
-    )
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(SHORT_SPANS)})
-    return replace(case, file=file, line=line)
-
-
 def check_adapter(system: System) -> AdapterCheck:
-    """Run a short case on an adapter and list all that is missing or wrong.
+    """Run short cases on an adapter and list all that is missing or wrong.
+
+    The line at rest and two pantographs follow a short case that ended without an error.
 
     Parameters
     ----------
@@ -107,10 +75,13 @@ def check_adapter(system: System) -> AdapterCheck:
     """
     case, simulator = build_short_case(), ReferenceSimulator()
     outcome = system.run(case)
-    if isinstance(outcome, Delivered):
-        return _check_delivery(case, outcome, simulator)
-    state: FindingState = "missing" if isinstance(outcome, Skipped) else "wrong"
-    return AdapterCheck((AdapterFinding(state, "short case", outcome.reason),))
+    if isinstance(outcome, Errored):
+        return AdapterCheck((AdapterFinding("wrong", "short case", outcome.reason),))
+    further = (check_line_at_rest(system), check_two_pantographs(system))
+    if isinstance(outcome, Skipped):
+        return AdapterCheck((AdapterFinding("missing", "short case", outcome.reason), *further))
+    check = _check_delivery(case, outcome, simulator)
+    return replace(check, findings=(*check.findings, *further))
 
 
 def _check_delivery(case: Case, delivered: Delivered, simulator: ReferenceSimulator) -> AdapterCheck:

@@ -1,7 +1,7 @@
 """Check of an adapter: each gap and each fault is named with the next step."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,27 +14,37 @@ from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.self_test.adapter_check import AdapterCheck, build_short_case, check_adapter
+from pantocheck.conformance.self_test.adapter_cases import build_case_at_rest, build_short_case, build_twin_case
+from pantocheck.conformance.self_test.adapter_check import AdapterCheck, check_adapter
+from pantocheck.conformance.self_test.adapter_finding import AdapterFinding
 from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 
 
 @dataclass(frozen=True)
 class Adapter:
-    """Adapter that delivers a prepared outcome."""
+    """Adapter that delivers a prepared outcome for the short case, and refuses others unless they are prepared too."""
 
     outcome: Outcome
+    others: Mapping[str, Outcome] = field(default_factory=dict)
     name: str = "adapter"
     version: str = "1"
     kind: Literal["command"] = "command"
 
     def run(self, case: Case) -> Outcome:
-        return self.outcome
+        return self.outcome if case.id == "check-adapter/short" else self.others.get(case.id, Skipped("no solver"))
 
 
 @pytest.fixture(scope="module")
 def delivered() -> Delivered:
     """Complete delivery of the short case."""
     case = build_short_case()
+    return replace(ReferenceSimulator().run_unrefined(case), case_digest=case.digest)
+
+
+@pytest.fixture(scope="module")
+def twin() -> Delivered:
+    """Complete delivery of the short case with two pantographs."""
+    case = build_twin_case()
     return replace(ReferenceSimulator().run_unrefined(case), case_digest=case.digest)
 
 
@@ -105,13 +115,77 @@ def test_gaps_are_named(delivered: Delivered, name: str) -> None:
     assert check.passed == (state == "note")
 
 
-def test_complete_delivery(delivered: Delivered) -> None:
+def test_complete_delivery(delivered: Delivered, twin: Delivered) -> None:
     """The reference simulator itself passes, and equals itself in every compared value."""
-    check = check_adapter(Adapter(delivered))
+    at_rest = ReferenceSimulator().run_unrefined(build_case_at_rest())
+    check = check_adapter(Adapter(delivered, {"check-adapter/twin": twin, "check-adapter/at-rest": at_rest}))
     assert check.passed
     assert {finding.state for finding in check.findings} == {"ok"}
     assert len(check.values) == 5
     assert all(value.difference == 0 for value in check.values)
+
+
+def find(adapter: Adapter, subject: str) -> AdapterFinding:
+    """The only finding on a subject; its state decides whether the adapter passes."""
+    check = check_adapter(adapter)
+    (found,) = (finding for finding in check.findings if finding.subject == subject)
+    assert check.passed == (found.state in ("ok", "note"))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("answer", "state", "text"),
+    [
+        (Delivered(static={"wave_speed_m_s": 121.7}), "ok", "values were delivered: wave_speed_m_s."),
+        (Skipped("no statics"), "note", "refused: no statics. Checks of the line at rest are skipped."),
+        (Errored("TypeError: 'NoneType'"), "wrong", "error: TypeError: 'NoneType'. In this message, speed_km_h and"),
+        (Delivered(), "missing", "'delivered' without a value"),
+        (
+            Delivered(static={"dropper_length_m[1]": 1.0}),
+            "wrong", "unknown quantity 'dropper_length_m[1]'; give the list 'dropper_length_m'",
+        ),
+        (Delivered(static={"beauty[1]": 1.0}), "wrong", "unknown quantity 'beauty[1]'."),
+    ],
+)  # fmt: skip
+def test_answer_to_the_line_at_rest(delivered: Delivered, answer: Outcome, state: str, text: str) -> None:
+    """A crash here would keep cases that require a static case from being run; a refusal would not."""
+    found = find(Adapter(delivered, {"check-adapter/at-rest": answer}), "line at rest")
+    assert (found.state, text in found.text) == (state, True), found
+
+
+def keep_first_pantograph(twin: Delivered) -> Outcome:
+    """Record of an adapter that writes the first pantograph only."""
+    record = twin.record
+    assert isinstance(record, Record)
+    assert record.contact_height is not None
+    kept = {key: getattr(record, key)[:1] for key in ("position", "force", "contact_height")}
+    return replace(twin, record=replace(record, **kept))
+
+
+TWINS: dict[str, tuple[Callable[[Delivered], Outcome], str, str]] = {
+    "both": (lambda twin: twin, "ok", "a record of both pantographs"),
+    "first only": (keep_first_pantograph, "wrong", "the record has 1 pantographs, the case has 2. Write position"),
+    "refused": (lambda _: Skipped("one only"), "note", "refused: one only. Cases with several pantographs are"),
+    "error": (lambda _: Errored("diverged"), "wrong", "error: diverged. Answer with a record of all pantographs"),
+    "no record": (lambda twin: replace(twin, record=None), "missing", "without a record"),
+    "equal forces": (
+        change_record(force=lambda force: force[[0, 0]]), "wrong", "the record is contradicted: pantograph 2",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TWINS)
+def test_answer_to_two_pantographs(delivered: Delivered, twin: Delivered, name: str) -> None:
+    change, state, text = TWINS[name]
+    found = find(Adapter(delivered, {"check-adapter/twin": change(twin)}), "two pantographs")
+    assert (found.state, text in found.text) == (state, True), found
+
+
+def test_further_messages_follow_no_error(delivered: Delivered) -> None:
+    """An adapter that fails on the short case is corrected first; one that refuses it receives the others too."""
+    assert [finding.subject for finding in check_adapter(Adapter(Errored("diverged"))).findings] == ["short case"]
+    subjects = [finding.subject for finding in check_adapter(Adapter(Skipped("tuned only"))).findings]
+    assert subjects == ["short case", "line at rest", "two pantographs"]
 
 
 def test_other_values_are_a_note(delivered: Delivered) -> None:

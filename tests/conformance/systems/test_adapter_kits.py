@@ -8,7 +8,7 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome
-from pantocheck.conformance.self_test.adapter_check import build_short_case
+from pantocheck.conformance.self_test.adapter_cases import build_short_case
 from pantocheck.conformance.systems.system_choice import choose_system
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
