@@ -153,6 +153,9 @@ def _largest_remainder(error: RealArray, force: RealArray, inside: NDArray[np.bo
 def _describe(number: int, error: float, low_pass: LowPass, height: RealArray) -> Finding:
     band = f"up to {low_pass.cutoff_Hz:g} Hz"
     step = rounding_step(height)
+    if np.isinf(step):
+        text = f"contact height of pantograph {number}: it is constant, so that it cannot confirm the force {band}"
+        return Finding("unchecked", f"{text}; deliver the moving height of the contact point")
     if step >= COARSEST_STEP_M:
         return Finding(
             "unchecked",

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from helpers.extreme_runs import build_case, simulate
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.consistency.check import CheckName
+from pantocheck.conformance.consistency.implied_force import IMPLIED_FORCE
 from pantocheck.conformance.consistency.record_checks import check_record
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
@@ -104,6 +105,17 @@ def test_late_force_within_the_tolerance_is_accepted(run: tuple[Case, Record]) -
     """One sample of 2 ms between the channels, as from a co-simulation."""
     case, record = run
     assert doubts(case, replace(record, force=np.roll(record.force, 1, axis=1))) == {}
+
+
+@pytest.mark.parametrize("row", [0, 1])
+def test_constant_height_is_named(run: tuple[Case, Record], row: int) -> None:
+    """A constant has no steps whose size could be stated."""
+    case, record = run
+    constant = change(record, "contact_height", row, lambda height: np.full_like(height, 5.3))
+    found = IMPLIED_FORCE.run(case, RecordSignals(constant, case.file.filter.low_pass))
+    assert found is not None
+    assert found.kind == "unchecked"
+    assert f"contact height of pantograph {row + 1}: it is constant" in found.text
 
 
 @pytest.mark.parametrize(("decimals", "expected"), [(4, set()), (3, {"implied force", "coincidence"})])
