@@ -19,11 +19,11 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.records.record import Record, RecordInvalid
-from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult, VerdictName
 from pantocheck.conformance.runner import run_case
+from pantocheck.conformance.systems.case_record import read_case_record
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system
 
@@ -223,7 +223,7 @@ def grade_arrays(
     """
     graded_case = _select_case(case, case_folders)
     if isinstance(record, str | Path):
-        record, _ = read_record(Path(record), None if graded_case.is_static else graded_case.analysis_section)
+        record, _ = read_case_record(Path(record), graded_case)
     if record is None:
         if time_s is None or position_m is None or force_N is None:
             raise InputError(

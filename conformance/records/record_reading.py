@@ -53,7 +53,9 @@ def open_record(path: Path) -> RecordSidecar | RecordSummary:
     return read_model(path, model, "sidecar" if model is RecordSidecar else "summary record")
 
 
-def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tuple[Record, RecordSidecar]:
+def read_record(
+    path: Path, evaluated: tuple[float, float] | None = None, case_start: float | None = None
+) -> tuple[Record, RecordSidecar]:
     """Read a record.
 
     Parameters
@@ -62,6 +64,8 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
         Sidecar, or table with the sidecar beside it.
     evaluated : tuple of float or None
         Analysis section of the case [m], used if the sidecar states none.
+    case_start : float or None
+        Start of the first pantograph in the case [m], to be named where the sidecar states none.
 
     Returns
     -------
@@ -76,7 +80,7 @@ def read_record(path: Path, evaluated: tuple[float, float] | None = None) -> tup
     """
     samples, sidecar, table = read_samples(path)
     try:
-        record = build_record(samples, sidecar, evaluated)
+        record = build_record(samples, sidecar, evaluated, case_start)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
     return record, sidecar

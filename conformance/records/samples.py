@@ -63,7 +63,9 @@ _WITH_GAPS = ("uplift", "event_level", "arcing", "loaded")
 _SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift", "event_level", "arcing", "loaded")
 
 
-def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[RealArray, RealArray]:
+def complete_samples(
+    samples: RecordSamples, sidecar: RecordSidecar, case_start: float | None = None
+) -> tuple[RealArray, RealArray]:
     """Complete time and positions of a record; a missing one is computed from the speed.
 
     Parameters
@@ -72,6 +74,8 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Re
         Samples of a record.
     sidecar : RecordSidecar
         Sidecar of the record.
+    case_start : float or None
+        Start of the first pantograph in the case of the record [m], to be named where the sidecar states none.
 
     Returns
     -------
@@ -95,20 +99,21 @@ def complete_samples(samples: RecordSamples, sidecar: RecordSidecar) -> tuple[Re
             raise RecordInvalid("speed", f"the value of sample {int(np.argmin(speed > 0)) + 1} is not positive")
         time = _integral(1 / speed, position[0])
     if position is None:
-        _check_placement(sidecar)
+        _check_placement(sidecar, case_start)
         position = (sidecar.start_m or 0.0) + _integral(speed, time)[None] - behind
     elif position.shape[0] == 1:
         position = position - behind
     return time, position
 
 
-def _check_placement(sidecar: RecordSidecar) -> None:
+def _check_placement(sidecar: RecordSidecar, case_start: float | None) -> None:
     """Refuse a record without positions whose sidecar does not state the positions of its pantographs either."""
     if sidecar.pantographs > 1 and sidecar.spacing_m is None:
         raise RecordInvalid("position", "missing, and the sidecar does not state spacing_m")
     placed = (sidecar.case, sidecar.evaluated_m, sidecar.support_position_m)
     if sidecar.start_m is None and any(key is not None for key in placed):
-        raise RecordInvalid("position", "missing, and the sidecar does not state start_m")
+        place = "" if case_start is None else f" (the first pantograph of the case starts at {case_start:g} m)"
+        raise RecordInvalid("position", f"missing, and the sidecar does not state start_m{place}")
 
 
 def _integral(rate: RealArray, over: RealArray) -> RealArray:
@@ -124,7 +129,10 @@ def analysis_section(sidecar: RecordSidecar, position: RealArray) -> tuple[float
 
 
 def build_record(
-    samples: RecordSamples, sidecar: RecordSidecar, evaluated: tuple[float, float] | None = None
+    samples: RecordSamples,
+    sidecar: RecordSidecar,
+    evaluated: tuple[float, float] | None = None,
+    case_start: float | None = None,
 ) -> Record:
     """Build a record from samples that are complete and evenly spaced in time.
 
@@ -136,6 +144,8 @@ def build_record(
         Sidecar of the record.
     evaluated : tuple of float or None
         Analysis section of the case [m], used if the sidecar states none.
+    case_start : float or None
+        Start of the first pantograph in the case [m], to be named where the sidecar states none.
 
     Returns
     -------
@@ -152,7 +162,7 @@ def build_record(
         if name not in _WITH_GAPS and value is not None and not np.isfinite(value).all():
             bad = np.argwhere(~np.isfinite(value.T))[:, 0]
             raise RecordInvalid(name, f"{bad.size} values are not finite, the first at sample {bad[0] + 1}")
-    time, position = complete_samples(samples, sidecar)
+    time, position = complete_samples(samples, sidecar, case_start)
     section = evaluated if sidecar.evaluated_m is None and evaluated else analysis_section(sidecar, position)
     _check_speed_channel(samples, sidecar.speed_km_h, position, section)
     return Record(

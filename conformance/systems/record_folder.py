@@ -11,9 +11,10 @@ from pantocheck.conformance.grading.record_mismatch import find_summary_mismatch
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.records.logger.sensor_warnings import list_sensor_warnings
-from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, record_digest
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped, note_case_version
+from pantocheck.conformance.systems.case_record import read_case_record
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class RecordFolder:
         opened = open_record(path)
         if isinstance(opened, RecordSummary):
             return _deliver_summary(opened, case, record_digest(path))
-        record, sidecar = read_record(path, None if case.is_static else case.analysis_section)
+        record, sidecar = read_case_record(path, case)
         return Delivered(
             record,
             run=sidecar.run,

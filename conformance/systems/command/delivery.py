@@ -4,9 +4,10 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.input_files.bounded_file import NO_LINK, file_digest
-from pantocheck.conformance.records.record_reading import read_record, record_digest
+from pantocheck.conformance.records.record_reading import record_digest
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.outcome import Delivered, note_case_version
+from pantocheck.conformance.systems.case_record import read_case_record
 from pantocheck.conformance.systems.command.protocol_messages import DeliveredAnswer, File
 
 
@@ -43,7 +44,7 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
     if answer.record is None:
         return Delivered(static=dict(answer.static), run=RunTable(wall_s=wall), notes=answer.notes)
     sidecar_path, table_path = (_check_file(file, folder) for file in (answer.record.sidecar, answer.record.table))
-    record, sidecar = read_record(sidecar_path, None if case.is_static else case.analysis_section)
+    record, sidecar = read_case_record(sidecar_path, case)
     if sidecar_path.parent / sidecar.file != table_path:
         raise DeliveryRefused(f"the sidecar names the table {sidecar.file!r}, the answer {answer.record.table.file!r}")
     if sidecar.case != case.id:

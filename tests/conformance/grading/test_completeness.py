@@ -233,7 +233,11 @@ def test_same_files_pass_before_they_are_spoilt(twin: Case, record: Record, tmp_
     ("keys", "message"),
     [
         (["spacing_m"], "channel position: missing, and the sidecar does not state spacing_m"),
-        (["start_m"], "channel position: missing, and the sidecar does not state start_m"),
+        (
+            ["start_m"],
+            "channel position: missing, and the sidecar does not state start_m (the first pantograph of the case "
+            "starts at 210 m)",
+        ),
     ],
 )
 def test_record_with_time_alone_needs_the_places_of_its_pantographs(
