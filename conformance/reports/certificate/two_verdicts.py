@@ -89,8 +89,13 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
     shown = {*results["information"], *(results["verification_only"] if name == "criteria" else ())}
     cases = [case for case in results["cases"] if case["id"] not in shown and case_verdict(case, name) is not None]
     verdicts = Counter(case_verdict(case, name) for case in cases)
-    passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
-    yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}." if cases else "No case takes part."
+    if not cases:
+        yield "No case takes part."
+    elif name == "criteria" and verdicts["info"] == len(cases):
+        yield "No case has a limit that counts."
+    else:
+        passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
+        yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}."
     if name == "baseline":
         yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)
         others = [case for case in results["cases"] if case["id"] not in shown and case.get("baseline") is None]

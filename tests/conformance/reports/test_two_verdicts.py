@@ -99,6 +99,15 @@ def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: An
     assert "computed" in text
 
 
+def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -> None:
+    """A case that only the verification judges has not failed the criteria."""
+    results = decide(failing, *BOTH)
+    results["criteria_verdict"] = results["cases"][0]["criteria_verdict"] = "info"
+    text = render_markdown(build_summary(results))
+    assert "| EN 50318 criteria | INFO | decides | No case has a limit that counts." in text
+    assert "0 of 1 case passes." in text  # the verification fails
+
+
 def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
     text = shown_certificate(decide(failing, *BOTH))
     assert "min_force_N of pantograph 1: the formulations differ" in text
