@@ -30,10 +30,13 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, n
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
 """Exit code by verdict: 0 only for `pass`."""
 
+SHIFT_LEGEND = " shift: its change when the analysis section is shifted span by span;"
+"""Part of the legend for tables with the column `shift`."""
+
 LEGEND = (
-    "+-: uncertainty of the value; shift: its change when the analysis section is shifted span by span; margin: "
-    "relative distance to the nearer limit, 1 in the middle between two limits, 0 on a limit, negative outside; with "
-    "one limit, the distance divided by it, and the distance itself with its unit if this limit is 0"
+    "+-: uncertainty of the value;{shift} margin: relative distance to the nearer limit, 1 in the middle between two "
+    "limits, 0 on a limit, negative outside; with one limit, the distance divided by it, and the distance itself with "
+    "its unit if this limit is 0"
 )
 
 
@@ -65,8 +68,10 @@ def build_results_output(
     for case in results.cases:
         parts += [Text(), *_describe_case(case, footnotes)]
     parts.append(Text())
-    if any(case.criteria for case in results.cases):
-        parts.append(Text(LEGEND, "dim"))
+    rows = [row for case in results.cases for row in _list_rows(case)]
+    if rows:
+        shift = SHIFT_LEGEND if any(row.spread is not None for row in rows) else ""
+        parts.append(Text(LEGEND.format(shift=shift), "dim"))
     parts += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
     return CommandOutput(
         conclusion=style_verdict(results.verdict) + escape_text(f" {headline}"),
@@ -104,6 +109,11 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
         yield indent_text(describe_comparison(case.baseline.model_dump()))
         yield from _list_criteria([item for item in case.criteria if item.is_drift])
+
+
+def _list_rows(case: CaseResult) -> list[Criterion]:
+    """Criteria in the tables of a case."""
+    return [*case.criteria, *(() if case.verification is None else case.verification.criteria)]
 
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:

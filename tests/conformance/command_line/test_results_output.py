@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from pantocheck.conformance.command_line.command_output import print_output
-from pantocheck.conformance.command_line.results_output import LEGEND, build_results_output
+from pantocheck.conformance.command_line.results_output import LEGEND, SHIFT_LEGEND, build_results_output
 from pantocheck.conformance.results.results_format import Results
 
 
@@ -149,7 +149,18 @@ def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: 
     assert any("every consistency check that applies confirms the record" in line for line in above)
     assert "  mean_force_N: 2 N above the upper limit" in below
     assert "  mean_force_N: lies 1 N from a limit" in below
-    assert LEGEND in " ".join(line.strip() for line in below)
+    assert LEGEND.format(shift="") in " ".join(line.strip() for line in below)
+
+
+@pytest.mark.parametrize("spread", [None, 0.5])
+def test_legend_explains_the_shift_only_beside_its_column(
+    passing: dict[str, Any], spread: float | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for criterion in passing["cases"][0]["criteria"]:
+        criterion["spread"] = spread
+    text = " ".join(printed(passing, capsys).split())
+    assert (SHIFT_LEGEND in text) == (spread is not None)
+    assert ("+- shift limits" in text) == (spread is not None)
 
 
 def test_case_without_changes_or_criteria_has_no_line_for_them(
