@@ -10,6 +10,8 @@ import pytest
 
 import pantocheck.conformance
 import pantocheck.model
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.command_line.app import COMMANDS, load_command
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.schemas import FORMAT_NAMES, build_schema
@@ -79,3 +81,10 @@ def test_picture_of_the_readme_is_that_of_the_code(tmp_path: Path, monkeypatch: 
     ]
     assert len(legends[0]) == 2
     assert legends[0] == legends[1]
+
+
+def test_limitations_state_the_trust_of_the_limits_of_every_case(pages: dict[str, str]) -> None:
+    [page] = [text for name, text in pages.items() if "known-limitations" in name]
+    assert "| `en50318-2002/250` | 8 secondary |" in page
+    assert "| `en50318-2018/ac-stitched/275` | none |" in page
+    assert all(f"| `{name}` |" in page for name in list_library(library_folder()))
