@@ -28,6 +28,7 @@ from pantocheck.conformance.line_tables.line_table_check import check_line_table
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.own_files.file_kinds import recognise_json, recognise_toml
+from pantocheck.conformance.procedure.document_check import check_documents
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.records.logger.sensor_warnings import list_sensor_warnings
 from pantocheck.conformance.records.measured.sample_positions import place_samples
@@ -229,7 +230,8 @@ def _check_json(path: Path) -> str:
 def _check_dossier(path: Path) -> str:
     dossier = read_dossier(path)
     lines, cases = count_noun(len(dossier.lines), "line"), count_noun(len(dossier.cases), "reference model")
-    return f"dossier: {lines}, {cases}, {count_noun(len(dossier.file.pair), 'pair')} of runs"
+    pairs, tables = count_noun(len(dossier.file.pair), "pair"), count_noun(check_documents(dossier), "table")
+    return f"dossier: {lines}, {cases}, {pairs} of runs, {tables}"
 
 
 _CHECKS: dict[str, Callable[[Path], str]] = {

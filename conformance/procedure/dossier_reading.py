@@ -1,4 +1,4 @@
-"""Reading of a dossier: all files that it names are read and checked before the first run."""
+"""Reading of a dossier: its models are read, and its measured tables must be there, before the first run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,11 +10,12 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.named_parts import locate_part, read_line_file, read_pantograph_file
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.plan import place_cases
 from pantocheck.conformance.procedure.dossier import Dossier
 from pantocheck.conformance.procedure.dossier_file import DossierFile
 from pantocheck.conformance.procedure.run_pair import CaseRun
+from pantocheck.conformance.records.record_reading import locate_table
 
 Content = TypeVar("Content")
 
@@ -95,13 +96,26 @@ class _FileReader:
             return None
 
     def check_table(self, key: str, path: Path) -> None:
-        """Check that a table has a sidecar."""
-        if not path.with_suffix(".toml").is_file():
-            hint = f"Name a table beside its sidecar, relative to {self.path.parent} ."
-            self.problems.append(InputError(self._name(key), f"there is no file {path.with_suffix('.toml')}", hint))
+        """Check that a table and its sidecar are there: regular files in the folder of the dossier."""
+        self.attempt(key, partial(_locate_document, path, self.path.parent))
 
     def _name(self, key: str) -> str:
         return f"dossier '{self.path.name}', key {key}"
+
+
+def _locate_document(path: Path, folder: Path) -> None:
+    """Find sidecar and table of a document; a summary record has no table. InputError if one is missing."""
+    sidecar = path.with_suffix(".toml")
+    for file in dict.fromkeys((sidecar, path)):
+        if not file.is_file():
+            hint = f"Name a table beside its sidecar, relative to {folder} ."
+            raise InputError(f"document '{path.name}'", f"there is no file {file}", hint)
+    if not sidecar.resolve().is_relative_to(folder.resolve()):
+        hint = "Copy the document into this folder."
+        raise InputError(f"document '{path.name}'", f"is outside the folder of the dossier, {folder}", hint)
+    table = read_toml(sidecar, "sidecar").get("file")
+    if isinstance(table, str):
+        locate_table(sidecar, table, None)
 
 
 def _overlay(cases: list[Case], path: Path) -> list[Case]:

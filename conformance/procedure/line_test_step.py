@@ -13,6 +13,7 @@ from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.procedure.compared_sides import RunSide, find_copy, list_mismatches
 from pantocheck.conformance.procedure.dossier import Dossier
+from pantocheck.conformance.procedure.dossier_tables import LineTestTable
 from pantocheck.conformance.procedure.run_conditions import list_inputs
 from pantocheck.conformance.procedure.run_pair import CaseRun, PairTable
 from pantocheck.conformance.procedure.run_reading import make_run, read_run
@@ -42,6 +43,27 @@ NO_RESULT: dict[str, object] = {key: [] for key in ("notes", "warnings", "inputs
 
 RECORDS_FOLDER = "records"
 """Folder below the results for the records of the simulated runs."""
+
+
+def build_line_test_profile(table: LineTestTable) -> Profile:
+    """Rules of the pairs: the tolerances of the user, or those of the library.
+
+    Parameters
+    ----------
+    table : LineTestTable
+        Table `line_test` of the dossier.
+    """
+    return Profile.model_validate(
+        {
+            "schema": "pantocheck.profile/2",
+            "name": "dossier",
+            "title": "Line test",
+            "speed_tolerance_pct": table.speed_tolerance_pct,
+            "verification": "demanded",
+            "filter": table.filter,
+            "rule": table.tolerance or load_profile(LINE_TEST_PROFILE).rule,
+        }
+    )
 
 
 @dataclass(frozen=True)
@@ -84,25 +106,9 @@ class LineTests:
             raise StepInterrupted(_collect(finished, reason), interruption_exit_code(interruption)) from None
         return _collect(finished, None)
 
-    @property
-    def _profile(self) -> Profile:
-        """Rules of the pairs: the tolerances of the user, or those of the library."""
-        table = self.dossier.file.line_test
-        return Profile.model_validate(
-            {
-                "schema": "pantocheck.profile/2",
-                "name": "dossier",
-                "title": "Line test",
-                "speed_tolerance_pct": table.speed_tolerance_pct,
-                "verification": "demanded",
-                "filter": table.filter,
-                "rule": table.tolerance or load_profile(LINE_TEST_PROFILE).rule,
-            }
-        )
-
     def _compare(self, pair: PairTable, used: set[tuple[str, str]]) -> tuple[CaseResult, Evidence | None]:
         """Result of a pair, and the conditions that it verifies if it passes."""
-        profile = self._profile
+        profile = build_line_test_profile(self.dossier.file.line_test)
         try:
             simulated, measured = self._simulate(pair, profile), read_run(pair.measured, self.dossier, profile)
         except InputError as error:
@@ -179,7 +185,7 @@ class LineTests:
 
     def _refuse(self, pair: PairTable, verdict: Verdict, reason: str) -> CaseResult:
         """Result of a pair that was not compared."""
-        profile = self._profile
+        profile = build_line_test_profile(self.dossier.file.line_test)
         return CaseResult.model_validate(
             {
                 "id": _name_result(pair),

@@ -6,13 +6,17 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from helpers.example_dossier import copy_example
+from helpers.example_dossier import EXAMPLE, copy_example
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 
 OTHER = {"name": "example line", "file": "line.toml"}
+
+
+def invoke(command: str, *arguments: object) -> Result:
+    return CliRunner().invoke(app, [command, *map(str, arguments)])
 
 
 @pytest.mark.parametrize(
@@ -59,6 +63,57 @@ def test_problems_of_several_files_are_reported_together(tmp_path: Path) -> None
         assert f"dossier 'dossier.toml', key {key}" in text
 
 
+MEASURED = sorted(path.name for path in (EXAMPLE / "measured").iterdir())
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_missing_document_ends_check_and_validation_before_any_run(tmp_path: Path, name: str) -> None:
+    """Every measured table and every sidecar of the example, removed in turn."""
+    path = copy_example(tmp_path / "in")
+    (path.parent / "measured" / name).unlink()
+    for result in (invoke("check", path), invoke("validate", path, "--out", tmp_path / "out")):
+        assert result.exit_code == 2
+        assert "dossier 'dossier.toml', key" in result.stderr
+        assert name in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_document_outside_the_folder_is_refused(tmp_path: Path) -> None:
+    path = copy_example(tmp_path / "in", {"line.0.statics": "../measured/statics.csv"})
+    (path.parent / "measured").rename(tmp_path / "measured")
+    (path.parent / "measured").symlink_to(tmp_path / "measured")
+    with pytest.raises(InputError, match="is outside the folder of the dossier") as error:
+        read_dossier(path)
+    assert len(error.value.problems) == 6
+
+
+def test_folder_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
+    path = copy_example(tmp_path)
+    (tmp_path / "measured" / "statics.csv").unlink()
+    (tmp_path / "measured" / "statics.csv").mkdir()
+    with pytest.raises(InputError, match=r"line\[1\].statics.*there is no file"):
+        read_dossier(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("response-70N.csv", "pantograph[1].responses[1]"),
+        ("statics.csv", "line[1].statics"),
+        ("run-200.csv", "pair[2].measured.record"),
+    ],
+)
+def test_check_reads_every_document(tmp_path: Path, name: str, key: str) -> None:
+    """A table that is no table of its kind is an error of `check`; `validate` states it in its step."""
+    path = copy_example(tmp_path)
+    assert invoke("check", path).exit_code == 0
+    (tmp_path / "measured" / name).write_text("no table\n", encoding="utf-8")
+    result = invoke("check", path)
+    assert result.exit_code == 2
+    assert f"key {key}: record '{name}'" in result.stderr
+    assert read_dossier(path).file.title
+
+
 def test_digest_changes_with_every_file(tmp_path: Path) -> None:
     """Of a line, a case, a sidecar and the dossier; titles and notes of a line do not count."""
     path = copy_example(tmp_path)
@@ -76,10 +131,6 @@ def test_digest_changes_with_every_file(tmp_path: Path) -> None:
     assert read_dossier(path).digest == digests[-1]
 
 
-def validate(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["validate", *map(str, arguments)])
-
-
 @pytest.mark.parametrize(
     ("changes", "exit_code", "word"),
     [
@@ -93,7 +144,9 @@ def test_exit_code_and_files(tmp_path: Path, changes: dict[str, Any], exit_code:
     """Dossier of a static check alone, which takes no simulation of a train."""
     short = {"required": ["static_check"], "pair": None, "reference": None, "validity": None, "line.0.element_m": 1.0}
     path = copy_example(tmp_path / "in", {"reference.cases": []} | short | changes)
-    result = validate(path, "--out", tmp_path / "out", "--formats", "json,md,badge,junit", "--report-number", "R 1")
+    result = invoke(
+        "validate", path, "--out", tmp_path / "out", "--formats", "json,md,badge,junit", "--report-number", "R 1"
+    )
     assert (result.exit_code, result.stderr) == (exit_code, "")
     assert result.stdout.startswith(word)
     if word == "FAIL":
@@ -105,6 +158,6 @@ def test_exit_code_and_files(tmp_path: Path, changes: dict[str, Any], exit_code:
 
 
 def test_wrong_dossier_ends_with_exit_code_2(tmp_path: Path) -> None:
-    result = validate(copy_example(tmp_path, {"system": "none"}), "--out", tmp_path / "out")
+    result = invoke("validate", copy_example(tmp_path, {"system": "none"}), "--out", tmp_path / "out")
     assert result.exit_code == 2
     assert "there is no such system" in result.stderr
