@@ -16,7 +16,12 @@ from pantocheck.conformance.command_line.console import (
 )
 from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.command_line.remark_notes import list_footnotes, mark_footnotes
-from pantocheck.conformance.command_line.value_table import build_quantities_table, list_names, select_main
+from pantocheck.conformance.command_line.value_table import (
+    build_quantities_table,
+    format_width,
+    list_names,
+    select_main,
+)
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
 from pantocheck.conformance.reports.certificate.document_facts import list_administration
@@ -25,6 +30,7 @@ from pantocheck.conformance.reports.certificate.two_verdicts import describe_com
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, describe_record
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.incomplete_uncertainty import explain_mark, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 
 EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
@@ -96,10 +102,13 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
     for line in filter(None, [case.reason, record, *changes, *warnings]):
         yield indent_text(line)
     criteria = [item for item in case.criteria if case.baseline is None or not item.is_drift]
-    yield from _list_criteria(criteria)
+    missing = list_unknown(case.uncertainty_basis)
+    yield from _list_criteria(criteria, missing)
     if not criteria:
-        table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities))
+        table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities), missing)
         yield from [table] if table.row_count else []
+    if missing and case.uncertainty:
+        yield indent_text(explain_mark(missing))
     if case.verification is not None:
         yield Text("  Verification up to 50 Hz: ") + style_verdict(case.verification.verdict)
         if case.verification.reason and not case.reason:
@@ -118,23 +127,24 @@ def _list_rows(case: CaseResult) -> list[Criterion]:
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:
     """All quantities of a case that are single numbers."""
-    table = build_quantities_table(case.quantities, case.uncertainty, list_names(case.quantities))
+    missing = list_unknown(case.uncertainty_basis)
+    table = build_quantities_table(case.quantities, case.uncertainty, list_names(case.quantities), missing)
     if table.row_count:
         yield Text()
         yield Text(f"All values of {case.id}", "bold")
         yield table
 
 
-def _list_criteria(criteria: Sequence[Criterion]) -> Iterator[RenderableType]:
+def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -> Iterator[RenderableType]:
     """Criteria as a table, and their remarks."""
     if criteria:
-        yield _build_criterion_table(criteria)
+        yield _build_criterion_table(criteria, missing)
     for item in criteria:
         for remark in filter(None, (item.reason, *item.close)):
             yield indent_text(f"{_name(item)}: {remark}")
 
 
-def _build_criterion_table(criteria: Sequence[Criterion]) -> FittedTable:
+def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]) -> FittedTable:
     """Table of criteria; without the column of the shift, if no shift is known."""
     numbers = ["value", "+-", "shift", "limits", "margin"]
     if all(item.spread is None for item in criteria):
@@ -147,7 +157,7 @@ def _build_criterion_table(criteria: Sequence[Criterion]) -> FittedTable:
         cells: dict[str, str | Text] = {
             "criterion": escape_text(_name(item)),
             "value": texts.value,
-            "+-": format_number(error, 2),
+            "+-": format_width(error, () if item.uncertainty is None else missing),
             "shift": format_number(item.spread, 2),
             "limits": texts.bounds,
             "margin": format_criterion_margin(item.margin, item.lower, item.upper, item.unit),

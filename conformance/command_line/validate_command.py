@@ -25,12 +25,17 @@ from pantocheck.conformance.command_line.options import (
 )
 from pantocheck.conformance.command_line.progress_display import report_cases
 from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.command_line.value_table import format_width
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.procedure.dossier_reading import read_dossier
 from pantocheck.conformance.procedure.validation import Validation
-from pantocheck.conformance.reports.certificate.procedure_page import describe_steps, name_state
+from pantocheck.conformance.reports.certificate.procedure_page import (
+    describe_steps,
+    list_step_missing,
+    name_state,
+)
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.report_writers import check_formats, remark_missing_formats, write_all
 from pantocheck.conformance.reports.words import read_words
@@ -88,7 +93,10 @@ def _describe_results(results: Results) -> Iterator[RenderableType]:
     table = build_table("step", "state", "verdict", "margin", "+-", right=("margin", "+-"))
     for step in content["procedure"]["steps"]:
         name = read_words()["procedure"][step["step"]]
-        numbers = (format_number(step["margin"], 3), format_number(step["uncertainty"], 2))
+        numbers = (
+            format_number(step["margin"], 3),
+            format_width(step["uncertainty"], list_step_missing(step, content["cases"])),
+        )
         table.add_row(name, name_state(step), style_verdict(step["verdict"]), *numbers)
     yield table
     for sentence in (*describe_steps(content), *_describe_cases(results)):

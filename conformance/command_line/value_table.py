@@ -1,10 +1,11 @@
 """Table of the values of quantities with their uncertainty, for results without limits."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
 from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.quantities.registry import find_quantity
+from pantocheck.conformance.results.incomplete_uncertainty import mark_half_width
 
 MAIN_VALUES = (
     *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N"),
@@ -16,7 +17,9 @@ NamedValues = Mapping[str, Mapping[str, object]]
 """Values or uncertainties by pantograph ("0": the line) and quantity."""
 
 
-def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names: Collection[str]) -> FittedTable:
+def build_quantities_table(
+    values: NamedValues, uncertainty: NamedValues, names: Collection[str], missing: Sequence[str] = ()
+) -> FittedTable:
     """Table of quantities that are single numbers; those of the line come last.
 
     Parameters
@@ -25,6 +28,8 @@ def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names:
         Values and their uncertainties.
     names : collection of str
         Quantities of the table, in its order.
+    missing : sequence of str
+        Components that the uncertainties lack.
     """
     numbers = ("value", "+-") if uncertainty else ("value",)
     headings = ("quantity", *numbers, "unit")
@@ -34,9 +39,14 @@ def build_quantities_table(values: NamedValues, uncertainty: NamedValues, names:
             value, width = quantities.get(name), uncertainty.get(owner, {}).get(name)
             if isinstance(value, float):
                 text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
-                errors = [format_number(width if isinstance(width, float) else None, 2)] if uncertainty else []
+                errors = [format_width(width if isinstance(width, float) else None, missing)] if uncertainty else []
                 table.add_row(escape_text(text), format_number(value), *errors, _find_unit(name))
     return table
+
+
+def format_width(width: float | None, missing: Sequence[str]) -> str:
+    """Half-width with two digits, marked if a component is missing; a dash for None."""
+    return "-" if width is None else mark_half_width(width, format_number(width, 2), missing)
 
 
 def _find_unit(name: str) -> str:

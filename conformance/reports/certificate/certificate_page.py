@@ -19,7 +19,12 @@ from pantocheck.conformance.reports.certificate.scope_page import (
 from pantocheck.conformance.reports.certificate.step_sections import build_step_section
 from pantocheck.conformance.reports.certificate.two_verdicts import build_verdict_section, case_verdict
 from pantocheck.conformance.reports.certificate.uncertainty_table import UNCERTAINTY_KEY
-from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline, list_reasons, summarise_case
+from pantocheck.conformance.reports.certificate.verdict_reasons import (
+    build_headline,
+    count_incomplete,
+    list_reasons,
+    summarise_case,
+)
 from pantocheck.conformance.reports.formats.embedded_results import digest_results
 from pantocheck.conformance.reports.formats.reproducibility import find_date
 from pantocheck.conformance.reports.words import read_words
@@ -116,7 +121,7 @@ def build_header(results: dict[str, Any]) -> doc.VerdictHeader:
         verdict=results["verdict"],
         statement=results["statement"],
         headline=build_headline(results),
-        subject=f"{title}{system}, checked with {suite}.{trust}",
+        subject=" ".join(filter(None, (f"{title}{system}, checked with {suite}.{trust}", count_incomplete(results)))),
         footer=f"{suite} · {system}",
     )
 

@@ -13,6 +13,7 @@ from pantocheck.conformance.reports.figures.overlay_figure import (
 )
 from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 
 
 def comparison_blocks(case: dict[str, Any], number: int, anchor: str) -> tuple[doc.Block, ...]:
@@ -67,7 +68,7 @@ def _build_value_table(case: dict[str, Any], comparison: dict[str, Any]) -> doc.
                     quantity_label(name),
                     name_pantograph(key),
                     format_value(other),
-                    format_value(widths.get(name), 2),
+                    _format_width(widths.get(name), case["uncertainty_basis"]),
                     format_value(value),
                     format_value(comparison["uncertainty"].get(key, {}).get(name), 2),
                     replace_minus(f"{other - value:+.3g}"),
@@ -75,6 +76,11 @@ def _build_value_table(case: dict[str, Any], comparison: dict[str, Any]) -> doc.
                 )
             )
     return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
+
+
+def _format_width(width: float | None, basis: dict[str, str]) -> str:
+    """Half-width of a simulated value with two digits and its mark; a dash without one."""
+    return "–" if width is None else mark_half_width(width, format_value(width, 2), list_unknown(basis))
 
 
 def _draw_figures(

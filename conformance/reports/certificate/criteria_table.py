@@ -1,6 +1,8 @@
 """Table of the criteria of a case."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
@@ -10,6 +12,12 @@ from pantocheck.conformance.reports.certificate.reference_values import insert_r
 from pantocheck.conformance.reports.figures.margin_bar import draw_margin_bar
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, quantity_label, read_words
+from pantocheck.conformance.results.incomplete_uncertainty import (
+    explain_mark,
+    list_missing,
+    list_unknown,
+    mark_half_width,
+)
 
 MARGIN_KEY = (
     "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
@@ -21,6 +29,8 @@ MARGIN_KEY = (
 """Meaning of the margins and bars of all tables of criteria."""
 SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
 """Headings of the errors on paper."""
+NO_BASIS: Mapping[str, str] = MappingProxyType({})
+"""Basis of the uncertainty of criteria that belong to no case."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +48,19 @@ class CriterionTexts:
     remarks: tuple[str, ...]
 
 
-def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
-    """Texts of a criterion of results.json."""
+def describe_criterion(criterion: dict[str, Any], basis: Mapping[str, str] = NO_BASIS) -> CriterionTexts:
+    """Texts of a criterion of results.json.
+
+    Parameters
+    ----------
+    criterion : dict
+        Criterion of results.json.
+    basis : mapping of str to str
+        `uncertainty_basis` of its case.
+    """
     value, lower, upper = criterion["value"], criterion["lower"], criterion["upper"]
     error, margin = _select_error(criterion), criterion["margin"]
+    missing = list_missing(basis, criterion["uncertainty"], criterion["trust"])
     unit = "" if value is None else criterion["unit"]
     shown, limits = format_beside_limits(value, lower, upper)
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion["unit"])
@@ -50,7 +69,7 @@ def describe_criterion(criterion: dict[str, Any]) -> CriterionTexts:
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
         value=f"{shown} {unit}".rstrip(),
-        error="–" if error is None else f"± {format_value(error, 2)}",
+        error="–" if error is None else mark_half_width(error, format_value(error, 2), missing, "± "),
         limits=limits,
         margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion["trust"] or "",
@@ -81,11 +100,19 @@ def criteria_blocks(case: dict[str, Any], anchor: str, source_anchor: str) -> tu
         *map(doc.Column, ("Margin", "Verdict", "Trust", "Source")),
     )
     rows = tuple(
-        _row(criterion, sources, source_anchor, _link_place(case, criterion, anchor)) for criterion in case["criteria"]
+        _row(case, criterion, sources, (source_anchor, _link_place(case, criterion, anchor)))
+        for criterion in case["criteria"]
     )
     table = insert_reference(case, doc.Table(columns, rows, layout="cards"), case["criteria"])
     listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
-    return (table, *listed)
+    return (table, *note_incomplete(case), *listed)
+
+
+def note_incomplete(case: dict[str, Any]) -> tuple[doc.Block, ...]:
+    """Explanation of the mark of the half-widths of a case; empty if none of its criteria has the mark."""
+    basis = case.get("uncertainty_basis", NO_BASIS)
+    missing = [list_missing(basis, row["uncertainty"], row["trust"]) for row in case["criteria"]]
+    return (doc.SmallPrint(explain_mark(list_unknown(basis))),) if any(missing) else ()
 
 
 def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) -> tuple[doc.Inline, ...]:
@@ -106,9 +133,9 @@ def _link_place(case: dict[str, Any], criterion: dict[str, Any], anchor: str) ->
 
 
 def _row(
-    criterion: dict[str, Any], sources: list[str], source_anchor: str, place: tuple[doc.Inline, ...]
+    case: dict[str, Any], criterion: dict[str, Any], sources: list[str], links: tuple[str, tuple[doc.Inline, ...]]
 ) -> tuple[doc.RichText, ...]:
-    texts = describe_criterion(criterion)
+    texts, (source_anchor, place) = describe_criterion(criterion, case.get("uncertainty_basis", NO_BASIS)), links
     number = sources.index(criterion["source"]) + 1 if criterion["source"] else None
     drawn = texts.limits != "none" and criterion["value"] is not None
     return (

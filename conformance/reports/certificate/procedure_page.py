@@ -8,14 +8,15 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
 from pantocheck.conformance.reports.page_text import format_value, replace_minus
 from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 
 PROCEDURE_KEY = (
     "Margin and uncertainty belong to the criterion of the step with the smallest margin. The margin is the distance "
     "to the nearer limit, divided by half the distance between the limits, or by the limit. The uncertainty is the "
-    "half-width of the 95 % interval of value and limit together, divided in the same way. With a limit of 0 alone, "
-    "both are in the unit of the value. Steps that are not "
-    "required are for information and have no part in the verdict. The steps follow the style of EN 50318; the text "
-    "of the standard is not reproduced."
+    "half-width of the 95 % interval of value and limit together, divided in the same way; an asterisk marks one that "
+    "lacks a component that is not known. With a limit of 0 alone, both are in the unit of the value. Steps that are "
+    "not required are for information and have no part in the verdict. The steps follow the style of EN 50318; the "
+    "text of the standard is not reproduced."
 )
 
 
@@ -63,7 +64,9 @@ def build_procedure_section(results: dict[str, Any]) -> doc.Section:
         doc.Column("±", number=True),
         doc.Column("Smallest margin of, or reason", share=4),
     )
-    rows = tuple(_build_row(number, step) for number, step in enumerate(results["procedure"]["steps"], 1))
+    rows = tuple(
+        _build_row(number, step, results["cases"]) for number, step in enumerate(results["procedure"]["steps"], 1)
+    )
     facts = [("Digest of the dossier", str(results["procedure"]["digest"]))]
     if note := results["procedure"]["note"]:
         facts.append(("Note", note))
@@ -95,14 +98,26 @@ def _describe_step(step: dict[str, Any]) -> Iterator[str]:
             yield f"{name_step(step)}, {criterion_title(row)}: {text}"
 
 
-def _build_row(number: int, step: dict[str, Any]) -> tuple[doc.RichText, ...]:
+def list_step_missing(step: dict[str, Any], cases: list[dict[str, Any]]) -> tuple[str, ...]:
+    """Components that the uncertainty of a step lacks: those of the case of its smallest margin."""
+    named = (case for case in cases if case["id"] in step["cases"] and _is_closest(step, case["id"]))
+    return next((list_unknown(case["uncertainty_basis"]) for case in named), ())
+
+
+def _is_closest(step: dict[str, Any], case: str) -> bool:
+    return str(step["closest"]).startswith(f"{case}, ")
+
+
+def _build_row(number: int, step: dict[str, Any], cases: list[dict[str, Any]]) -> tuple[doc.RichText, ...]:
     margin = "–" if step["margin"] is None else replace_minus(format_margin(step["margin"]))
+    width = step["uncertainty"]
+    missing = list_step_missing(step, cases)
     texts = [text for text in (step["closest"], step["unverified"], step["reason"]) if text]
     return (
         doc.Link(f"{number} {name_step(step)}", anchor_step(step)),
         name_state(step),
         doc.VerdictMark(step["verdict"]),
         margin,
-        format_value(step["uncertainty"], 2),
+        "–" if width is None else mark_half_width(width, format_value(width, 2), missing),
         "; ".join(texts) or "–",
     )

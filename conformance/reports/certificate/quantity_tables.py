@@ -11,6 +11,7 @@ from pantocheck.conformance.reports.document import Code, Column, Drawing, RichT
 from pantocheck.conformance.reports.figures.spark_line import draw_spark_line
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 
 BAND_CAPTION = (
     "Standard deviation, coefficient of variation and RMS by band. Each value has its verdict by the EN 50318 "
@@ -72,7 +73,10 @@ def build_quantity_table(case: dict[str, Any]) -> Table:
         if isinstance(value, list):
             return _format_list(value)
         text = format_value(value, 5)
-        return text if error is None or isinstance(error, list) else f"{text} ± {format_value(error, 2)}"
+        if error is None or isinstance(error, list):
+            return text
+        missing = list_unknown(values.get("uncertainty_basis", {}))
+        return f"{text} {mark_half_width(error, format_value(error, 2), missing, '± ')}"
 
     cells: dict[str, Callable[[str], RichText]] = {}
     for key in keys:

@@ -5,7 +5,12 @@ from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
-from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion, error_name
+from pantocheck.conformance.reports.certificate.criteria_table import (
+    NO_BASIS,
+    describe_criterion,
+    error_name,
+    note_incomplete,
+)
 from pantocheck.conformance.reports.certificate.document_facts import list_administration
 from pantocheck.conformance.reports.certificate.findings_table import build_findings_section
 from pantocheck.conformance.reports.certificate.procedure_page import (
@@ -78,7 +83,8 @@ def _case_section(case: dict[str, Any]) -> doc.Section:
     if case["warnings"]:
         blocks.append(doc.WarningBox(tuple(case["warnings"])))
     if criteria := list_criteria(case, "criteria"):
-        blocks.append(_criteria(case | {"criteria": criteria}))
+        rows = case | {"criteria": criteria}
+        blocks += [_criteria(rows), *note_incomplete(rows)]
     if (verification := case["verification"]) is not None:
         blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification["verdict"]))))
         if verification["criteria"]:
@@ -95,7 +101,7 @@ def _case_section(case: dict[str, Any]) -> doc.Section:
 def _criteria(case: dict[str, Any]) -> doc.Table:
     rows = []
     for criterion in case["criteria"]:
-        texts = describe_criterion(criterion)
+        texts = describe_criterion(criterion, case.get("uncertainty_basis", NO_BASIS))
         numbers = (texts.value, texts.error, texts.limits, texts.margin)
         rows.append(
             (texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion["verdict"]), texts.trust or "–")

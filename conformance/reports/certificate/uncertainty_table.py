@@ -7,11 +7,12 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.quantity_tables import list_owners
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 
 UNCERTAINTY_KEY = (
     "Uncertainties are half-widths of 95 % intervals. The combined one is the root of the sum of the squares of the "
     "components. A dash: the component does not apply to the quantity, or is not known. A quantity with several values "
-    "has the largest of its half-widths."
+    "has the largest of its half-widths. An asterisk marks a half-width that lacks a component that is not known."
 )
 """Meaning of the uncertainties by component of all cases."""
 
@@ -47,9 +48,12 @@ def _quantities(case: dict[str, Any], key: str) -> list[str]:
 
 def _row(case: dict[str, Any], key: str, quantity: str, names: list[str]) -> tuple[doc.RichText, ...]:
     components = case["uncertainty_components"][key][quantity]
-    widths = (case["uncertainty"][key][quantity], *(components.get(name) for name in names))
+    widths = [_format_largest(components.get(name)) for name in names]
+    combined = case["uncertainty"][key][quantity]
+    largest = max(combined, default=0.0) if isinstance(combined, list) else combined
+    marked = mark_half_width(largest, _format_largest(combined), list_unknown(case["uncertainty_basis"]))
     label = (f"{quantity_label(quantity)} ", doc.Code(quantity))
-    return (label, name_pantograph(key), quantity_unit(quantity) or "–", *map(_format_largest, widths))
+    return (label, name_pantograph(key), quantity_unit(quantity) or "–", marked, *widths)
 
 
 def _format_largest(width: float | list[float] | None) -> str:

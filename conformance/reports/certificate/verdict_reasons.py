@@ -14,7 +14,8 @@ from pantocheck.conformance.reports.certificate.two_verdicts import list_criteri
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, read_words
-from pantocheck.conformance.results.criterion_format import is_drift
+from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, is_drift
+from pantocheck.conformance.results.incomplete_uncertainty import MARK, list_missing, mark_half_width
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -116,6 +117,21 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
     )
 
 
+def count_incomplete(results: dict[str, Any]) -> str | None:
+    """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
+    counted = [pair for pair in _criteria(results) if pair[1]["verdict"] in ("pass", "fail")]
+    missing = [list_missing(case["uncertainty_basis"], row["uncertainty"], row["trust"]) for case, row in counted]
+    number = sum(map(bool, missing))
+    if not number:
+        return None
+    names = [name for name in COMPONENT_NAMES if any(name in names for names in missing)]
+    listed = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return (
+        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete ({MARK}: {listed} not known), so that "
+        "more of them may lie closer to a limit than stated."
+    )
+
+
 def summarise_case(case: dict[str, Any]) -> str:
     """The verdict of one case in one sentence."""
     if case["reason"]:
@@ -170,9 +186,13 @@ def _value(pair: CaseCriterion) -> str:
 
 def _close_value(pair: CaseCriterion) -> str:
     """A value and its limits with its uncertainty, which is the reason why it is close."""
-    uncertainty, unit = pair[1]["uncertainty"], pair[1]["unit"]
-    error = "" if uncertainty is None else f", uncertainty ± {format_value(uncertainty, 2)} {unit}".rstrip()
-    return f"{_value(pair).removesuffix('.')}{error}."
+    case, row = pair
+    uncertainty, unit = row["uncertainty"], row["unit"]
+    missing = list_missing(case["uncertainty_basis"], uncertainty, row["trust"])
+    if uncertainty is None:
+        return _value(pair)
+    width = f"{mark_half_width(uncertainty, format_value(uncertainty, 2), missing, '± ')} {unit}".rstrip()
+    return f"{_value(pair).removesuffix('.')}, uncertainty {width}."
 
 
 def _reason(pair: CaseCriterion) -> str:

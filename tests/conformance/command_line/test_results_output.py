@@ -38,7 +38,7 @@ def rear(passing: dict[str, Any]) -> dict[str, Any]:
 def test_error_is_the_uncertainty_where_it_is_known(
     passing: dict[str, Any], rear: dict[str, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Four digits of the value, two of its errors."""
+    """Four digits of the value, two of its errors. An uncertainty that lacks a component is marked."""
     rear |= {"discretisation_error": 0.01234, "spread": 0.5678, "uncertainty": None}
     expected = [
         "std_force_N,",
@@ -56,8 +56,19 @@ def test_error_is_the_uncertainty_where_it_is_known(
     ]
     assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
     rear |= {"uncertainty": 0.98765, "spread": None}
-    expected[4:6] = ["0.99", "-"]
+    expected[4:6] = ["0.99*", "-"]
+    text = printed(passing, capsys)
+    assert rows(text, "std_force_N, pantograph 2") == [expected]
+    assert "  * Uncertainty without section and length, which are not known: it is too small." in text
+    rear |= {"uncertainty": 0.0}
+    expected[4:5] = ["not", "known"]
     assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
+    for case in passing["cases"]:
+        case["uncertainty_basis"] = dict.fromkeys(case["uncertainty_basis"], "known")
+    expected[4:6] = ["0"]
+    text = printed(passing, capsys)
+    assert rows(text, "std_force_N, pantograph 2") == [expected]
+    assert "Uncertainty without" not in text
 
 
 @pytest.mark.parametrize(
@@ -185,7 +196,7 @@ def test_values_of_a_case_without_limits_are_printed(
     case["criteria"] = []
     text = printed(passing, capsys)
     assert rows(text, "mean_force_N") == [
-        ["mean_force_N", "118.8", "0.12", "N"],
+        ["mean_force_N", "118.8", "0.12*", "N"],
         ["mean_force_N,", "pantograph", "2", "119", "-", "N"],
     ]
     assert "rms_0_5_N" not in text

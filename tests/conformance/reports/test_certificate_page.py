@@ -1,6 +1,7 @@
 """Content of a certificate: criteria, reasons, bands, facts and figures."""
 
 import json
+import re
 from typing import Any
 
 from helpers.shown_page import shown_certificate
@@ -10,6 +11,7 @@ from pantocheck.conformance.reports.certificate.case_figures import draw_case_fi
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks, describe_criterion
 from pantocheck.conformance.reports.certificate.quantity_tables import build_band_table, list_definitions
+from pantocheck.conformance.reports.certificate.summary_page import build_summary
 from pantocheck.conformance.reports.certificate.verdict_reasons import list_reasons
 from pantocheck.conformance.reports.document import (
     BulletList,
@@ -18,10 +20,12 @@ from pantocheck.conformance.reports.document import (
     Link,
     NumberedList,
     Section,
+    SmallPrint,
     Table,
     TrustMark,
     VerdictMark,
 )
+from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.results.results_format import Results
 
@@ -54,7 +58,8 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     texts = describe_criterion(row)
     assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
-    table, sources = criteria_blocks(case, "case-1", "case-1-source")
+    table, note, sources = criteria_blocks(case, "case-1", "case-1-source")
+    assert note == SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
     assert isinstance(table, Table)
     assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
     assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
@@ -71,9 +76,34 @@ def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict
     assert headings == ["Closer to a limit than the uncertainty", "Smallest margins"]
     sentences = list_reasons(passing)[0].blocks[0].items
     assert [
-        "119.9 N" in sentence and sentence.endswith("margin +0.02, uncertainty ± 0.20 N.") for sentence in sentences
+        "119.9 N" in sentence and sentence.endswith("margin +0.02, uncertainty ± 0.20* N.") for sentence in sentences
     ] == [True]
     assert describe_criterion(row | {"verdict": "info"}).remarks == ()
+
+
+def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[str, Any]) -> None:
+    """A half-width of zero without a component that is not known is no half-width; complete ones have no mark."""
+    case = passing["cases"][0]
+    row, unknown = case["criteria"][0] | {"uncertainty": 0.1234}, case["uncertainty_basis"]
+    known = dict.fromkeys(unknown, "known")
+    assert describe_criterion(row, unknown).error == "± 0.12*"
+    assert describe_criterion(row | {"uncertainty": 0.0}, unknown).error == "not known"
+    assert describe_criterion(row | {"uncertainty": 0.0}, known).error == "± 0"
+    assert describe_criterion(row | {"trust": "computed"}, unknown).error == "± 0.12"
+    assert describe_criterion(row | {"uncertainty": None}, unknown).error.startswith("± ")
+    marked = shown_certificate(passing)
+    page_1 = marked[: marked.index('id="cases"')]
+    counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
+    assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
+    for text in (render_markdown(build_summary(passing)), render_markdown(build_certificate(passing))):
+        assert "Uncertainty without section and length, which are not known: it is too small" in text
+    for other in passing["cases"]:
+        other["uncertainty_basis"] = dict.fromkeys(unknown, "known")
+    text = shown_certificate(passing)
+    assert "is incomplete" not in text
+    assert "not known: it is too small" not in text
+    assert re.search(r"± [0-9.]+\*", marked)
+    assert not re.search(r"± [0-9.]+\*", text)
 
 
 def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, Any]) -> None:

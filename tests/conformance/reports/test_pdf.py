@@ -115,10 +115,17 @@ def test_pdf_prints_every_criterion(results: dict[str, Any], certificate: bytes)
     text = squeeze_text(certificate)
     for case in results["cases"]:
         for row in case["criteria"]:
-            shown = describe_criterion(row)
+            shown = describe_criterion(row, case["uncertainty_basis"])
             assert f"{shown.label}{row['quantity']}".replace(" ", "") in text
             expected = f"{shown.pantograph}{shown.value}{shown.error}{shown.limits}{shown.margin}"
             assert expected.replace(" ", "") in text
+
+
+def test_explanations_are_paragraphs(certificate: bytes) -> None:
+    """The explanations of the margins and of the uncertainties begin on lines of their own."""
+    lines = [line for page in PdfReader(io.BytesIO(certificate)).pages for line in page.extract_text().splitlines()]
+    for beginning in ("Margin: distance", "Uncertainties are half-widths"):
+        assert sum(line.startswith(beginning) for line in lines) == 1
 
 
 def test_pdf_prints_hostile_text_literally(hostile: dict[str, Any]) -> None:
