@@ -16,6 +16,9 @@ MAX_DOCUMENT_BYTES = 64 * 2**20
 DOCUMENTS = ("certificate.pdf", "certificate.html", "results.json")
 """Documents that `pantocheck run` writes to its folder."""
 
+COPIES = (".csv", ".md", ".xml", ".svg")
+"""Endings of the files of a run that hold no results."""
+
 HEADER_BYTES = 1024
 """Length of the part of a file with the header of a PDF [bytes] (ISO 32000-1, implementation note 13)."""
 
@@ -66,6 +69,12 @@ def read_certificate(path: Path) -> Certificate:
         return parse_html_certificate(content, name)
     if beginning[:1] == b"{":
         return ResultsFile(name, content, parse_results(content, name))
+    if path.suffix.lower() in COPIES:
+        raise InputError(
+            name,
+            "a copy of results without protection: no change of it can be found",
+            f"Verify the document beside it: {', '.join(DOCUMENTS)}.",
+        )
     raise InputError(
         name,
         "not a PDF, not an HTML page and not JSON",

@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 from itertools import zip_longest
 
 from pantocheck.conformance.authenticity.html_certificate import DATA_BLOCK
-from pantocheck.conformance.authenticity.text_differences import compare_lines, quote
+from pantocheck.conformance.authenticity.text_differences import compare_lines, quote_difference
 
 TITLE = re.compile("<title>([^<]*)</title>")
 
@@ -69,7 +69,7 @@ def compare_html(stated: str, expected: str) -> Iterator[str]:
     for token, wanted in zip_longest(page.tokens, other.tokens):
         if token != wanted:
             texts = (None if pair is None else f"{pair[0]} {pair[1]}" for pair in (token, wanted))
-            found, follows = map(quote, texts)
+            found, follows = quote_difference(*texts)
             yield f"{found} stands where {follows} follows from the results"
             return
     if _blocks(stated) != _blocks(expected):

@@ -7,7 +7,7 @@ from typing import Any
 from pypdf import PageObject, PdfReader
 from pypdf.generic import ArrayObject, DictionaryObject, IndirectObject, PdfObject, StreamObject
 
-from pantocheck.conformance.authenticity.text_differences import compare_lines, quote
+from pantocheck.conformance.authenticity.text_differences import compare_lines, quote_difference
 from pantocheck.conformance.input_files.input_error import InputError
 
 DEEPEST_COMPARED = 60
@@ -89,7 +89,7 @@ def _compare_metadata(stated: PdfReader, expected: PdfReader) -> Iterator[str]:
     for key in sorted(metadata.keys() | others.keys()):
         if metadata.get(key) != others.get(key):
             texts = (None if item.get(key) is None else str(item[key]) for item in (metadata, others))
-            value, wanted = map(quote, texts)
+            value, wanted = quote_difference(*texts)
             yield f"metadata {key.removeprefix('/')}: {value}; {wanted} follows from the results"
 
 

@@ -193,6 +193,14 @@ def pdf_without_pages() -> bytes:
     return buffer.getvalue()
 
 
+@pytest.mark.parametrize("name", ["quantities.csv", "summary.md", "junit.xml", "badge.svg"])
+def test_copies_without_protection_are_refused(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("case,quantity\n", encoding="utf-8")
+    with pytest.raises(InputError, match="a copy of results without protection") as error:
+        verify_document(tmp_path / name)
+    assert "certificate.pdf, certificate.html, results.json" in str(error.value)
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [
