@@ -26,7 +26,8 @@ def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) ->
     for pantograph in ("1", "2"):
         value = case["quantities"][pantograph]["std_force_N"]
         widths = [format_value(share * value, 2) for share in (0.0025, 0.0015, 0.002)]
-        assert rows[f"pantograph {pantograph}", Code("std_force_N")][2:] == ("N", *widths, "–", "–")
+        combined, *others = widths
+        assert rows[f"pantograph {pantograph}", Code("std_force_N")][2:] == ("N", f"{combined}*", *others, "–", "–")
 
 
 def test_model_uncertainty_stands_below_the_components_and_changes_no_width(passing: dict[str, Any]) -> None:
@@ -49,7 +50,7 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
     _, table = uncertainty_blocks(case)
     assert isinstance(table, Table)
-    assert table.rows[-1][1:] == ("line", "mm", "0.50", "0.50", "–", "–", "–")
+    assert table.rows[-1][1:] == ("line", "mm", "0.50*", "0.50", "–", "–", "–")
     cells = {row[0][1]: row for row in build_quantity_table(case).rows}
     assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
 
