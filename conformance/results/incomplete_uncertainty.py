@@ -6,10 +6,10 @@ A component that is not known is not zero: the half-width of the others is then 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-MARK = "*"
+INCOMPLETE_MARK = "*"
 """Mark of a half-width without a component that is not known."""
 
-NOT_KNOWN = "not known"
+UNKNOWN_COMPONENT = "not known"
 """Beginning of the basis of such a component, and text in place of a half-width of zero."""
 
 
@@ -21,7 +21,7 @@ def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
     basis : mapping of str to str
         `uncertainty_basis` of a case.
     """
-    return tuple(name for name, text in basis.items() if text.startswith(NOT_KNOWN))
+    return tuple(name for name, text in basis.items() if text.startswith(UNKNOWN_COMPONENT))
 
 
 def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str | None) -> tuple[str, ...]:
@@ -57,7 +57,7 @@ def mark_half_width(width: float, text: str, missing: Sequence[str], sign: str =
     """
     if not missing:
         return f"{sign}{text}"
-    return f"{sign}{text}{MARK}" if width else NOT_KNOWN
+    return f"{sign}{text}{INCOMPLETE_MARK}" if width else UNKNOWN_COMPONENT
 
 
 def explain_mark(missing: Sequence[str]) -> str:
@@ -70,4 +70,4 @@ def explain_mark(missing: Sequence[str]) -> str:
     """
     names = " and ".join(filter(None, (", ".join(missing[:-1]), missing[-1])))
     verb = "is" if len(missing) == 1 else "are"
-    return f"{MARK} Uncertainty without {names}, which {verb} not known: it is too small."
+    return f"{INCOMPLETE_MARK} Uncertainty without {names}, which {verb} not known: it is too small."

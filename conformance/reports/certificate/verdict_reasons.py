@@ -15,7 +15,7 @@ from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, read_words
 from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, is_drift
-from pantocheck.conformance.results.incomplete_uncertainty import MARK, list_missing, mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -127,8 +127,8 @@ def count_incomplete(results: dict[str, Any]) -> str | None:
     names = [name for name in COMPONENT_NAMES if any(name in names for names in missing)]
     listed = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
     return (
-        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete ({MARK}: {listed} not known), so that "
-        "more of them may lie closer to a limit than stated."
+        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete "
+        f"({INCOMPLETE_MARK}: {listed} not known), so that more of them may lie closer to a limit than stated."
     )
 
 
