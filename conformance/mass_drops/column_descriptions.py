@@ -44,7 +44,7 @@ def _check_numbers(table: MeasuredTable, sidecar: DropSidecar) -> None:
         raise InputError(
             table.where,
             f"has {width} columns, but the sidecar describes column {max(columns)} ({', '.join(missing[:6])} missing)",
-            "Export all channels, or give the sidecar of this file.",
+            "It may be truncated: copy or export it again with all channels, or give the sidecar of this file.",
         )
 
 

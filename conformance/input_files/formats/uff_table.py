@@ -26,6 +26,8 @@ DATA_TYPES: dict[MotionQuantity, int] = {"acceleration": 12, "velocity": 11, "di
 TITLE_FIELDS = ("id1", "id2", "id3", "id4", "id5", "rsp_ent_name")
 """Fields that hold the name of a channel, by habit of the writing program."""
 CHANNEL_LINE = re.compile(r"(?P<name>\S+) (?P<wire>\S+) at (?P<position>[-+.\deE]+) m dir (?P<direction>[-+][xyz])")
+END_BYTES = 4096
+"""Last part of a file that holds the end of its last data set, a line with -1."""
 DROP_LINE = re.compile(
     r"(?P<mass>[.\deE+]+) kg on (?P<wire>\S+) at (?P<position>[-+.\deE]+) m(?:, trigger at (?P<trigger>[.\deE+]+) s)?"
 )
@@ -67,6 +69,7 @@ def _build_table(sets: list[dict[str, Any]], source: str, names: ChannelNames, l
 
 def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
     """All data sets 58 of a file."""
+    _check_end(path, where)
     universal = pyuff.UFF(str(path))
     kinds = [int(kind) for kind in universal.get_set_types()]
     sets = [universal.read_sets(i) for i, kind in enumerate(kinds) if kind == 58]
@@ -78,6 +81,15 @@ def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:
                 "Export the file again; its end is missing.",
             )
     return sets
+
+
+def _check_end(path: Path, where: str) -> None:
+    """Refuse a file that ends inside a data set: the reading library leaves out such a set without a word."""
+    with path.open("rb") as file:
+        file.seek(max(path.stat().st_size - END_BYTES, 0))
+        end = file.read().rstrip(b" \t\r\n\x00\x1a")
+    if not end.endswith(b"-1"):
+        raise InputError(where, "ends inside a data set", "It may be truncated: copy or export the file again.")
 
 
 def _read_stated_facts(data_set: dict[str, Any]) -> TableColumn:

@@ -48,9 +48,17 @@ def sidecar_damage(old: str, new: str) -> Damage:
 
 
 def cut_binary(folder: Path, record: DropRecord) -> Path:
+    """Universal file of three data sets, cut behind the second one."""
     write_drop_uff(record, folder / "r.uff")
     content = (folder / "r.uff").read_bytes()
     (folder / "r.uff").write_bytes(content[: len(content) * 2 // 3])
+    return folder / "r.uff"
+
+
+def cut_data_set(folder: Path, record: DropRecord) -> Path:
+    write_drop_uff(record, folder / "r.uff")
+    content = (folder / "r.uff").read_bytes()
+    (folder / "r.uff").write_bytes(content[: len(content) * 3 // 5])
     return folder / "r.uff"
 
 
@@ -113,7 +121,8 @@ DAMAGES = {
     "no rate": (sidecar_damage("sampling_rate_hz = 100.0\n", ""), "sampling_rate_hz"),
     "mixed units": (sidecar_damage('unit = "m/s2"', 'unit = "mm"'), "holds channels of acceleration and displacement"),
     "channel twice": (sidecar_damage("column = 2", "column = 1"), "describes column 1 twice"),
-    "cut binary": (cut_binary, "S2_z missing"),
+    "cut binary": (cut_binary, r"S2_z missing\)\.\s+It may be truncated: copy or export it again"),
+    "cut inside a data set": (cut_data_set, r"ends inside a data set\.\s+It may be truncated"),
     "unknown number type": (unknown_number_type, "damaged, or is not a universal file"),
     "cut hdf5": (cut_hdf5, "damaged"),
     "no sidecar": (without_sidecar, "nor a sidecar"),
