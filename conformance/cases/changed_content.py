@@ -10,6 +10,7 @@ from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.input_changes import InputChange
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.key_paths import find_holders, follow_path
 from pantocheck.conformance.input_files.sourced_table import SourcedTable
@@ -25,7 +26,7 @@ def change_case(tree: dict[str, Any], changes: Sequence[InputChange]) -> tuple[d
             assigned.append(change)
         elif change.part != "line" and (count == 0 or (change.pantograph or 0) >= count):
             hint = "Pantographs are numbered from 1 in running order."
-            raise InputError(change.where, f"the case has {count} pantographs", hint)
+            raise InputError(change.where, f"the case has {count_noun(count, 'pantograph')}", hint)
         elif change.part == "use":
             numbers = range(count) if change.pantograph is None else (change.pantograph,)
             assigned += [replace(change, part="case", path=("pantograph", i, *change.path)) for i in numbers]

@@ -7,6 +7,7 @@ from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
 from pantocheck.conformance.grading.case_identity import (
     compare_profile_with_library,
@@ -154,7 +155,7 @@ def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile
         count, measured_count = len(subject.pantographs), len(measured.pantographs)
         raise InputError(
             where,
-            f"it has {measured_count} pantographs, {subject.name} has {count}",
+            f"it has {count_noun(measured_count, 'pantograph')}, {subject.name} has {count}",
             "Compare records of the same train.",
         )
     if not abs(measured_speed / speed - 1) <= profile.speed_tolerance_pct / 100:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record
 from pantocheck.conformance.records.record_summary import RecordSummary
@@ -55,7 +56,7 @@ def find_summary_mismatch(case: Case, summary: RecordSummary) -> str | None:
 def _find_other_run(case: Case, pantographs: int, speed_km_h: float, section: Sequence[float] | None) -> str | None:
     """Difference of train, speed or analysis section from a case; a static case has no speed."""
     if pantographs != len(case.pantographs):
-        return f"has {pantographs} pantographs, the case has {len(case.pantographs)}"
+        return f"has {count_noun(pantographs, 'pantograph')}, the case has {len(case.pantographs)}"
     expected = case.file.speed_km_h
     if expected is not None and not abs(speed_km_h / expected - 1) <= SPEED_TOLERANCE:
         return f"was made at {speed_km_h:.4g} km/h, the case runs at {expected:.4g} km/h"

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph
 from pantocheck.conformance.grading.record_mismatch import SPACING_TOLERANCE_M
 from pantocheck.conformance.results.record_facts import RecordFacts
@@ -94,7 +95,8 @@ def list_mismatches(simulated: RunSide, measured: RunSide, profile: Profile) -> 
         yield f"the speed of the measured run: {speeds[0]:g} km/h; of the simulated run: {speeds[1]:g} km/h"
     for side, run in ((simulated, "simulated"), (measured, "measured")):
         if len(side.record.pantographs) != len(side.pantographs):
-            yield f"the {run} record has {len(side.record.pantographs)} pantographs, {len(side.pantographs)} are named"
+            recorded = count_noun(len(side.record.pantographs), "pantograph")
+            yield f"the {run} record has {recorded}, {len(side.pantographs)} named"
     yield from _compare_spacing(simulated, measured)
     yield from _compare_sections(simulated, measured)
 

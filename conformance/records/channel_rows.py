@@ -147,7 +147,7 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
         expected = sidecar.rows(CHANNELS[name].per)
         first_alone = name == "position" and list(numbered) == [1] and sidecar.spacing_m is not None
         if name != "uplift" and len(numbered) != expected and not first_alone:
-            found = f"has {len(numbered)} rows of {CHANNELS[name].key}, expected {expected}"
+            found = f"has {count_noun(len(numbered), 'row')} of {CHANNELS[name].key}, expected {expected}"
             hint = "Store one row per pantograph; for positions, position_1_m and spacing_m in the sidecar are enough."
             if name == "position" and list(numbered) == [1]:
                 found = f"spacing_m is missing from the sidecar, and the table {found}"

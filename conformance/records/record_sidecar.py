@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
@@ -123,7 +124,7 @@ class RecordSidecar(InputTable):
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
             yield validation_problem(
                 "spacing_m",
-                f"{len(self.spacing_m)} distances for {self.pantographs} pantographs",
+                f"{count_noun(len(self.spacing_m), 'distance')} for {count_noun(self.pantographs, 'pantograph')}",
                 "Give the distances between successive pantographs, in running order.",
             )
 

@@ -298,7 +298,7 @@ def test_changed_table_contradicts_its_digest(written: Writer) -> None:
             {"support_position_m": []},
             r"support_position_m: found \[\], which is empty\.\n  Remove the key, or fill it in",
         ),
-        ({"pantographs": 2}, "spacing_m is missing from the sidecar, and the table has 1 rows of position_m"),
+        ({"pantographs": 2}, "spacing_m is missing from the sidecar, and the table has 1 row of position_m"),
     ],
 )
 def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], message: str) -> None:

@@ -101,7 +101,7 @@ def test_summary_of_another_run_is_an_error(
 
 def test_summary_of_another_train_is_an_error(two_pantograph_case: Case) -> None:
     system = open_record_folder(Path("en50318-2002/known-passing-code"))
-    reason = "the summary record has 1 pantographs, the case has 2"
+    reason = "the summary record has 1 pantograph, the case has 2"
     assert system.run(two_pantograph_case) == Errored(reason)
 
 
