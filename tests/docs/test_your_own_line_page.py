@@ -28,11 +28,11 @@ def list_blocks() -> list[tuple[str, str]]:
 
 
 def pantocheck(line: str) -> tuple[int, str]:
-    """Exit code and output of a command line of the page."""
+    """Exit code and output of a command line of the page; that of an error with its messages, others without progress."""
     program, *arguments = shlex.split(line)
     assert program == "pantocheck"
     result = CliRunner().invoke(app, arguments)
-    return result.exit_code, result.output
+    return result.exit_code, result.output if result.exit_code == 2 else result.stdout
 
 
 def replace_spans(line: Path, block: str) -> None:
