@@ -28,7 +28,7 @@ def list_blocks() -> list[tuple[str, str]]:
 
 
 def pantocheck(line: str) -> tuple[int, str]:
-    """Exit code and output of a command line of the page; that of an error with its messages, others without progress."""
+    """Exit code and output of a command line of the page; messages belong to the output of an error only."""
     program, *arguments = shlex.split(line)
     assert program == "pantocheck"
     result = CliRunner().invoke(app, arguments)
