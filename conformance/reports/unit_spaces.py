@@ -1,4 +1,4 @@
-"""Space between a number and its unit: no line of a page breaks there."""
+"""Space between a number, with or without a mark, and its unit: no line of a page breaks there."""
 
 import re
 from typing import Any
@@ -9,7 +9,7 @@ BOUND_UNITS = (
 )  # fmt: skip
 """Units of the texts of a page."""
 
-NUMBER_AND_UNIT = re.compile(rf"(?<=\d) (?=(?:{'|'.join(map(re.escape, BOUND_UNITS))})(?![\w/]))")
+NUMBER_AND_UNIT = re.compile(rf"(?<=[\d*]) (?=(?:{'|'.join(map(re.escape, BOUND_UNITS))})(?![\w/]))")
 
 UNBOUND_KEYS = frozenset({"kind", "title", "anchor", "address", "svg", "code", "curves", "layout"})
 """Keys of a page whose values are markup, addresses, or lines to be copied."""

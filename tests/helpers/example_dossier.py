@@ -37,10 +37,14 @@ class CachedSimulator:
 
 
 def copy_example(folder: Path, changes: dict[str, Any] | None = None) -> Path:
-    """Copy the example dossier to a folder, with keys changed as by `change_keys`; return its path."""
+    """Copy the example dossier to a folder, with keys changed as by `change_keys`; return its path.
+
+    The tolerances of the copy are secondary, which count without the key `trust` of the dossier.
+    """
     shutil.copytree(EXAMPLE, folder, dirs_exist_ok=True)
     path = folder / "dossier.toml"
-    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    text = path.read_text(encoding="utf-8").replace('trust = "provisional"\nnote', "note")
+    content = tomllib.loads(text.replace('trust = "provisional"', 'trust = "secondary"'))
     change_keys(content, {"reference.cases": REFERENCE} | (changes or {}))
     return write_toml(path, content)
 

@@ -31,6 +31,7 @@ GAP = "\N{NO-BREAK SPACE}"
         ("250 km/h, 95 %; 3 m/s", f"250{GAP}km/h, 95{GAP}%; 3{GAP}m/s"),
         ("2 maxima, 3 Newton, 4 m_s, 5 N/x", "2 maxima, 3 Newton, 4 m_s, 5 N/x"),
         ("case 3 supports", "case 3 supports"),
+        ("± 3.8* N", f"± 3.8*{GAP}N"),
     ],
 )
 def test_only_a_number_before_a_unit_is_bound(text: str, bound: str) -> None:
