@@ -35,7 +35,7 @@ COMMANDS = {
     "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
     "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
     "fit-pantograph": "Fit a chain of lumped masses to frequency responses measured at a pantograph head.",
-    "check-adapter": "Check the adapter of a simulator with a short case.",
+    "check-adapter": "Check the adapter of a simulator with short cases.",
     "sign": "Sign a certificate or results.",
     "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",

@@ -164,7 +164,7 @@ def keep_first_pantograph(twin: Delivered) -> Outcome:
 
 TWINS: dict[str, tuple[Callable[[Delivered], Outcome], str, str]] = {
     "both": (lambda twin: twin, "ok", "a record of both pantographs"),
-    "first only": (keep_first_pantograph, "wrong", "the record has 1 pantographs, the case has 2. Write position"),
+    "first only": (keep_first_pantograph, "wrong", "the record has 1 pantograph, the case has 2. Write position"),
     "refused": (lambda _: Skipped("one only"), "note", "refused: one only. Cases with several pantographs are"),
     "error": (lambda _: Errored("diverged"), "wrong", "error: diverged. Answer with a record of all pantographs"),
     "no record": (lambda twin: replace(twin, record=None), "missing", "without a record"),

@@ -125,10 +125,11 @@ def test_request_is_of_one_case(tmp_path: Path) -> None:
     assert "the pattern selects 2 cases" in " ".join(result.output.split())
 
 
-def test_required_cases_are_not_shown() -> None:
-    result = CliRunner().invoke(app, ["show", "en50318-2018/ac-simple/275"])
+def test_required_case_is_named_and_not_shown() -> None:
+    result = CliRunner().invoke(app, ["show", "en50318-2018/ac-simple/275", "--json"])
     assert result.exit_code == 0
-    assert "ac-simple/static" not in result.output.split("Inputs")[0]
+    (case,) = json.loads(result.stdout)["result"]
+    assert (case["id"], case["requires"]) == ("en50318-2018/ac-simple/275", ["en50318-2018/ac-simple/static"])
 
 
 def test_cases_with_several_lines_are_not_drawn(tmp_path: Path) -> None:

@@ -480,7 +480,7 @@ def test_assess_writes_the_same_files_as_run(train: Train, tmp_path: Path) -> No
         (["--profile", "none.toml"], "profile 'none.toml': cannot be read"),
         (["--profile", "acceptance-ac", "--wave-speed-m-s", "-3"], "key wave_speed_m_s: -3 must be greater than 0"),
         (["--profile", "acceptance-ac", "--uplift-space-mm", "nan"], "key uplift_space_mm: nan is not a finite number"),
-        (["--profile", "acceptance-ac", "--drift", "0"], "key drift_pct: 0 must be greater than 0"),
+        (["--profile", "acceptance-ac", "--drift", "0"], "option --drift: 0 must be greater than 0"),
         (["--profile", "line-test"], "Add --measured RECORD2"),
         (["--profile", "acceptance-ac", "--baseline", "none.json"], "results 'none.json': cannot be read"),
     ],

@@ -51,7 +51,8 @@ def test_fewer_or_more_pantographs_are_another_train(
         record, position=record.position[rows], force=record.force[rows], contact_height=record.contact_height[rows]
     )
     found = find_record_mismatch(two_pantograph_case, other)
-    assert found == f"the record has {len(rows)} pantographs, the case has 2"
+    number = "1 pantograph" if len(rows) == 1 else f"{len(rows)} pantographs"
+    assert found == f"the record has {number}, the case has 2"
 
 
 @pytest.mark.parametrize("shift", [-50.0, -2.0, 2.0, 50.0])
