@@ -37,6 +37,14 @@ def compute_slowly(run: PlannedRun) -> RunRow:
     return compute_row(run)
 
 
+def compute_at_the_gate(run: PlannedRun) -> RunRow:
+    """Row after 20 ms; runs after the hundredth wait for the file that the environment names."""
+    gate = Path(os.environ["CAMPAIGN_GATE"])
+    while run.number > 100 and not gate.exists():
+        time.sleep(0.02)
+    return compute_slowly(run)
+
+
 def fail_even(run: PlannedRun) -> RunRow:
     """Row of a failed run for even numbers."""
     return build_failed_row(run, "even", 0.0) if run.number % 2 == 0 else compute_row(run)
@@ -66,7 +74,7 @@ class ThisProcess:
 def main(folder: Path, runs: int) -> None:
     """Run the cheap campaign in two processes."""
     with open_store(folder, {"runs": runs}) as store:
-        drive_campaign(speed_design(runs), compute_slowly, store, LocalWorkers(2), Execution(), lambda _: None)
+        drive_campaign(speed_design(runs), compute_at_the_gate, store, LocalWorkers(2), Execution(), lambda _: None)
         write_campaign_table(store, folder / "campaign.csv")
 
 

@@ -20,11 +20,13 @@ from pantocheck.conformance.campaigns.local_workers import LocalWorkers
 from pantocheck.conformance.input_files.input_error import InputError
 
 RUNS = 200
-"""Runs of 20 ms in two processes: some are finished at every kill, and others are open."""
+"""Runs in two processes: some are finished at every kill, and those after the hundredth wait for a gate."""
+
+GATE = "gate"
 
 
 def start_driver(folder: Path) -> subprocess.Popen[bytes]:
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "CAMPAIGN_GATE": str(folder / GATE)}
     command = [sys.executable, "-m", "helpers.cheap_campaign", str(folder), str(RUNS)]
     return subprocess.Popen(command, env=environment)
 
@@ -65,6 +67,7 @@ def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Pa
     with start_driver(killed) as driver:
         wait_for_runs(killed, driver, 10)
         os.kill(list_children(driver.pid)[-1], signal.SIGKILL)
+        (killed / GATE).touch()
         assert driver.wait(timeout=600) == 0
     assert (killed / "campaign.csv").read_bytes() == build_undisturbed_table(tmp_path / "undisturbed")
 
