@@ -11,9 +11,10 @@ to another key, as the near-limit remark moved from `warnings` to `close` of its
 number differs by more than its tolerance, or if an id, a verdict or a missing key differs in another way than
 `INTENDED_CHANGES` states. Smaller differences are counted, and the largest is printed.
 
-Numbers of records and of identified modes agree with the frozen ones to 1e-12. Results of the reference simulator have
-changed since: `SIMULATED` states the tolerance of each quantity. With `--earlier` every number must agree to 1e-12, and
-no change is intended: this is the comparison for a change of the code that must not change a number.
+Numbers of records agree with the frozen ones to 1e-12, those of identified modes to two units of the last of eight
+digits. Results of the reference simulator have changed since: `SIMULATED` states the tolerance of each quantity. With
+`--earlier` every number must agree to 1e-12, and no change is intended: this is the comparison for a change of the code
+that must not change a number.
 """
 
 import argparse
@@ -61,13 +62,29 @@ TEXT_LISTS = {"warnings", "notes"}
 _FACTS = "the record states neither the wave speed nor the space for uplift: two rules are skipped"
 _STATISTICS = "published statistics are an unverified record"
 
+_DIGEST = ("is 'sha256:*', was 'sha256:*'", "files of lines and cases have more keys")
+_OVERLAYS = ("has another length than 0", "a drop without repetition has a figure, too")
+_BANDS = "the second group keeps too few modes: those of overlapping bands are left out"
+
+
+def _list_digests(cases: int) -> dict[str, tuple[str, str]]:
+    """Intended changes of the input digests of some cases."""
+    return {f".cases[{number}].input_digest": _DIGEST for number in range(cases)}
+
+
 INTENDED_CHANGES = {
     "ac-simple/results.json": {
         ".verdict": (
             "is 'info', was 'pass'",
             "only one of five cases has a limit that counts: the other four do not pass",
-        )
+        ),
+        **_list_digests(5),
     },
+    "ac-stitched/results.json": _list_digests(3),
+    "en50318-2002/results.json": _list_digests(2),
+    "T2/identification.json": {".lines[0].overlays": _OVERLAYS},
+    "T3/identification.json": {".lines[0].overlays": _OVERLAYS},
+    "T1-fit/damping.json": {".modal": ("has another length than 2", _BANDS)},
     "assess/results.json": {
         ".verdict": ("is 'skip', was 'pass'", _FACTS),
         ".cases[0].verdict": ("is 'skip', was 'pass'", _FACTS),
@@ -81,6 +98,7 @@ INTENDED_CHANGES = {
         ".verdict": ("is 'unverified', was 'pass'", _STATISTICS),
         ".cases[0].verdict": ("is 'unverified', was 'pass'", _STATISTICS),
         ".cases[1].verdict": ("is 'unverified', was 'pass'", _STATISTICS),
+        **_list_digests(2),
     },
 }
 """Intended changes since the frozen commit, by file and place: pattern of the difference, and its reason.
@@ -99,6 +117,16 @@ criteria are close to a limit (docs/uncertainty.md).
 """
 
 TOLERANCE = 1e-12
+
+PRINTED = 2.01e-7
+"""Tolerance of identified modes, which are rounded to eight digits: two units of the last digit."""
+
+SMALLEST = 1e-8
+"""Size below which a difference is not relative: imaginary parts of real mode shapes are rounding errors."""
+
+MODAL = re.compile(r"\.models\.Rayleigh \+ modal\[")
+"""Ratios in the bands of modal damping, which follow from the number of bands."""
+
 """Largest relative difference that a reordering of sums by the compiler may cause."""
 
 SIMULATED_FILES = {f"{name}/results.json" for name in ("en50318-2002", "ac-simple", "ac-stitched")}
@@ -198,7 +226,7 @@ def differences(frozen: Any, new: Any, path: str = "", key: str = "") -> Iterato
         if not isinstance(new, int | float):
             yield path, f"is {new!r}, was {frozen!r}"
         else:
-            yield path, 0.0 if new == frozen else abs(new - frozen) / max(abs(frozen), abs(new), math.ulp(0.0))
+            yield path, 0.0 if new == frozen else abs(new - frozen) / max(abs(frozen), abs(new), SMALLEST)
     elif key in IDENTIFIERS and new != frozen:
         yield path, f"is {new!r}, was {frozen!r}"
 
@@ -217,8 +245,10 @@ def tolerance(name: str, place: str) -> float:
     """Tolerance of the difference at a place of a file; infinite where numbers follow from others or are histories."""
     if name.endswith("results.json") and RENEWED.search(place):
         return math.inf
+    if name == "T1-fit/damping.json" and MODAL.search(place):
+        return math.inf
     if name not in SIMULATED_FILES:
-        return FITTED.get(name, TOLERANCE)
+        return FITTED.get(name, PRINTED if name.startswith(("T1/", "T2/", "T3/")) else TOLERANCE)
     if DERIVED.search(place):
         return math.inf
     quantity = re.search(r"\.quantities\.\d+\.(\w+)", place)
