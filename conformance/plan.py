@@ -23,8 +23,8 @@ from pantocheck.conformance.input_files.sourced_table import InputTable
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.reports.formats.report_writers import check_formats
 from pantocheck.conformance.results.administration import Administration
+from pantocheck.conformance.results.report_files import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 from pantocheck.conformance.systems.command.program_arguments import split_arguments

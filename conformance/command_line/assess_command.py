@@ -34,12 +34,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan_places import locate_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports.formats.report_writers import (
-    FILES,
-    check_formats,
-    remark_missing_formats,
-    write_all,
-)
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.results.report_files import FILES, check_formats
 
 
 def assess_command(

@@ -16,8 +16,8 @@ from pantocheck.conformance.input_files.input_error import InputError, join_erro
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.input_files.validation_messages import build_input_error
 from pantocheck.conformance.plan import Plan, read_plan
-from pantocheck.conformance.reports.formats.report_writers import DEFAULT_FORMATS
 from pantocheck.conformance.results.administration import read_administration
+from pantocheck.conformance.results.report_files import DEFAULT_FORMATS
 
 SetOption = Annotated[
     list[str] | None,

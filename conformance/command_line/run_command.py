@@ -31,7 +31,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.plan import PreparedPlan, prepare_plan
 from pantocheck.conformance.plan_places import locate_plan
 from pantocheck.conformance.reference_run import add_reference
-from pantocheck.conformance.reports.formats.report_writers import FILES, remark_missing_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted, run_cases
 from pantocheck.conformance.systems.process_control import interruption_exit_code

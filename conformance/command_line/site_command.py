@@ -14,10 +14,11 @@ from pantocheck.conformance.command_line.console import indent_text
 from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages, write_report
+from pantocheck.conformance.reports.formats.report_writers import write_pages, write_report
 from pantocheck.conformance.reports.site.case_page import build_case_page
 from pantocheck.conformance.reports.site.published_results import PublishedResults, name_file, publish_results
 from pantocheck.conformance.reports.site.site_index import build_site_index
+from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 

@@ -37,9 +37,10 @@ from pantocheck.conformance.reports.certificate.procedure_page import (
     name_state,
 )
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.report_writers import check_formats, remark_missing_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
 from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
+from pantocheck.conformance.results.report_files import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted
 from pantocheck.conformance.systems.system_choice import choose_system

@@ -25,7 +25,7 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples
 from pantocheck.conformance.records.sidecar_tables import LineTable, SystemTable
-from pantocheck.conformance.results.event_format import EventFacts
+from pantocheck.conformance.results.case_facts_format import EventFacts
 from pantocheck.conformance.results.results_format import InputGroup
 
 FEWEST_STATISTICS = 3

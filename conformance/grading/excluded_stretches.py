@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from pantocheck.conformance.cases.profile_file import ExclusionRule
 from pantocheck.conformance.records.events import RecordEvent, covered_share
-from pantocheck.conformance.results.event_format import EventFacts
+from pantocheck.conformance.results.case_facts_format import EventFacts
 
 Stretches = tuple[tuple[float, float], ...]
 

@@ -1,6 +1,6 @@
 """Known limitations of the suite, from the Markdown file that is their only home."""
 
-from pantocheck.conformance.reports.words import TEMPLATES
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.results.guide_format import Limitation
 
 LIMITATIONS_FILE = "known-limitations.md"

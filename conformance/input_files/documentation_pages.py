@@ -4,6 +4,7 @@ A reader of the site or of an installed package has no folder `docs`: a page is 
 """
 
 from enum import Enum
+from importlib.resources import files
 
 
 class DocumentationPage(Enum):
@@ -22,3 +23,7 @@ class DocumentationPage(Enum):
     def __str__(self) -> str:
         """Name the page as in a sentence."""
         return f"the page '{self.value}' of the documentation"
+
+
+TEMPLATES = files("pantocheck.templates")
+"""Templates and words of the pages, and templates of new input files."""

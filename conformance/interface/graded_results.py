@@ -17,7 +17,8 @@ from pantocheck.conformance.interface.missing_formats import warn_missing_format
 from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.plan import Plan, prepare_plan
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports.formats.report_writers import check_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import write_all
+from pantocheck.conformance.results.report_files import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runner import run_cases

@@ -24,7 +24,8 @@ from pantocheck.conformance.pytest_plugin.user_fixtures import (
 )
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.report_writers import FILES, remark_missing_formats, write_all
+from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import CaseResult, VerdictName
 
 Target = tuple[str, int, int | None]

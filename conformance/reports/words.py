@@ -2,12 +2,10 @@
 
 import tomllib
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.quantities.registry import QUANTITIES
-
-TEMPLATES = files("pantocheck.templates")
 
 
 @cache

@@ -1,26 +1,14 @@
 """Contact losses of a record in results.json."""
 
 from collections.abc import Mapping
-from typing import Annotated
-
-from pydantic import Field
 
 from pantocheck.conformance.quantities.contact_losses import list_losses
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.results.case_facts_format import ContactLossFacts
 
 MOST_LOSSES = 200
 """Largest number of contact losses listed for a pantograph; the longest ones are kept."""
-
-
-class ContactLossFacts(ResultsPart):
-    """Contact loss of a pantograph in its unfiltered force."""
-
-    position_m: Annotated[float, Field(description="position of the pantograph at the start of the loss [m]")]
-    time_s: Annotated[float, Field(description="time from the start of the analysis section [s]")]
-    duration_s: float
-    lowest_force_N: float
 
 
 def build_contact_losses(pantographs: Mapping[int, PantographSignals]) -> dict[str, list[ContactLossFacts]] | None:

@@ -2,24 +2,12 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated
-
-from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.results.case_facts_format import DerivedFact
 from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.statics.wave_factors import doppler_factor
-
-
-class DerivedFact(ResultsPart):
-    """Value that follows from the inputs of a case or, for a tuned force, from its run."""
-
-    name: Annotated[str, Field(description="name of the value")]
-    value: FiniteNumber
-    unit: Annotated[str, Field(description="unit; empty for a ratio")]
-    basis: Annotated[str, Field(description="inputs or formula from which the value follows")]
 
 
 def list_derived_facts(case: Case, uplift_forces: Sequence[float] = ()) -> list[DerivedFact]:

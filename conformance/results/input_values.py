@@ -1,11 +1,7 @@
 """Values of the inputs of a case in results.json: every key of a table, lists of tables column by column."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, SourcedTable
-from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.results.case_facts_format import StoredRange, StoredValue
 
 NAME_KEYS = frozenset({"id", "title", "line", "model", "requires", "edition", "superseded_by", "on_request"})
 """Keys that name a case or its files, and are no inputs."""
@@ -15,24 +11,6 @@ OTHER_PARTS = frozenset({"limit", "pantograph", "mass_drop", "study", "damping"}
 
 MOST_LISTED = 12
 """Longest list whose values are all stored; of a longer one, number and range are: a line may have 500 spans."""
-
-
-class StoredRange(ResultsPart):
-    """Number of the values of a long list, and their range."""
-
-    count: int
-    lowest: FiniteNumber
-    highest: FiniteNumber
-
-
-StoredValue = bool | FiniteNumber | str | list[FiniteNumber | str] | StoredRange
-
-StoredValues = Annotated[
-    dict[str, StoredValue],
-    Field(
-        description="values by dotted key, with the unit at its end; of a list of tables, the values of a key in order"
-    ),
-]
 
 
 def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict[str, StoredValue]:

@@ -13,14 +13,16 @@ from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
-from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
+from pantocheck.conformance.results.case_facts_format import (
+    ContactLossFacts,
+    DerivedFact,
+    EventFacts,
+    LawForces,
+    StoredValues,
+)
 from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
-from pantocheck.conformance.results.derived_facts import DerivedFact
-from pantocheck.conformance.results.event_format import EventFacts
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
-from pantocheck.conformance.results.input_values import StoredValues
-from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.plug_in_format import PlugInFacts

@@ -10,8 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.example_results import SPEED, example
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.reports.words import TEMPLATES
 
 pytestmark = pytest.mark.thorough
 

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.reports.formats.reproducibility import read_source_date
-from pantocheck.conformance.reports.words import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
 SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")

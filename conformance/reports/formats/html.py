@@ -9,13 +9,14 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import BLOCK_ID, encode_data_block
 from pantocheck.conformance.reports.formats.inline_figure import inline_figure
 from pantocheck.conformance.reports.formats.page_code import read_plain_code, read_results_code
 from pantocheck.conformance.reports.formats.reproducibility import format_date
 from pantocheck.conformance.reports.unit_spaces import bind_page_units
-from pantocheck.conformance.reports.words import TEMPLATES, read_words
+from pantocheck.conformance.reports.words import read_words
 
 
 def render_html(document: Document) -> str:

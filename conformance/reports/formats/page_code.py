@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 
-from pantocheck.conformance.reports.words import TEMPLATES
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 
 PAGE_STYLE, PLOT_STYLE = "page.css", "uplot/uPlot.min.css"
 

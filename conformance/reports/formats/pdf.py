@@ -9,12 +9,13 @@ from typing import Any
 import matplotlib
 from matplotlib.ft2font import FT2Font
 
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.input_files.extras import refuse_missing_package
 from pantocheck.conformance.reports.document import Document, to_plain
 from pantocheck.conformance.reports.formats.embedded_results import NAME, encode_attachment
 from pantocheck.conformance.reports.page_text import change_texts
 from pantocheck.conformance.reports.unit_spaces import bind_page_units
-from pantocheck.conformance.reports.words import TEMPLATES, read_words
+from pantocheck.conformance.reports.words import read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
 FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")

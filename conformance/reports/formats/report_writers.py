@@ -8,36 +8,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
-from pantocheck.conformance.input_files.extras import install_line, is_installed, require_package
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.input_files.extras import install_line, is_installed
 from pantocheck.conformance.reports.document import Document
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.embedded_results import strip_times
 from pantocheck.conformance.reports.formats.reproducibility import read_source_date
 from pantocheck.conformance.results.file_places import ReportPlaces
+from pantocheck.conformance.results.report_files import FILES
 
 if TYPE_CHECKING:
     from pantocheck.conformance.results.results_format import Results
 
-FILES = {
-    "html": "certificate.html",
-    "pdf": "certificate.pdf",
-    "json": "results.json",
-    "csv": "quantities.csv",
-    "junit": "junit.xml",
-    "md": "summary.md",
-    "badge": "badge.svg",
-    "annotations": "annotations.txt",
-    "codequality": "codequality.json",
-}
-"""File that each format is written to."""
 
 NO_PLACES = ReportPlaces()
 """Places of a report whose input files are not known."""
 
-DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")
-"""Formats of a run that states none."""
 
 NO_PDF = f"no PDF is written, because the package typst is not installed. Install it: {install_line('typst')}"
 """Remark on a report without the extra `pdf`."""
@@ -65,34 +50,6 @@ def write_report(document: Document, path: Path) -> None:
 
             content = render_markdown(document).encode("utf-8")
     write_atomically(path, content)
-
-
-def check_formats(stated: Sequence[str] | None) -> tuple[str, ...]:
-    """Formats in the order of writing; results.json is always written.
-
-    Parameters
-    ----------
-    stated : sequence of str or None
-        Formats that the user states. None: `DEFAULT_FORMATS`, without PDF if its extra is not installed
-        (`remark_missing_formats` says so).
-
-    Raises
-    ------
-    InputError
-        Unknown format, or PDF is stated and its extra is not installed.
-    """
-    if stated is None:
-        return tuple(name for name in _order_formats(DEFAULT_FORMATS) if name != "pdf" or is_installed("typst"))
-    if "pdf" in stated:
-        require_package("typst", "format 'pdf'")
-    return _order_formats(stated)
-
-
-def _order_formats(names: Sequence[str]) -> tuple[str, ...]:
-    for name in names:
-        if name not in FILES:
-            raise InputError(f"format '{name}'", "there is no such format", suggest_names(name, list(FILES)))
-    return ("json", *(name for name in FILES if name in names and name != "json"))
 
 
 def remark_missing_formats(stated: Sequence[str] | None = None) -> tuple[str, ...]:

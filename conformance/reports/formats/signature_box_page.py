@@ -3,8 +3,8 @@
 import json
 from collections.abc import Sequence
 
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.reports.formats.pdf import replace_missing_glyphs, typeset
-from pantocheck.conformance.reports.words import TEMPLATES
 
 
 def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:

@@ -21,7 +21,7 @@ from pantocheck.conformance.input_files.extras import (
 )
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.reports.formats.report_writers import DEFAULT_FORMATS, FILES
+from pantocheck.conformance.results.report_files import DEFAULT_FORMATS, FILES
 from pantocheck.conformance.results.results_reading import read_results
 
 ROOT = Path(__file__).parents[3]

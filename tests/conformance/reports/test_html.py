@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
+from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import Document, PlainHeader
 from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.words import TEMPLATES
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br", "use"}
 

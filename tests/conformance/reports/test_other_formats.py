@@ -30,7 +30,8 @@ from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
-from pantocheck.conformance.reports.formats.report_writers import FILES, write_pages
+from pantocheck.conformance.reports.formats.report_writers import write_pages
+from pantocheck.conformance.results.report_files import FILES
 
 
 def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:

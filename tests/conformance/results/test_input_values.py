@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.results.input_values import StoredRange
+from pantocheck.conformance.results.case_facts_format import StoredRange
 
 
 def test_library_case_has_the_values_of_its_files() -> None:

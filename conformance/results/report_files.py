@@ -1,0 +1,52 @@
+"""Files of a report: one for each format, and the formats of a run that states none."""
+
+from collections.abc import Sequence
+
+from pantocheck.conformance.input_files.extras import is_installed, require_package
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.suggestions import suggest_names
+
+FILES = {
+    "html": "certificate.html",
+    "pdf": "certificate.pdf",
+    "json": "results.json",
+    "csv": "quantities.csv",
+    "junit": "junit.xml",
+    "md": "summary.md",
+    "badge": "badge.svg",
+    "annotations": "annotations.txt",
+    "codequality": "codequality.json",
+}
+"""File that each format is written to."""
+
+
+DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")
+"""Formats of a run that states none."""
+
+
+def check_formats(stated: Sequence[str] | None) -> tuple[str, ...]:
+    """Formats in the order of writing; results.json is always written.
+
+    Parameters
+    ----------
+    stated : sequence of str or None
+        Formats that the user states. None: `DEFAULT_FORMATS`, without PDF if its extra is not installed
+        (`remark_missing_formats` says so).
+
+    Raises
+    ------
+    InputError
+        Unknown format, or PDF is stated and its extra is not installed.
+    """
+    if stated is None:
+        return tuple(name for name in _order_formats(DEFAULT_FORMATS) if name != "pdf" or is_installed("typst"))
+    if "pdf" in stated:
+        require_package("typst", "format 'pdf'")
+    return _order_formats(stated)
+
+
+def _order_formats(names: Sequence[str]) -> tuple[str, ...]:
+    for name in names:
+        if name not in FILES:
+            raise InputError(f"format '{name}'", "there is no such format", suggest_names(name, list(FILES)))
+    return ("json", *(name for name in FILES if name in names and name != "json"))
