@@ -1,4 +1,4 @@
-"""Coverage of the intervals of `pantocheck fit-pantograph`: published chains, measured with noise, fitted many times.
+"""Coverage of the intervals of `pantocheck pantograph fit`: published chains, measured with noise, fitted many times.
 
     python benchmarks/pantograph_fit.py [--seeds 200] [--rows 120]
 

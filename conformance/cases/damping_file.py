@@ -64,7 +64,7 @@ class Damping(SourcedTable):
 
 
 class DampingFile(InputTable):
-    """File of a damping model, as `pantocheck fit-damping` writes it."""
+    """File of a damping model, as `pantocheck drop fit` writes it."""
 
     damping: Damping
 

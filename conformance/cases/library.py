@@ -118,7 +118,7 @@ def load_case(path: Path, changes: Sequence[InputChange] = (), origin: CaseOrigi
             f"file '{path.name}'",
             f"is a {kind}, not a case",
             f"Give a case that names it, e.g. `pantocheck new case my-case.toml --{kind} {path.name}`. "
-            "`pantocheck check` checks it alone; `pantocheck show LINE.toml --drawing FILE` draws a line.",
+            "`pantocheck check` checks it alone; `pantocheck line draw LINE.toml --out FILE` draws a line.",
         )
     files = CaseFiles(path, tree, tuple(changes))
     try:

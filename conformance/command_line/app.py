@@ -2,7 +2,7 @@
 
 from importlib import import_module
 from types import ModuleType
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -12,39 +12,59 @@ from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.command_line.output_settings import add_flags, list_given
 from pantocheck.conformance.input_files.extras import refuse_missing_package
 
-COMMANDS = {
-    "run": "Run cases on a system, grade them, and write the results and the certificate.",
-    "campaign": "Run cases with varied inputs, and write a table of all runs.",
-    "assess": "Assess a simulated or measured record by the rules of a profile.",
-    "validate": "Validate a simulator for a line by a dossier: the EN 50318 procedure in one certificate.",
-    "cases": "List the cases of the library, of folders and of installed distributions.",
-    "show": "Show the inputs, the limits and the notes of a case with their trust and source.",
-    "new": "Write a commented, valid line, case, pantograph, response, administration or dossier file.",
-    "describe": "Describe a measured file: channels, rates, ranges, gaps and suspicious contents.",
-    "check": "Check input files and report all their problems at once.",
-    "migrate": "Write files in the current version of their format into a folder.",
-    "simulate": "Simulate a case and write its record.",
-    "drop": "Simulate the mass drops of a case and write their records.",
-    "drop-campaign": "Simulate a campaign of mass drops: every combination of masses, places and tensions.",
-    "identify": "Identify frequencies, damping ratios and mode shapes from mass-drop records.",
-    "fit-damping": "Fit a damping model of a line to identified modes.",
-    "compare": "Compare records, results or systems with the first of them.",
-    "compare-drop": "Compare a recorded mass drop with its simulation under one or more damping models.",
-    "import-line": "Write a line file from tables of its supports and droppers.",
-    "export-line": "Write the supports and droppers of a line as tables for a spreadsheet.",
-    "compare-statics": "Compare elasticities and contact wire heights measured along a line with its model.",
-    "compare-response": "Compare frequency responses measured at a pantograph head with its model.",
-    "fit-pantograph": "Fit a chain of lumped masses to frequency responses measured at a pantograph head.",
-    "check-adapter": "Check the adapter of a simulator with short cases.",
-    "sign": "Sign a certificate or results.",
-    "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
-    "site": "Write a static site from many results: systems against cases, and versions over time.",
-    "guide": "Write the verification and validation guide: every number is computed now, by this version.",
-    "doctor": "Show versions, extras, caches and folders of this installation.",
-    "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
-    "self-test": "Test the suite with faulty systems: each fault must be detected.",
+PANELS: dict[str, dict[str, str]] = {
+    "judge": {
+        "run": "Run and grade cases on a system; write a certificate.",
+        "assess": "Assess a record by the rules of a profile.",
+        "validate": "Validate a simulator for a line by a dossier.",
+        "verify": "Verify a document: verdicts, pages, cases, signatures.",
+    },
+    "look": {
+        "cases": "List the cases of library, folders and distributions.",
+        "show": "Show inputs, limits and notes of a case.",
+        "simulate": "Simulate a case and write its record.",
+    },
+    "write": {
+        "new": "Write a commented, valid input file to start from.",
+        "check": "Check input files and report all their problems.",
+        "describe": "Describe the channels of a measured file.",
+        "sign": "Sign a certificate or results.",
+    },
+    "many": {
+        "campaign": "Run cases with varied inputs; write a table.",
+        "compare": "Compare records, results or systems.",
+        "site": "Write a static site from many results.",
+    },
+    "line": {
+        "line import": "Write a line file from tables of supports and droppers.",
+        "line export": "Write supports and droppers of a line as tables.",
+        "line draw": "Draw a whole line to scale, in elevation and in plan.",
+        "line statics": "Compare measured static values with those of a line.",
+    },
+    "pantograph": {
+        "pantograph compare": "Compare measured responses with a pantograph.",
+        "pantograph fit": "Fit a chain of lumped masses to measured responses.",
+    },
+    "drop": {
+        "drop simulate": "Simulate the mass drops of a case as records.",
+        "drop campaign": "Simulate drops of many masses, places and tensions.",
+        "drop identify": "Identify the modes of a line from mass-drop records.",
+        "drop fit": "Fit a damping model of a line to identified modes.",
+        "drop compare": "Compare a recorded mass drop with its simulation.",
+    },
+    "system": {
+        "system check": "Check the adapter of a simulator with short cases.",
+        "system self-test": "Test the suite with faulty systems.",
+    },
+    "suite": {
+        "doctor": "Show versions, extras, caches and folders.",
+        "schema": "Print the JSON Schema of a file format.",
+    },
 }
-"""Name and summary of each command; the summary is the first line of its docstring, too."""
+"""Commands by panel of the help, each with its summary, which is the first line of its docstring, too."""
+
+COMMANDS = {name: summary for commands in PANELS.values() for name, summary in commands.items()}
+"""Summary of each command by its name; the words of a command in a group are separated by a space."""
 
 
 OUTPUT_EPILOG = "Options of the output, for every command: see `pantocheck --help`."
@@ -53,14 +73,41 @@ OUTPUT_EPILOG = "Options of the output, for every command: see `pantocheck --hel
 class LazyGroup(TyperGroup):
     """Group of commands that knows their names and summaries, and imports a command when it is called."""
 
+    prefix = ""
+    """Words before the names of the commands, with a space behind them."""
+
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self.commands = {name: TyperCommand(name, short_help=summary) for name, summary in COMMANDS.items()}
+        for name, summary in COMMANDS.items():
+            first, space, _ = name.removeprefix(self.prefix).partition(" ")
+            if name.startswith(self.prefix):
+                self.commands[first] = _build_group(first) if space else TyperCommand(first, short_help=summary)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Replace the summary of the command by the command itself."""
         name, command, rest = super().resolve_command(ctx, args)
-        return name, load_command(name) if name in COMMANDS else command, rest
+        full = f"{self.prefix}{name}"
+        return name, load_command(full) if full in COMMANDS else command, rest
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write one line per command, in panels."""
+        width = max(len(name) for name in COMMANDS)
+        formatter.write("\n")
+        for panel, commands in PANELS.items():
+            shown = [name for name in commands if name.startswith(self.prefix)]
+            if shown:
+                formatter.write(f"{panel.capitalize()}:\n")
+            for name in shown:
+                formatter.write(f"  {name:{width}}  {commands[name]}\n")
+
+
+def _build_group(word: str) -> LazyGroup:
+    """Group of the commands whose names begin with a word."""
+    group = type("LazyGroup", (LazyGroup,), {"prefix": f"{word} "})
+    return cast(
+        LazyGroup,
+        group(name=word, help=f"Commands of the group `{word}`.", no_args_is_help=True, rich_markup_mode=None),
+    )
 
 
 def _import_command(name: str, name_in_code: str) -> ModuleType:
@@ -71,12 +118,12 @@ def _import_command(name: str, name_in_code: str) -> ModuleType:
 
 def load_command(name: str) -> Any:
     """Command of a name, imported from its file, with the options of the output."""
-    name_in_code = f"{name.replace('-', '_')}_command"
+    name_in_code = f"{name.replace('-', '_').replace(' ', '_')}_command"
     function = getattr(guard_command(_import_command)(name, name_in_code), name_in_code)
     # Tables and JSON would slow the help down.
     execution = import_module("pantocheck.conformance.command_line.command_execution")
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
-    single.command(name, epilog=OUTPUT_EPILOG)(execution.build_executable(name, function))
+    single.command(name.rpartition(" ")[2], epilog=OUTPUT_EPILOG)(execution.build_executable(name, function))
     return get_command(single)
 
 

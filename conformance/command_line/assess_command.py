@@ -67,7 +67,7 @@ def assess_command(
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
 ) -> CommandOutput:
-    """Assess a simulated or measured record by the rules of a profile.
+    """Assess a record by the rules of a profile.
 
     Examples:
 

@@ -97,7 +97,7 @@ def campaign_command(
     ] = None,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Repeat the failed runs.")] = False,
 ) -> CommandOutput:
-    """Run cases with varied inputs, and write a table of all runs.
+    """Run cases with varied inputs; write a table.
 
     Every finished run is stored at once. After an interruption, the same command goes on with the open runs.
 

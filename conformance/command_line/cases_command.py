@@ -18,7 +18,7 @@ from pantocheck.conformance.input_files.trust import LEVELS
 
 
 def cases_command(folders: CasesOption = None) -> CommandOutput:
-    """List the cases of the library, of folders and of installed distributions.
+    """List the cases of library, folders and distributions.
 
     Examples:
 

@@ -28,7 +28,7 @@ def check_command(
     ] = None,
     folders: CasesOption = None,
 ) -> CommandOutput:
-    """Check input files and report all their problems at once.
+    """Check input files and report all their problems.
 
     Examples:
 

@@ -51,7 +51,7 @@ def compare_command(
     ] = None,
     changed: SetOption = None,
 ) -> CommandOutput:
-    """Compare records, results or systems with the first of them.
+    """Compare records, results or systems.
 
     Quantities stand side by side with their differences. Of records and systems, the forces are compared at the same
     positions: by band, by frequency (coherence), in each span and over the place in the span. Nothing is judged: the

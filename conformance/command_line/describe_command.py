@@ -45,7 +45,7 @@ def describe_command(
     header_lines: Annotated[int | None, typer.Option(help="Lines above the names of a text table.")] = None,
     encoding: Annotated[str | None, typer.Option(help="Encoding of a text table.")] = None,
 ) -> CommandOutput:
-    """Describe a measured file: channels, rates, ranges, gaps and suspicious contents.
+    """Describe the channels of a measured file.
 
     Examples:
 
@@ -70,7 +70,7 @@ def describe_command(
     if sidecar is not None:
         draft = draft_drop_sidecar if drop else draft_record_sidecar
         write_new_file(sidecar, draft(file.name, facts, time, layout))
-        follow = "identify" if drop else "assess"
+        follow = "drop identify" if drop else "assess"
         next_step = [f"Complete it, then: pantocheck check {sidecar}, and pantocheck {follow}"]
     else:
         next_step = ["A sidecar to complete:", f"  pantocheck describe {file} --sidecar {file.with_suffix('.toml')}"]

@@ -13,7 +13,7 @@ from pantocheck.conformance.command_line.environment_facts import DeclaredPackag
 
 
 def doctor_command() -> CommandOutput:
-    """Show versions, extras, caches and folders of this installation.
+    """Show versions, extras, caches and folders.
 
     Exit code 0: every dependency is installed in a sufficient version. Exit code 1: one is missing or too old. Packages
     of an extra may be missing.

@@ -1,4 +1,4 @@
-"""`pantocheck drop-campaign`: simulated mass drops of several masses, places and tensions."""
+"""`pantocheck drop campaign`: simulated mass drops of several masses, places and tensions."""
 
 import logging
 from pathlib import Path
@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.drop_test import WireName
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import indent_text
-from pantocheck.conformance.command_line.drop_command import begin_drop
+from pantocheck.conformance.command_line.drop_simulate_command import begin_drop
 from pantocheck.conformance.command_line.options import choose_case
 from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.input_files.atomic_writing import check_writable
@@ -59,11 +59,11 @@ def drop_campaign_command(
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the noise.", min=0)] = 1,
 ) -> CommandOutput:
-    """Simulate a campaign of mass drops: every combination of masses, places and tensions.
+    """Simulate drops of many masses, places and tensions.
 
-    Example: pantocheck drop-campaign vovan2015/mass-drop/stand-in --mass 20 --mass 40 --out drops/drop.csv
+    Example: pantocheck drop campaign vovan2015/mass-drop/stand-in --mass 20 --mass 40 --out drops/drop.csv
 
-    Then: pantocheck identify drops/drop-*.csv --out modes --each
+    Then: pantocheck drop identify drops/drop-*.csv --out modes --each
     """
     write = select_drop_writer(out)
     campaign = DropCampaign(

@@ -32,7 +32,7 @@ def new_command(
         ),
     ] = None,
 ) -> CommandOutput:
-    """Write a commented, valid line, case, pantograph, response, administration or dossier file.
+    """Write a commented, valid input file to start from.
 
     Examples:
 

@@ -1,4 +1,4 @@
-"""Output of `pantocheck identify --each`: population.json, its pages, and lines for the terminal."""
+"""Output of `pantocheck drop identify --each`: population.json, its pages, and lines for the terminal."""
 
 from pathlib import Path
 

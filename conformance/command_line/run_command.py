@@ -83,7 +83,7 @@ def run_command(
         float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
     ] = None,
 ) -> CommandOutput:
-    """Run cases on a system, grade them, and write the results and the certificate.
+    """Run and grade cases on a system; write a certificate.
 
     Examples:
 

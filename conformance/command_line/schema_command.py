@@ -19,7 +19,7 @@ def schema_command(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Write NAME.schema.json to this folder instead of printing.")] = None,
 ) -> CommandOutput:
-    """Print or write the JSON Schema of a file format, for editors and validators.
+    """Print the JSON Schema of a file format.
 
     Example: pantocheck schema case > case.schema.json
     """

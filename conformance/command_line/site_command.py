@@ -31,7 +31,7 @@ def site_command(
     out: Annotated[Path, typer.Option(help="Folder for the site; open its index.html.")] = Path("site"),
     title: Annotated[str, typer.Option(help="Title of the first page.")] = "Conformance results",
 ) -> CommandOutput:
-    """Write a static site from many results: systems against cases, and versions over time.
+    """Write a static site from many results.
 
     Every verdict leads to its certificate, which is made from results.json again. Results that contradict themselves
     are shown with the verdict `error`.

@@ -54,7 +54,7 @@ def validate_command(
     report_number: ReportNumberOption = None,
     jobs: Annotated[int, typer.Option(help="Number of reference models that run in parallel.", min=1, max=256)] = 1,
 ) -> CommandOutput:
-    """Validate a simulator for a line by a dossier: the EN 50318 procedure in one certificate.
+    """Validate a simulator for a line by a dossier.
 
     Steps: pantograph model, static check of the line, simulation parameters, reference models, line tests, limits of
     validity. No PASS while a required step is missing.

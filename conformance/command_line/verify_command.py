@@ -45,7 +45,7 @@ def verify_command(
         bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
     ] = False,
 ) -> CommandOutput:
-    """Verify a document: its verdicts, its pages, its cases and its signatures.
+    """Verify a document: verdicts, pages, cases, signatures.
 
     The results in the document are graded again, the pages are made again and compared, and the cases are compared
     with the installed library. Exit code 0: no contradiction, compared in full, and the verdict is `pass`. Exit code 1:

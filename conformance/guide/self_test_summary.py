@@ -7,7 +7,7 @@ from pantocheck.conformance.self_test.numerical_faults import NumericalResult, r
 
 RECORD_CASES = ("en50318-2002/250", "en50318-2002/300")
 FAULT_CASES = (*RECORD_CASES, "en50318-2018/ac-simple/320-twin")
-"""Cases of the faults of records, and of the numerical faults, as in `pantocheck self-test`."""
+"""Cases of the faults of records, and of the numerical faults, as in `pantocheck system self-test`."""
 
 
 def summarise_self_test() -> SelfTestSummary:

@@ -89,5 +89,5 @@ def read_modes(path: Path) -> tuple[Mode, ...]:
         The file cannot be read, is not JSON, or is not a list of modes.
     """
     data = read_json(path, "modes", MAX_MODES_BYTES)
-    hint = "Give the modes.json that `pantocheck identify` writes."
+    hint = "Give the modes.json that `pantocheck drop identify` writes."
     return tuple(validate_json(data, TypeAdapter(list[Mode]), f"modes '{path.name}'", hint))

@@ -63,7 +63,7 @@ def _build_shape_set(mode: Mode, number: int, nodes: dict[SensorPlace, int]) -> 
         f"{mode.frequency_Hz:.8g} Hz, damping ratio {mode.damping_ratio:.8g} +- {mode.damping_ratio_std:.2g}",
         f"{group}, {'certain' if mode.certain else 'uncertain'}{', lateral' if mode.lateral else ''}",
         "largest component of the shape 1, modal A and B not determined",
-        "pantocheck identify",
+        "pantocheck drop identify",
     )
     return {
         "type": 55,

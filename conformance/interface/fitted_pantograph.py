@@ -148,7 +148,7 @@ def fit_pantograph(
     title: str = "Fitted pantograph",
     contact_stiffness_N_m: float = CONTACT_STIFFNESS_N_M,
 ) -> FittedPantograph:
-    """Fit a chain of masses to frequency responses of a head, as `pantocheck fit-pantograph` does.
+    """Fit a chain of masses to frequency responses of a head, as `pantocheck pantograph fit` does.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def build_fitted_pantograph(
         Stiffness of the contact [N/m].
     """
     names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
-    texts = FileTexts(title, f"pantocheck fit-pantograph, from {names}"[:LONGEST_SOURCE])
+    texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
     tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)
     pantograph = validate_model(tables, PantographFile, "fitted pantograph")
     comparison = compare_responses(records, pantograph, None)

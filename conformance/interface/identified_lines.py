@@ -97,7 +97,7 @@ class IdentifiedLines:
     def fit_damping(
         self, case: OpenedCase, element_m: float = 0.5, wires: WireCoefficients = "separate"
     ) -> FittedDamping:
-        """Fit a damping model of the line of a case to the modes, as `pantocheck fit-damping` does.
+        """Fit a damping model of the line of a case to the modes, as `pantocheck drop fit` does.
 
         Parameters
         ----------
@@ -184,7 +184,7 @@ def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tup
 
 
 def identify_line(*drops: str | Path | OpenedDrop, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedRecords:
-    """Identify the modes of a line from mass drops, as `pantocheck identify` does.
+    """Identify the modes of a line from mass drops, as `pantocheck drop identify` does.
 
     Parameters
     ----------

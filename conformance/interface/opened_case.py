@@ -153,7 +153,7 @@ class OpenedCase:
         return GradedResults(run_cases([self.case], choose_system(system), trust, participation=participation))
 
     def simulate_drop(self, number: int = 1) -> OpenedDrop:
-        """Simulate a mass drop of the case with the reference simulator, as `pantocheck drop` does.
+        """Simulate a mass drop of the case with the reference simulator, as `pantocheck drop simulate` does.
 
         Parameters
         ----------

@@ -93,7 +93,7 @@ def open_drop(path: str | Path, run: int = 1) -> OpenedDrop:
     Parameters
     ----------
     path : str or Path
-        Record in one of the formats of `pantocheck identify`; its sidecar has the same stem.
+        Record in one of the formats of `pantocheck drop identify`; its sidecar has the same stem.
     run : int
         Number of the run in a record with several, from 1.
 

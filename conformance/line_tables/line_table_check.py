@@ -53,4 +53,4 @@ def check_line_table(table: Spreadsheet) -> str:
     if problems:
         raise join_errors(problems)
     kind = "droppers" if of_droppers else "supports and ends"
-    return f"table of {len(rows)} {kind}; `pantocheck import-line` checks it with its line"
+    return f"table of {len(rows)} {kind}; `pantocheck line import` checks it with its line"

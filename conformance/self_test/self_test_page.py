@@ -42,7 +42,7 @@ def build_self_test_page(self_test: SelfTest) -> doc.Document:
         ),
         blocks=(
             doc.Paragraph(
-                ("Written by ", doc.Code("pantocheck self-test --markdown docs/self-test.md"), "; do not edit.")
+                ("Written by ", doc.Code("pantocheck system self-test --markdown docs/self-test.md"), "; do not edit.")
             ),
             doc.Section(
                 "Checks of a record",

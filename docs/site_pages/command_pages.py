@@ -12,11 +12,18 @@ def build_command_page() -> str:
     parts.append(
         build_markdown_table(
             ("command", "purpose"),
-            ((f"[`{name}`](#pantocheck-{name})", escape_text(text)) for name, text in COMMANDS.items()),
+            (
+                (f"[`{name}`](#pantocheck-{name.replace(' ', '-')})", escape_text(text))
+                for name, text in COMMANDS.items()
+            ),
         )
     )
     parts += [_build_section(name) for name in COMMANDS]
     return "\n\n".join(parts) + "\n"
+
+
+def _name_anchor(name: str) -> str:
+    return f"#pantocheck-{name.replace(' ', '-')}"
 
 
 def _build_section(name: str) -> str:

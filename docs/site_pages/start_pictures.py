@@ -34,7 +34,7 @@ def write_start_pictures(folder: Path) -> None:
     draw_contact_force(folder / "contact-force.svg")
     draw_spectrum(folder / "spectrum.svg")
     draw_decay(folder)
-    run_pantocheck("show", ONE_PANTOGRAPH, "--drawing", str(folder / "line.svg"))
+    run_pantocheck("line", "draw", ONE_PANTOGRAPH, "--out", str(folder / "line.svg"))
     run_pantocheck("run", ONE_PANTOGRAPH, "--formats", "pdf", "--out", str(folder / "report"))
     draw_page(folder / "report" / "certificate.pdf", 1, folder / "certificate.png")
 
@@ -76,7 +76,7 @@ def draw_decay(folder: Path) -> None:
     import numpy as np
 
     record = folder / "drop.csv"
-    run_pantocheck("drop", MASS_DROP, "--drop", "1", "--out", str(record))
+    run_pantocheck("drop", "simulate", MASS_DROP, "--drop", "1", "--out", str(record))
     names = record.read_text(encoding="utf-8").split("\n", 1)[0].split(",")
     table = np.loadtxt(record, delimiter=",", skiprows=1)
     figure, axes = _start_figure(3.4, 2.4)

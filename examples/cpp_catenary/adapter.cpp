@@ -1,6 +1,6 @@
 // Adapter of `simulator.hpp`, with the kit `pantocheck_adapter.hpp`.
 //
-// Try it:  g++ -O2 -std=c++17 -o adapter adapter.cpp && pantocheck check-adapter ./adapter
+// Try it:  g++ -O2 -std=c++17 -o adapter adapter.cpp && pantocheck system check ./adapter
 
 #include "simulator.hpp"
 

@@ -5,7 +5,7 @@
 //     Record simulate(const Json& case_) { ... throw Skip("only one pantograph is supported"); ... return record; }
 //     int main() { return serve("my simulator", "1.0", simulate); }
 //
-// Try it:  g++ -O2 -std=c++17 -o adapter adapter.cpp && pantocheck check-adapter ./adapter
+// Try it:  g++ -O2 -std=c++17 -o adapter adapter.cpp && pantocheck system check ./adapter
 
 #pragma once
 

@@ -14,7 +14,7 @@ It needs the standard library only. An adapter is a function that simulates a ca
 
     serve("my simulator", "1.0", simulate)
 
-Try it:  pantocheck check-adapter 'python3 adapter.py'
+Try it:  pantocheck system check 'python3 adapter.py'
 """
 
 import hashlib

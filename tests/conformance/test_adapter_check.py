@@ -197,8 +197,8 @@ def test_other_values_are_a_note(delivered: Delivered) -> None:
 
 def test_command_names_a_program_that_does_not_answer(tmp_path: Path) -> None:
     (tmp_path / "silent.py").write_text("print('hello')")
-    result = CliRunner().invoke(app, ["check-adapter", f"python3 {tmp_path / 'silent.py'}"])
+    result = CliRunner().invoke(app, ["system", "check", f"python3 {tmp_path / 'silent.py'}"])
     assert result.exit_code == 1
     assert "its answer is not JSON: 'hello'" in " ".join(result.stdout.split())
-    missing = CliRunner().invoke(app, ["check-adapter", "no-such-program"])
+    missing = CliRunner().invoke(app, ["system", "check", "no-such-program"])
     assert missing.exit_code == 2

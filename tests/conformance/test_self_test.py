@@ -73,7 +73,9 @@ def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(bench, "MUTANTS", (harmless,))
     monkeypatch.setattr(bench, "MILD", ())
     page = tmp_path / "page.md"
-    result = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["self-test", "en50318-2002/250", "--markdown", str(page)])
+    result = CliRunner(env={"COLUMNS": "80"}).invoke(
+        app, ["system", "self-test", "en50318-2002/250", "--markdown", str(page)]
+    )
     assert result.exit_code == 1
     assert result.output.startswith("FAIL 0 of 1 mutants detected by the expected check")
     assert "NOT DETECTED: harmless on en50318-2002/250, expected check: limits\n" in result.output

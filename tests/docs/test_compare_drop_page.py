@@ -23,5 +23,5 @@ def test_limits_of_the_page_follow_their_format() -> None:
 
 def test_options_of_the_page_are_those_of_the_command() -> None:
     listed = set(re.findall(r"`(--[a-z-]+)", TEXT))
-    help_text = CliRunner().invoke(app, ["compare-drop", "--help"], env={"COLUMNS": "200"}).output
+    help_text = CliRunner().invoke(app, ["drop", "compare", "--help"], env={"COLUMNS": "200"}).output
     assert listed == set(re.findall(r"(--[a-z-]+)", help_text)) - {"--help", "--out"}

@@ -48,7 +48,7 @@ def test_outcome_follows_from_the_printed_value(row: Row) -> None:
 
 def test_commands_of_the_page_are_those_of_the_damping_files() -> None:
     """tests/conformance/studies/vovan2015/test_damping_files.py fits with these options."""
-    (fit,) = (line for line in PAGE.splitlines() if line.startswith("pantocheck fit-damping"))
+    (fit,) = (line for line in PAGE.splitlines() if line.startswith("pantocheck drop fit"))
     assert "modes/modes.json --line vovan2015/mass-drop/stand-in --element 0.75 --wires common --out fit" in fit
     names = {path.stem for path in (library_folder() / "vovan2015" / "damping").glob("*.toml")}
     written = {name for name in names if f"reference_cases/vovan2015/damping/{name}.toml\n" in PAGE}

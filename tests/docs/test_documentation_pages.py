@@ -28,7 +28,7 @@ def test_drafts_name_pages_by_their_titles() -> None:
 
 
 def test_no_text_for_a_user_names_a_file_of_the_clone() -> None:
-    """`pantocheck self-test --markdown` names the file that it writes in the clone."""
+    """`pantocheck system self-test --markdown` names the file that it writes in the clone."""
     found = {path.name: text for path in sorted((ROOT / "conformance").rglob("*.py")) for text in _list_texts(path)}
     found |= {path.name: path.read_text() for path in TEMPLATES}
     assert [name for name, text in found.items() if FILE.search(text)] == []

@@ -25,7 +25,7 @@ def read_rows(heading: str) -> list[list[str]]:
 USES = {
     command: (set(re.findall(r"`(\w+)`", needs)), set(re.findall(r"`(\w+)`", uses)) - {"builtin"}, "readers" in uses)
     for names, needs, uses in read_rows("Commands and their extras")
-    for command in re.findall(r"`([\w-]+)`", names)
+    for command in re.findall(r"`([\w -]+)`", names)
     if command in COMMANDS
 }
 """Extras that a command always needs, extras that it can use, and whether it reads measured files."""
@@ -58,7 +58,8 @@ def imports() -> grimp.ImportGraph:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_command_can_reach_the_extras_of_the_page(command: str, imports: grimp.ImportGraph) -> None:
     """An extra of the page that no file behind a command imports would be wrong; an unlisted command has none."""
-    modules = imports.find_upstream_modules(f"pantocheck.conformance.command_line.{command.replace('-', '_')}_command")
+    name = command.replace("-", "_").replace(" ", "_")
+    modules = imports.find_upstream_modules(f"pantocheck.conformance.command_line.{name}_command")
     reached = {EXTRA_OF_PACKAGE[name] for name in modules if name in EXTRA_OF_PACKAGE}
     needs, uses, reads = USES.get(command, (set(), set(), False))
     assert needs | uses | (READERS if reads else set()) <= reached

@@ -50,7 +50,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_export_and_import_give_the_same_line(folder: Path) -> None:
-    for name in ("export-line", "import-line"):
+    for name in ("line export", "line import"):
         done = CliRunner().invoke(app, command(name))
         assert done.exit_code == 0, done.output
     line = read_model(folder / "my-line.toml", LineFile, "line")
@@ -60,8 +60,8 @@ def test_export_and_import_give_the_same_line(folder: Path) -> None:
 
 
 def test_import_does_not_overwrite_its_input(folder: Path) -> None:
-    CliRunner().invoke(app, command("export-line"))
-    arguments = ["mass-drop-line.toml" if text == "my-line.toml" else text for text in command("import-line")]
+    CliRunner().invoke(app, command("line export"))
+    arguments = ["mass-drop-line.toml" if text == "my-line.toml" else text for text in command("line import")]
     done = CliRunner().invoke(app, arguments)
     assert done.exit_code == 2
     assert "is a file of the import" in done.output
@@ -90,7 +90,7 @@ def test_message_of_the_page_is_the_one_that_is_printed(folder: Path) -> None:
 
 
 def test_comparison_runs_and_passes(folder: Path) -> None:
-    done = CliRunner().invoke(app, command("compare-statics"))
+    done = CliRunner().invoke(app, command("line statics"))
     assert done.exit_code == 0, done.output
     assert {path.name for path in (folder / "statics").iterdir()} == {
         "static_comparison.json", "static_comparison.html", "static_comparison.pdf", "elasticity.csv",
@@ -100,7 +100,7 @@ def test_comparison_runs_and_passes(folder: Path) -> None:
 
 
 def test_comparison_without_a_tolerance_is_informative(folder: Path) -> None:
-    done = CliRunner().invoke(app, command("compare-statics")[:-2])
+    done = CliRunner().invoke(app, command("line statics")[:-2])
     assert done.exit_code == 1, done.output
     assert "INFO" in done.output
 

@@ -48,11 +48,11 @@ def test_units_of_the_page_are_those_of_each_kind() -> None:
 
 def test_options_of_the_fit_are_those_of_its_command() -> None:
     rows = set(re.findall(r"^\| `(--[a-zA-Z-]+)", TEXT, re.MULTILINE))
-    help_text = CliRunner().invoke(app, ["fit-pantograph", "--help"], env={"COLUMNS": "200"}).output
+    help_text = CliRunner().invoke(app, ["pantograph", "fit", "--help"], env={"COLUMNS": "200"}).output
     assert rows == set(re.findall(r"(--[a-zA-Z-]+)", help_text)) - {"--help", "--out"}
 
 
 def test_options_of_the_page_are_those_of_the_command() -> None:
-    options = set(re.findall(r"(--[a-z-]+)", re.search(r"```sh\npantocheck compare-response(.*?)```", TEXT, re.S)[1]))
-    help_text = CliRunner().invoke(app, ["compare-response", "--help"], env={"COLUMNS": "200"}).output
+    options = set(re.findall(r"(--[a-z-]+)", re.search(r"```sh\npantocheck pantograph compare(.*?)```", TEXT, re.S)[1]))
+    help_text = CliRunner().invoke(app, ["pantograph", "compare", "--help"], env={"COLUMNS": "200"}).output
     assert options == set(re.findall(r"(--[a-z-]+)", help_text)) - {"--help"}

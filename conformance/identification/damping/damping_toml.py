@@ -32,7 +32,7 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
     """
     tables: dict[str, Any] = {
         "trust": "provisional",
-        "source": f"fitted to {results.modes_file} by pantocheck fit-damping"[:500],
+        "source": f"fitted to {results.modes_file} by pantocheck drop fit"[:500],
         "note": f"residual {100 * results.residual:.2g} % of the measured damping ratios",
     }
     comments = [f"warning: {text}" for text in results.warnings]

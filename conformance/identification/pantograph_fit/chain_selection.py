@@ -118,7 +118,7 @@ def join_responses(records: Sequence[ResponseRecord], band: tuple[float, float])
             raise InputError(
                 f"record '{record.source}'",
                 "is not a response of the centre of the head",
-                "Leave it out: a chain has one point of the head. `pantocheck compare-response` shows it.",
+                "Leave it out: a chain has one point of the head. `pantocheck pantograph compare` shows it.",
             )
         used = np.isfinite(record.stiffness) & (record.frequency >= band[0]) & (record.frequency <= band[1])
         frequencies.append(record.frequency[used])

@@ -1,7 +1,7 @@
 """Velocity of the line after a release under several damping models (Vo Van, Balmes and Lorang 2015, Figure 10).
 
 The drop under one of the models takes the place of the measured record; the others are compared with it as
-`pantocheck compare-drop` does.
+`pantocheck drop compare` does.
 """
 
 import time

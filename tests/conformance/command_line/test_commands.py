@@ -18,7 +18,7 @@ from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import list_library, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.command_line import run_command, self_test_command, show_command
+from pantocheck.conformance.command_line import line_draw_command, run_command, system_self_test_command
 from pantocheck.conformance.command_line.app import COMMANDS, app
 from pantocheck.conformance.command_line.guard import guard_command
 from pantocheck.conformance.records.record_reading import read_record
@@ -138,7 +138,7 @@ def test_bad_input_ends_with_one_message_and_exit_code_2(
 
 def test_self_test_needs_a_case_with_a_train() -> None:
     """A static case has no mutants: 0 of 0 detected must not pass."""
-    result = pantocheck("self-test", "en50318-2018/ac-simple/static")
+    result = pantocheck("system", "self-test", "en50318-2018/ac-simple/static")
     assert result.exit_code == 2
     assert "no case with a train is selected" in result.output
 
@@ -146,9 +146,9 @@ def test_self_test_needs_a_case_with_a_train() -> None:
 def test_self_test_notices_a_folder_that_cannot_be_written_before_it_computes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr(system_self_test_command, "run_self_test", lambda *_: pytest.fail("computed"))
     (tmp_path / "file").write_text("")
-    result = pantocheck("self-test", "--markdown", tmp_path / "file" / "page.md")
+    result = pantocheck("system", "self-test", "--markdown", tmp_path / "file" / "page.md")
     assert result.exit_code == 2
     assert "cannot be written" in result.output
 
@@ -161,10 +161,10 @@ def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.Mo
         tested.append([case.id for case in cases])
         return SelfTest({"en50318-2002/300": ("fail", "a limit")} if len(tested) > 1 else {}, (), ())
 
-    monkeypatch.setattr(self_test_command, "run_self_test", run)
-    monkeypatch.setattr(self_test_command, "run_numerical_faults", lambda *_: ())
-    assert pantocheck("self-test").exit_code == 0
-    assert pantocheck("self-test", "en50318-2018/ac-stitched/*").exit_code == 1, "the reference must pass"
+    monkeypatch.setattr(system_self_test_command, "run_self_test", run)
+    monkeypatch.setattr(system_self_test_command, "run_numerical_faults", lambda *_: ())
+    assert pantocheck("system", "self-test").exit_code == 0
+    assert pantocheck("system", "self-test", "en50318-2018/ac-stitched/*").exit_code == 1, "the reference must pass"
     assert tested == [
         ["en50318-2002/250", "en50318-2002/300"],
         ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"],
@@ -172,23 +172,23 @@ def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.Mo
 
 
 def test_self_test_prints_no_control_characters_of_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
-    monkeypatch.setattr(self_test_command, "run_numerical_faults", lambda *_: ())
-    result = pantocheck("self-test", "--markdown", tmp_path / "[red]page\x1b.md")
+    monkeypatch.setattr(system_self_test_command, "run_self_test", lambda *_: SelfTest({}, (), ()))
+    monkeypatch.setattr(system_self_test_command, "run_numerical_faults", lambda *_: ())
+    result = pantocheck("system", "self-test", "--markdown", tmp_path / "[red]page\x1b.md")
     assert "[red]page?.md" in result.output
 
 
 @pytest.mark.parametrize(
-    "command", [("show", "--at-rest"), ("show", "--derived"), ("show", "--drawing"), ("simulate", "--out")]
+    "command", [("show", "--at-rest"), ("show", "--derived"), ("line", "draw", "--out"), ("simulate", "--out")]
 )
 def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
-    command: tuple[str, str], edited_case: EditedCase, tmp_path: Path
+    command: tuple[str, ...], edited_case: EditedCase, tmp_path: Path
 ) -> None:
     """A pre-sag of 2 m in every span requires droppers in compression: there is no equilibrium."""
     path = edited_case("line.toml", {"droppers.presag_m": [2.0] * 9})
-    name, option = command
-    file = () if option in {"--at-rest", "--derived"} else (tmp_path / ("line.svg" if name == "show" else "out.csv"),)
-    result = pantocheck(name, path, option, *file)
+    *name, option = command
+    file = () if option in {"--at-rest", "--derived"} else (tmp_path / ("line.svg" if "draw" in name else "out.csv"),)
+    result = pantocheck(*name, path, option, *file)
     assert result.exit_code == 2
     assert "Check the data of the line" in result.output
 
@@ -369,8 +369,8 @@ def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(show_command, "discretise", lambda *_: pytest.fail("drawn"))
-    result = pantocheck("show", "en50318-2002/250", "--drawing", tmp_path / "file" / "line.svg")
+    monkeypatch.setattr(line_draw_command, "discretise", lambda *_: pytest.fail("drawn"))
+    result = pantocheck("line", "draw", "en50318-2002/250", "--out", tmp_path / "file" / "line.svg")
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr
 
@@ -384,7 +384,7 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: Edi
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_of_a_command_fits_80_columns(name: str) -> None:
-    result = pantocheck(name, "--help")
+    result = pantocheck(*name.split(), "--help")
     assert result.exit_code == 0
     assert max(map(len, result.output.splitlines())) <= 80
     assert COMMANDS[name] in " ".join(result.output.split()), "the summary is the first line of the docstring"
@@ -413,13 +413,13 @@ def test_unknown_command_suggests_a_known_one() -> None:
     "command",
     [
         ("assess", "bad.toml", "--profile", "acceptance-ac"),
-        ("identify", "bad.csv"),
-        ("identify", "bad.csv", "--poles", "bad.toml"),
-        ("fit-damping", "bad.json", "--line", "en50318-2002/250"),
+        ("drop", "identify", "bad.csv"),
+        ("drop", "identify", "bad.csv", "--poles", "bad.toml"),
+        ("drop", "fit", "bad.json", "--line", "en50318-2002/250"),
         ("run", "bad.toml"),
         ("run", "en50318-2002/250", "--system", "record:absent"),
         ("run", "en50318-2002/250", "--baseline", "bad.json"),
-        ("drop", "bad.toml"),
+        ("drop", "simulate", "bad.toml"),
         ("simulate", "bad.toml"),
     ],
 )
@@ -427,7 +427,7 @@ def test_bad_input_leaves_no_folder(command: tuple[str, ...], tmp_path: Path, mo
     monkeypatch.chdir(tmp_path)
     for name in ("bad.toml", "bad.csv", "bad.json"):
         Path(name).write_text("{")
-    out = Path("new") / ("out.csv" if command[0] in ("drop", "simulate") else "out")
+    out = Path("new") / ("out.csv" if "simulate" in command else "out")
     assert pantocheck(*command, "--out", out).exit_code == 2
     assert not Path("new").exists()
 

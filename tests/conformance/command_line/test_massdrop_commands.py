@@ -1,4 +1,4 @@
-"""The commands `identify` and `fit-damping`, from the record to the pages."""
+"""The commands `identify` and `drop fit`, from the record to the pages."""
 
 import json
 import tomllib
@@ -25,7 +25,7 @@ RATE, RELEASE = 25.0, 4.0
 
 
 def run_identify(folder: Path, name: str) -> None:
-    command = ["identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
+    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
     command += ["--export", str(folder / name / "modes.csv"), "--export", str(folder / name / "modes.uff")]
     result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
     assert result.exit_code == 0, result.output
@@ -99,7 +99,8 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
     """
     command = [
-        "fit-damping",
+        "drop",
+        "fit",
         str(folder / "out" / "modes.json"),
         "--line",
         CASE,
@@ -145,14 +146,14 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
 def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "modes.json").write_bytes(content)
     result = CliRunner().invoke(
-        app, ["fit-damping", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
+        app, ["drop", "fit", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
     )
     assert result.exit_code == 2
     assert message in result.output
 
 
 def test_unknown_export_is_refused_before_the_identification(tmp_path: Path, folder: Path) -> None:
-    command = ["identify", str(folder / "T.csv"), "--out", str(tmp_path / "out"), "--export", "modes.xlsx"]
+    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(tmp_path / "out"), "--export", "modes.xlsx"]
     result = CliRunner().invoke(app, command)
     assert result.exit_code == 2
     assert "format '.xlsx' cannot be written" in result.output
@@ -160,14 +161,14 @@ def test_unknown_export_is_refused_before_the_identification(tmp_path: Path, fol
 
 
 def test_missing_record_is_refused(tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    result = CliRunner().invoke(app, ["drop", "identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
     assert result.exit_code == 2
     assert "cannot be read" in result.output
 
 
 def test_identify_each_writes_the_population(folder: Path) -> None:
     """One record: a population of one test, which agrees with itself."""
-    command = ["identify", str(folder / "T.csv"), "--out", str(folder / "each"), "--highest", "2.2", "--each"]
+    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / "each"), "--highest", "2.2", "--each"]
     result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
     assert result.exit_code == 0, result.output
     population = json.loads((folder / "each" / "population.json").read_text())

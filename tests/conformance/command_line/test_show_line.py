@@ -18,13 +18,13 @@ from pantocheck.conformance.systems.command.case_message import build_case_messa
 @pytest.mark.parametrize("suffix", ["svg", "pdf"])
 def test_drawing_of_the_whole_line_is_written(tmp_path: Path, suffix: str) -> None:
     file = tmp_path / f"line.{suffix}"
-    result = CliRunner().invoke(app, ["show", "vovan2015/mass-drop/printed", "--drawing", str(file)])
+    result = CliRunner().invoke(app, ["line", "draw", "vovan2015/mass-drop/printed", "--out", str(file)])
     assert result.exit_code == 0, result.output
     assert file.read_bytes().startswith({"svg": b"<svg", "pdf": b"%PDF"}[suffix])
 
 
 def test_drawing_in_another_format_is_refused(tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["show", "en50318-2002/250", "--drawing", str(tmp_path / "line.png")])
+    result = CliRunner().invoke(app, ["line", "draw", "en50318-2002/250", "--out", str(tmp_path / "line.png")])
     assert result.exit_code == 2
     assert "format '.png' cannot be written" in result.output
     assert "Write .svg or .pdf." in result.output
@@ -33,12 +33,12 @@ def test_drawing_in_another_format_is_refused(tmp_path: Path) -> None:
 def test_line_is_drawn_without_a_case(tmp_path: Path) -> None:
     line = library_folder() / "en50318-2002" / "line.toml"
     alone, of_case = tmp_path / "alone.svg", tmp_path / "case.svg"
-    result = CliRunner().invoke(app, ["show", str(line), "--drawing", str(alone)])
+    result = CliRunner().invoke(app, ["line", "draw", str(line), "--out", str(alone)])
     assert result.exit_code == 0, result.output
     assert result.output.strip().endswith("alone.svg")
-    CliRunner().invoke(app, ["show", "en50318-2002/250", "--drawing", str(of_case)])
+    CliRunner().invoke(app, ["line", "draw", "en50318-2002/250", "--out", str(of_case)])
     assert alone.read_bytes() == of_case.read_bytes()
-    result = CliRunner().invoke(app, ["show", str(line), "--drawing", str(alone), "--at-rest"])
+    result = CliRunner().invoke(app, ["show", str(line), "--at-rest"])
     assert result.exit_code == 2
     assert "is a line, not a case" in result.output
 
@@ -135,7 +135,7 @@ def test_required_case_is_named_and_not_shown() -> None:
 def test_cases_with_several_lines_are_not_drawn(tmp_path: Path) -> None:
     """The lines have files of the same name in different folders."""
     file = tmp_path / "line.svg"
-    result = CliRunner().invoke(app, ["show", "en50318-2018/*/static", "--drawing", str(file)])
+    result = CliRunner().invoke(app, ["line", "draw", "en50318-2018/*/static", "--out", str(file)])
     assert result.exit_code == 2
     assert "the cases have different lines" in result.output
     assert not file.exists()

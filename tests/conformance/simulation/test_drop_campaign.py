@@ -37,7 +37,7 @@ def case_path(tmp_path: Path) -> Path:
 
 def run_campaign(case_path: Path, *options: str) -> Result:
     out = case_path.parent / "records" / "r.csv"
-    return CliRunner().invoke(app, ["drop-campaign", str(case_path), "--out", str(out), *options])
+    return CliRunner().invoke(app, ["drop", "campaign", str(case_path), "--out", str(out), *options])
 
 
 def read_campaign(case_path: Path, *options: str) -> list[DropRecord]:

@@ -118,7 +118,7 @@ def test_noise_is_reproducible_and_differs_between_drops(drop_case: DropCase) ->
 @pytest.mark.parametrize("suffix", [".uff", ".csv", ".h5"])
 def test_command_writes_records_that_read_back(drop_case: DropCase, tmp_path: Path, suffix: str) -> None:
     out = tmp_path / f"record{suffix}"
-    done = pantocheck("drop", drop_case({}), "--drop", 2, "--out", out)
+    done = pantocheck("drop", "simulate", drop_case({}), "--drop", 2, "--out", out)
     assert done.exit_code == 0, done.output
     (record,) = read_drop_records(out)
     assert (record.drop.mass, record.drop.wire, record.rate) == (30.0, "MW", 100.0)
@@ -126,7 +126,7 @@ def test_command_writes_records_that_read_back(drop_case: DropCase, tmp_path: Pa
 
 
 def test_command_writes_a_file_per_drop(drop_case: DropCase, tmp_path: Path) -> None:
-    done = pantocheck("drop", drop_case({}), "--out", tmp_path / "all.csv")
+    done = pantocheck("drop", "simulate", drop_case({}), "--out", tmp_path / "all.csv")
     assert done.exit_code == 0, done.output
     assert [read_drop_records(tmp_path / f"all-{n}.csv")[0].drop.mass for n in (1, 2, 3)] == [40.0, 30.0, 20.0]
 
@@ -134,7 +134,7 @@ def test_command_writes_a_file_per_drop(drop_case: DropCase, tmp_path: Path) -> 
 def test_single_drop_of_a_case_keeps_the_name_of_the_file(drop_case: DropCase, tmp_path: Path) -> None:
     path = drop_case({})
     (first, *_) = tomllib.loads(path.read_text(encoding="utf-8"))["mass_drop"]["drop"]
-    done = pantocheck("drop", drop_case({"mass_drop.drop": [first]}), "--out", tmp_path / "one.csv")
+    done = pantocheck("drop", "simulate", drop_case({"mass_drop.drop": [first]}), "--out", tmp_path / "one.csv")
     assert done.exit_code == 0, done.output
     assert [path.name for path in tmp_path.glob("one*.csv")] == ["one.csv"]
 
@@ -144,7 +144,7 @@ def test_command_replaces_no_case_by_a_sidecar(drop_case: DropCase, tmp_path: Pa
     """The sidecar of the second of three records has the name of another case: nothing is simulated or written."""
     path, other = drop_case({}), tmp_path / "all-2.toml"
     other.write_bytes(path.read_bytes())
-    done = pantocheck("drop", path, "--out", tmp_path / f"all{suffix}")
+    done = pantocheck("drop", "simulate", path, "--out", tmp_path / f"all{suffix}")
     assert done.exit_code == 2
     assert "the sidecar would overwrite all-2.toml" in done.output
     assert other.read_bytes() == path.read_bytes()
@@ -154,7 +154,7 @@ def test_command_replaces_no_case_by_a_sidecar(drop_case: DropCase, tmp_path: Pa
 def test_record_without_sidecar_may_have_the_name_of_its_case(drop_case: DropCase) -> None:
     path = drop_case({})
     content = path.read_bytes()
-    done = pantocheck("drop", path, "--drop", 2, "--out", path.with_suffix(".h5"))
+    done = pantocheck("drop", "simulate", path, "--drop", 2, "--out", path.with_suffix(".h5"))
     assert done.exit_code == 0, done.output
     assert path.read_bytes() == content
 
@@ -175,7 +175,7 @@ def test_command_reports_wrong_input(
     arguments: tuple[str, ...], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = pantocheck("drop", *arguments)
+    done = pantocheck("drop", "simulate", *arguments)
     assert done.exit_code == 2
     assert message in done.output
 

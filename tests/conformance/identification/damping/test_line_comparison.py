@@ -116,7 +116,7 @@ def describe_line(file: LineFile, **changes: object) -> MeasuredLine:
 
 def fit_other_line(folder: Path, modes: Sequence[Mode], *options: str) -> tuple[int, str]:
     write_model(folder / "modes.json", ModesFile(tuple(modes)))
-    command = ["fit-damping", str(folder / "modes.json"), "--line", CASE, "--out", str(folder / "fit"), *options]
+    command = ["drop", "fit", str(folder / "modes.json"), "--line", CASE, "--out", str(folder / "fit"), *options]
     result = CliRunner(env={"COLUMNS": "4000"}).invoke(app, command)
     return result.exit_code, result.output
 

@@ -16,7 +16,7 @@ from pantocheck.conformance.identification.mode import read_modes
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 MODES = Path(__file__).parents[3] / "data" / "vovan2015" / "stand-in-modes.json"
-"""Modes that `pantocheck identify` finds in the drops of the stand-in; docs/damping-study.md renews them."""
+"""Modes that `pantocheck drop identify` finds in the drops of the stand-in; docs/damping-study.md renews them."""
 ELEMENT = 0.75
 
 

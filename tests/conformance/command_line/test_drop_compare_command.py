@@ -1,4 +1,4 @@
-"""`pantocheck compare-drop`: files, exit codes, damping files, and messages that name file and key."""
+"""`pantocheck drop compare`: files, exit codes, damping files, and messages that name file and key."""
 
 import json
 import logging
@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 
 from helpers.recorded_drops import ELEMENT, damp_masses, read_short_line, record_drop
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.command_line.compare_drop_command import name_damping_files
+from pantocheck.conformance.command_line.drop_compare_command import name_damping_files
 from pantocheck.conformance.mass_drops.drop_writing import write_drop_hdf5
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.step_log import TaskStep
@@ -43,7 +43,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(*arguments: str) -> Result:
-    common = ["compare-drop", "drop.h5", "--line", "line.toml", "--out", "out", "--element", f"{ELEMENT}"]
+    common = ["drop", "compare", "drop.h5", "--line", "line.toml", "--out", "out", "--element", f"{ELEMENT}"]
     return CliRunner().invoke(app, [*common, "--window", "0:4", *arguments])
 
 
@@ -79,7 +79,7 @@ def test_exit_codes_follow_the_verdict(folder: Path) -> None:
 
 
 def test_files_of_the_same_name_take_the_name_of_their_folder(folder: Path) -> None:
-    """`fit-damping` names its file damping.toml in every folder."""
+    """`drop fit` names its file damping.toml in every folder."""
     paths = [Path("fit4/damping.toml"), Path("fit/damping.toml"), Path("own.toml")]
     for path in paths[:2]:
         path.parent.mkdir()

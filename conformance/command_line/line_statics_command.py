@@ -1,4 +1,4 @@
-"""`pantocheck compare-statics`: elasticities and contact wire heights measured along a line beside its model."""
+"""`pantocheck line statics`: elasticities and contact wire heights measured along a line beside its model."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -37,7 +37,7 @@ from pantocheck.conformance.reports.formats.report_writers import remark_missing
 ToleranceOption = float | None
 
 
-def compare_statics_command(
+def line_statics_command(
     table: Annotated[
         Path, typer.Argument(help=f"Table of the measured values, or its sidecar: {DocumentationPage.LINE_TABLES}.")
     ],
@@ -60,12 +60,12 @@ def compare_statics_command(
     ] = None,
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
 ) -> CommandOutput:
-    """Compare elasticities and contact wire heights measured along a line with its model.
+    """Compare measured static values with those of a line.
 
     A tolerance makes a criterion; without one, the differences are shown and not graded. No standard states a
     tolerance, so there is no default. A criterion is skipped if a part of the evaluated section was not measured.
 
-    Example: pantocheck compare-statics measured.csv --line my-line.toml --out statics --height-tolerance-mm 10
+    Example: pantocheck line statics measured.csv --line my-line.toml --out statics --height-tolerance-mm 10
     """
     tolerances = {
         "elasticity_difference_mm_N": elasticity_tolerance,

@@ -1,4 +1,4 @@
-"""`pantocheck drop`: simulated mass drops as records that can be identified like measured ones."""
+"""`pantocheck drop simulate`: simulated mass drops as records that can be identified like measured ones."""
 
 import logging
 from pathlib import Path
@@ -21,7 +21,7 @@ from pantocheck.conformance.step_log import ShareCallback, StepSequence
 _LOGGER = logging.getLogger(__name__)
 
 
-def drop_command(
+def drop_simulate_command(
     case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)],
     out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")],
     number: Annotated[
@@ -29,11 +29,11 @@ def drop_command(
         typer.Option("--drop", help="Number of the drop, from 1. Default: all drops, as NAME-1, NAME-2, ...", min=1),
     ] = None,
 ) -> CommandOutput:
-    """Simulate the mass drops of a case and write their records.
+    """Simulate the mass drops of a case as records.
 
-    Example: pantocheck drop vovan2015/mass-drop/stand-in --drop 1 --out drop.uff
+    Example: pantocheck drop simulate vovan2015/mass-drop/stand-in --drop 1 --out drop.uff
 
-    Then: pantocheck identify drop.uff --out modes
+    Then: pantocheck drop identify drop.uff --out modes
     """
     write = select_drop_writer(out)
     drop_case = choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table")

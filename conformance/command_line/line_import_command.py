@@ -1,4 +1,4 @@
-"""`pantocheck import-line`: line file from tables of supports and droppers."""
+"""`pantocheck line import`: line file from tables of supports and droppers."""
 
 from pathlib import Path
 from typing import Annotated
@@ -15,7 +15,7 @@ from pantocheck.conformance.line_tables.dropper_rows import LengthMeaning
 from pantocheck.conformance.line_tables.line_import import import_line
 
 
-def import_line_command(
+def line_import_command(
     supports: Annotated[
         Path, typer.Argument(help=f"CSV table of the supports and both ends: {DocumentationPage.LINE_TABLES}.")
     ],
@@ -34,11 +34,11 @@ def import_line_command(
         ),
     ] = "published",
 ) -> CommandOutput:
-    """Write a line file from tables of its supports and droppers.
+    """Write a line file from tables of supports and droppers.
 
     All problems of all files are reported at once, with file, row and column.
 
-    Example: pantocheck import-line supports.csv --droppers droppers.csv --base base.toml --out my-line.toml
+    Example: pantocheck line import supports.csv --droppers droppers.csv --base base.toml --out my-line.toml
 
     Then: pantocheck check my-line.toml
     """
@@ -48,7 +48,7 @@ def import_line_command(
     tree = import_line(base, supports, droppers, dropper_lengths)
     check_writable(out.parent)
     names = ", ".join(path.name for path in inputs)
-    head = f"# Written by `pantocheck import-line` from {names}.\n"
+    head = f"# Written by `pantocheck line import` from {names}.\n"
     write_atomically(out, (head + tomli_w.dumps(tree)).encode())
     geometry = tree["geometry"]
     facts = {

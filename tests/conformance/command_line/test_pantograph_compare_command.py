@@ -1,4 +1,4 @@
-"""`pantocheck compare-response`: files, exit codes, and messages that name file and key."""
+"""`pantocheck pantograph compare`: files, exit codes, and messages that name file and key."""
 
 import json
 import shutil
@@ -45,7 +45,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["compare-response", *arguments, "--pantograph", "pantograph.toml", "--out", "out"])
+    return CliRunner().invoke(
+        app, ["pantograph", "compare", *arguments, "--pantograph", "pantograph.toml", "--out", "out"]
+    )
 
 
 def test_reports_are_written_and_the_exit_code_follows_the_verdict(folder: Path) -> None:

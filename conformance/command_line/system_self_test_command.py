@@ -1,4 +1,4 @@
-"""`pantocheck self-test`: systems with known faults must not pass."""
+"""`pantocheck system self-test`: systems with known faults must not pass."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -29,7 +29,7 @@ NUMERICAL_CASES = ("en50318-2018/ac-simple/320-twin",)
 """Further cases of the numerical faults, without published limits."""
 
 
-def self_test_command(
+def system_self_test_command(
     case: Annotated[
         list[str] | None,
         typer.Argument(
@@ -39,11 +39,11 @@ def self_test_command(
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="Markdown file to write the tables to.")] = None,
 ) -> CommandOutput:
-    """Test the suite with faulty systems: each fault must be detected.
+    """Test the suite with faulty systems.
 
     The reference simulator itself must pass. A fault (mutant) is detected if the check that it should violate fails.
 
-    Example: pantocheck self-test --markdown self-test.md
+    Example: pantocheck system self-test --markdown self-test.md
     """
     cases = [selected for selected in select_cases(case or DEFAULT_CASES) if not selected.is_static]
     if not cases:

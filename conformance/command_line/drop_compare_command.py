@@ -1,4 +1,4 @@
-"""`pantocheck compare-drop`: a recorded mass drop beside its simulation under one or more damping models."""
+"""`pantocheck drop compare`: a recorded mass drop beside its simulation under one or more damping models."""
 
 import logging
 import math
@@ -51,7 +51,7 @@ SHORTEST_WINDOW_S, LATEST_WINDOW_S = 1.0, 900.0
 """Shortest window, about a period of the lowest mode, and latest end of one [s]."""
 
 
-def compare_drop_command(
+def drop_compare_command(
     record: Annotated[
         Path, typer.Argument(help=f"Record of a mass drop, with its sidecar: {DocumentationPage.IDENTIFICATION}.")
     ],
@@ -80,12 +80,12 @@ def compare_drop_command(
     element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
     time_step: Annotated[float, typer.Option(help="Time step [s].", min=1e-5, max=0.005)] = 0.001,
 ) -> CommandOutput:
-    """Compare a recorded mass drop with its simulation under one or more damping models.
+    """Compare a recorded mass drop with its simulation.
 
     The record states mass, wire and position; the release is found in the record. Limits make criteria; without them,
     the differences are shown and not graded.
 
-    Example: pantocheck compare-drop T1.h5 --line my-line.toml --damping measured.toml --out drop
+    Example: pantocheck drop compare T1.h5 --line my-line.toml --damping measured.toml --out drop
     """
     line_file = read_line(line)
     task = DropTask(

@@ -1,4 +1,4 @@
-"""`pantocheck fit-damping`: damping model of a line from identified modes."""
+"""`pantocheck drop fit`: damping model of a line from identified modes."""
 
 from pathlib import Path
 from typing import Annotated
@@ -26,8 +26,8 @@ from pantocheck.conformance.reports.formats.report_writers import remark_missing
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
 
-def fit_damping_command(
-    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck identify`.")],
+def drop_fit_command(
+    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck drop identify`.")],
     line: Annotated[
         str,
         typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
@@ -57,7 +57,7 @@ def fit_damping_command(
     the modes determine. A line whose spans, tensions or wires at the sensors differ from those of the record is
     refused.
 
-    Example: pantocheck fit-damping T1/modes.json --line my-line.toml --out T1
+    Example: pantocheck drop fit T1/modes.json --line my-line.toml --out T1
     """
     identified, catenary = read_modes(modes), build_catenary(read_line(line))
     if not other_line:

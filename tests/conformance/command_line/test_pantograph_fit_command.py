@@ -1,4 +1,4 @@
-"""`pantocheck fit-pantograph`: pantograph file, reports, and messages that name the option."""
+"""`pantocheck pantograph fit`: pantograph file, reports, and messages that name the option."""
 
 import json
 import tomllib
@@ -30,7 +30,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["fit-pantograph", "measured.csv", "--out", "fitted.toml", *arguments])
+    return CliRunner().invoke(app, ["pantograph", "fit", "measured.csv", "--out", "fitted.toml", *arguments])
 
 
 def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
@@ -40,7 +40,7 @@ def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
     tables = tomllib.loads((folder / "fitted.toml").read_text())
     assert tables["title"] == "Rig 12"
     assert tables["chain"]["masses_kg"] == pytest.approx([15.0, 7.2], rel=0.01)
-    assert tables["chain"]["source"] == "pantocheck fit-pantograph, from measured.csv (rig test 12)"
+    assert tables["chain"]["source"] == "pantocheck pantograph fit, from measured.csv (rig test 12)"
     assert "trust" not in tables["chain"]
     assert tables["contact"]["stiffness_N_m"] == 50e3
     checked = CliRunner().invoke(app, ["check", "fitted.toml"])

@@ -1,4 +1,4 @@
-"""`pantocheck compare-response`: frequency responses measured at a pantograph head beside those of its model."""
+"""`pantocheck pantograph compare`: frequency responses measured at a pantograph head beside those of its model."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -42,7 +42,7 @@ PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
 )
 
 
-def compare_response_command(
+def pantograph_compare_command(
     responses: Annotated[
         list[Path],
         typer.Argument(
@@ -55,12 +55,12 @@ def compare_response_command(
         Path | None, typer.Option(help=f"File of limits: {DocumentationPage.PANTOGRAPH_RESPONSE}.")
     ] = None,
 ) -> CommandOutput:
-    """Compare frequency responses measured at a pantograph head with its model.
+    """Compare measured responses with a pantograph.
 
     A table holds frequency, modulus and phase of one measurement; give one per static force and height. Limits make
     criteria; without them, the deviations are shown and not graded.
 
-    Example: pantocheck compare-response at-55N.csv at-70N.csv --pantograph my-pantograph.toml --out response
+    Example: pantocheck pantograph compare at-55N.csv at-70N.csv --pantograph my-pantograph.toml --out response
     """
     records = [read_response(path) for path in responses]
     model = read_model(pantograph, PantographFile, "pantograph")

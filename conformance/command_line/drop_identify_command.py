@@ -1,4 +1,4 @@
-"""`pantocheck identify`: modes of a line from mass-drop records."""
+"""`pantocheck drop identify`: modes of a line from mass-drop records."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -28,7 +28,7 @@ from pantocheck.conformance.reports.formats.report_writers import remark_missing
 from pantocheck.conformance.reports.mass_drop.identification_report import collect_warnings
 
 
-def identify_command(
+def drop_identify_command(
     records: Annotated[
         list[Path],
         typer.Argument(help=f"Records: {list_suffixes(TABLE_FORMATS)}; a sidecar .toml of the same name is also read."),
@@ -49,19 +49,19 @@ def identify_command(
         bool, typer.Option("--each", help="Also identify every record on its own, and compare the tests: population.*")
     ] = False,
 ) -> CommandOutput:
-    """Identify frequencies, damping ratios and mode shapes from mass-drop records.
+    """Identify the modes of a line from mass-drop records.
 
     Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared.
 
     Examples:
 
-    pantocheck identify T1.h5 --out T1
+    pantocheck drop identify T1.h5 --out T1
 
-    pantocheck identify T1.h5 T2.csv --out both --highest 6
+    pantocheck drop identify T1.h5 T2.csv --out both --highest 6
 
-    pantocheck identify T1.h5 --out T1 --export modes.csv --export modes.uff
+    pantocheck drop identify T1.h5 --out T1 --export modes.csv --export modes.uff
 
-    pantocheck identify T1.h5 T2.csv T3.uff --out all --each
+    pantocheck drop identify T1.h5 T2.csv T3.uff --out all --each
     """
     exports = [(path, select_mode_writer(path)) for path in export or ()]
     start_poles = None if poles is None else read_poles(poles)

@@ -1,4 +1,4 @@
-"""`pantocheck check-adapter`: the adapter of a simulator, with short cases."""
+"""`pantocheck system check`: the adapter of a simulator, with short cases."""
 
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -18,7 +18,7 @@ ADAPTER_TIMEOUT_S = 600.0
 """Default time limit of the short case [s], that of a case of `run`."""
 
 
-def check_adapter_command(
+def system_check_command(
     command: Annotated[str, typer.Argument(help="Program and arguments in quotes, as after `command:` of `run`.")],
     timeout: Annotated[float, typer.Option(help="Time limit of each short case [s].")] = ADAPTER_TIMEOUT_S,
 ) -> CommandOutput:
@@ -29,7 +29,7 @@ def check_adapter_command(
     rest and the case with two pantographs; the program may refuse them. Exit code 0: nothing is missing or
     wrong. Exit code 1: something is missing or wrong. Exit code 2: the program does not exist.
 
-    Example: pantocheck check-adapter 'python3 adapter.py'
+    Example: pantocheck system check 'python3 adapter.py'
     """
     system = parse_command(command.removeprefix("command:"), Path.cwd(), timeout)
     check = check_adapter(system)

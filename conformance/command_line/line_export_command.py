@@ -1,4 +1,4 @@
-"""`pantocheck export-line`: tables of the supports and droppers of a line."""
+"""`pantocheck line export`: tables of the supports and droppers of a line."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +13,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable, wr
 from pantocheck.conformance.line_tables.line_export import DecimalMark, export_droppers, export_supports
 
 
-def export_line_command(
+def line_export_command(
     line: Annotated[
         str, typer.Argument(help="Id of a case, or path of a case or line file.", autocompletion=complete_case)
     ],
@@ -22,11 +22,11 @@ def export_line_command(
         DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
     ] = "point",
 ) -> CommandOutput:
-    """Write the supports and droppers of a line as tables for a spreadsheet.
+    """Write supports and droppers of a line as tables.
 
-    `pantocheck import-line` turns the tables, with the same line file as base, into the same line.
+    `pantocheck line import` turns the tables, with the same line file as base, into the same line.
 
-    Example: pantocheck export-line en50318-2018/ac-simple/static --out tables --decimal comma
+    Example: pantocheck line export en50318-2018/ac-simple/static --out tables --decimal comma
     """
     line_file = read_line(line)
     check_writable(out)

@@ -1,4 +1,4 @@
-"""`pantocheck fit-pantograph`: chain of lumped masses from measured frequency responses."""
+"""`pantocheck pantograph fit`: chain of lumped masses from measured frequency responses."""
 
 import math
 from collections import Counter
@@ -28,7 +28,7 @@ from pantocheck.conformance.interface.fitted_pantograph import CONTACT_STIFFNESS
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 
 
-def fit_pantograph_command(
+def pantograph_fit_command(
     responses: Annotated[
         list[Path],
         typer.Argument(
@@ -54,12 +54,12 @@ def fit_pantograph_command(
         float, typer.Option("--contact-stiffness-N-m", help="Contact of the file, not part of a response.", min=1.0)
     ] = CONTACT_STIFFNESS_N_M,
 ) -> CommandOutput:
-    """Fit a chain of lumped masses to frequency responses measured at a pantograph head.
+    """Fit a chain of lumped masses to measured responses.
 
     Chains of two, three and four masses are fitted. The report shows intervals and states which parameters the band
     does not determine.
 
-    Example: pantocheck fit-pantograph at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
+    Example: pantocheck pantograph fit at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
     """
     records = tuple(read_response(path) for path in responses)
     _refuse_other_suffix(out)

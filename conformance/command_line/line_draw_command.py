@@ -1,0 +1,79 @@
+"""`pantocheck line draw`: drawing of a whole line, in elevation and in plan."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.cases.named_files import recognise_named_file
+from pantocheck.conformance.command_line.case_completion import complete_case
+from pantocheck.conformance.command_line.cases_option import CasesOption
+from pantocheck.conformance.command_line.command_output import CommandOutput
+from pantocheck.conformance.command_line.console import escape_text
+from pantocheck.conformance.command_line.show_command import leave_out_required
+from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
+from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.simulation.drawing_marks import list_marks, list_point_masses
+from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
+from pantocheck.model import discretise
+
+DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
+    ".svg": lambda drawing: draw_line_svg(drawing).encode(),
+    ".pdf": draw_line_pdf,
+}
+"""Writer of a drawing by the suffix of its file."""
+
+
+def line_draw_command(
+    line: Annotated[
+        str, typer.Argument(help="Line file, or id or path of a case.", autocompletion=complete_case, metavar="LINE")
+    ],
+    out: Annotated[Path, typer.Option(help="SVG or PDF file of the drawing.")],
+    folders: CasesOption = None,
+) -> CommandOutput:
+    """Draw a whole line to scale, in elevation and in plan.
+
+    The drawing of a case also has its sensors and dropped masses.
+
+    Examples:
+
+    pantocheck line draw my-line.toml --out line.svg
+
+    pantocheck line draw en50318-2018/ac-stitched/static --out line.pdf
+    """
+    if out.suffix.lower() not in DRAWING_FORMATS:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}.")
+    check_writable(out.parent)
+    drawing = _build_line(line) if _is_line(line) else _build_case(line, folders)
+    write_atomically(out, DRAWING_FORMATS[out.suffix.lower()](drawing))
+    return CommandOutput(escape_text(drawing.title), {"title": drawing.title}, files=(out,))
+
+
+def _is_line(name: str) -> bool:
+    return name.endswith(".toml") and recognise_named_file(read_toml(Path(name), "file").keys()) == "line"
+
+
+def _build_line(name: str) -> LineDrawing:
+    """Drawing of a line without a case, with the default mesh of cases."""
+    file = read_model(Path(name), LineFile, "line")
+    line = discretise(build_catenary(file), Discretisation().element_m)
+    return LineDrawing(line, file.title, file.geometry, list_point_masses(line.catenary), file.section_places)
+
+
+def _build_case(name: str, folders: list[Path] | None) -> LineDrawing:
+    """Drawing of the line of a case with its marks; several cases must have one line."""
+    cases: list[Case] = leave_out_required(name, select_cases([name], (), open_catalogue(folders or ())))
+    if any(each.line != cases[0].line for each in cases):
+        raise InputError(f"case '{name}'", "the cases have different lines", "Give the id of one case.")
+    (case, *_) = cases
+    line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
+    marks = list_marks(case, line.catenary)
+    return LineDrawing(line, case.line.title, case.line.geometry, marks, case.line.section_places)
