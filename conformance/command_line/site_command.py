@@ -27,7 +27,9 @@ MOST_RESULTS = 2000
 
 
 def site_command(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that holds results.json files at any depth.")],
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="DIR", help="Folders that hold results.json files at any depth.")
+    ],
     out: Annotated[Path, typer.Option(help="Folder for the site; open its index.html.")] = Path("site"),
     title: Annotated[str, typer.Option(help="Title of the first page.")] = "Conformance results",
 ) -> CommandOutput:
@@ -36,11 +38,9 @@ def site_command(
     Every verdict leads to its certificate, which is made from results.json again. Results that contradict themselves
     are shown with the verdict `error`.
 
-    Example: pantocheck site results --out site
+    Example: pantocheck site results earlier-results --out site
     """
-    paths = list(_find_results(folder, out))
-    if not paths:
-        raise InputError(f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR.")
+    paths = _find_results(folders, out)
     check_writable(out)
     contents = []
     for path in paths:
@@ -64,7 +64,22 @@ def site_command(
     )
 
 
-def _find_results(folder: Path, out: Path) -> Iterator[Path]:
+def _find_results(folders: list[Path], out: Path) -> list[Path]:
+    """Results below all folders; a file that lies below two of them is taken once."""
+    paths: dict[Path, Path] = {}
+    for folder in folders:
+        own = {path.resolve(): path for path in _walk_results(folder, out)}
+        if not own:
+            raise InputError(
+                f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR."
+            )
+        paths |= {place: path for place, path in own.items() if place not in paths}
+    if len(paths) > MOST_RESULTS:
+        raise InputError("folders of results", f"more than {MOST_RESULTS} results", "Give folders with fewer results.")
+    return list(paths.values())
+
+
+def _walk_results(folder: Path, out: Path) -> Iterator[Path]:
     """Regular files named results.json below a folder, by name; links and the site itself are left out."""
     if not folder.is_dir():
         raise InputError(f"folder '{folder}'", "not a folder", "Give the folder that holds the results.")

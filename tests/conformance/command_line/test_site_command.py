@@ -140,6 +140,15 @@ def test_a_folder_without_results_is_named(tmp_path: Path, make: bool) -> None:
     assert ("no results.json in it" if make else "not a folder") in " ".join(done.output.split())
 
 
+def test_several_folders_give_the_site_of_all_their_results(results: Path, tmp_path: Path) -> None:
+    """A folder inside another one adds nothing: each file is taken once."""
+    one, two = tmp_path / "one", tmp_path / "two"
+    first, *_ = sorted(results.iterdir())
+    assert build(results, "--out", str(one)).exit_code == 0
+    assert build(first, str(results), str(first), "--out", str(two)).exit_code == 0
+    assert read_text(two / "index.html") == read_text(one / "index.html")
+
+
 def test_links_and_folders_named_as_results_are_left_out(results: Path, tmp_path: Path) -> None:
     (results / "copy").mkdir()
     (results / "copy" / "results.json").symlink_to(results / "old" / "results.json")
