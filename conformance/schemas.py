@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
@@ -33,6 +33,7 @@ from pantocheck.conformance.identification.identification_format import Identifi
 from pantocheck.conformance.identification.mode import ModesFile
 from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.identification.population_format import PopulationFile
+from pantocheck.conformance.input_files.key_descriptions import DescribedSchema
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
 from pantocheck.conformance.plan import Plan
 from pantocheck.conformance.procedure.dossier_file import DossierFile
@@ -90,7 +91,7 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 LINE_WIDTH = 120
 
 
-class WrittenSchema(GenerateJsonSchema):
+class WrittenSchema(DescribedSchema):
     """Schema of JSON: keys have no title, so that an editor shows their description."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:

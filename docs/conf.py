@@ -20,12 +20,13 @@ author = "The Pantocheck authors"
 copyright = "2026, The Pantocheck authors"
 version = release = installed_version("pantocheck")
 
-extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
-numpydoc_show_class_members = False
+napoleon_numpy_docstring = False
+napoleon_use_rtype = False
 autosummary_generate = False
 html_theme = "furo"
 html_title = f"Pantocheck {version}"

@@ -8,6 +8,7 @@ from rich.padding import Padding
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.console import build_table, escape_text
+from pantocheck.conformance.input_files.key_descriptions import describe_field
 from pantocheck.conformance.simulation.derived_values import build_derived
 
 MOST_ENTRIES = 12
@@ -38,7 +39,7 @@ def build_derived_tables(case: Case) -> list[RenderableType]:
 
 def _rows(table: BaseModel, spans: int, middle: int, prefix: str = "") -> Iterator[tuple[str, str, str]]:
     """Dotted key, value and description of every value of nested tables."""
-    for key, field in type(table).model_fields.items():
+    for key in type(table).model_fields:
         value = getattr(table, key)
         if isinstance(value, BaseModel):
             yield from _rows(value, spans, middle, f"{prefix}{key}.")
@@ -46,7 +47,7 @@ def _rows(table: BaseModel, spans: int, middle: int, prefix: str = "") -> Iterat
             for number, part in enumerate(value, 1):
                 yield from _rows(part, spans, middle, f"{prefix}{key} {number}.")
         else:
-            yield f"{prefix}{key}", _format_value(value, spans, middle), field.description or ""
+            yield f"{prefix}{key}", _format_value(value, spans, middle), describe_field(type(table), key)
 
 
 def _format_value(value: object, spans: int, middle: int) -> str:

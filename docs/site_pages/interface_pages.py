@@ -19,7 +19,7 @@ def _document(module: str, name: str, content: object) -> str:
     """Directive that shows the docstring of a public name."""
     home = f"{getattr(content, '__module__', module)}.{name}"
     directive = "autoclass" if isinstance(content, type) else "autofunction"
-    members = "\n   :members:" if isinstance(content, type) and content.__module__.startswith(MODULES[0]) else ""
+    members = "\n   :members:" if isinstance(content, type) else ""
     if not callable(content):
         return f"`{name}`"
     return f"### {name}\n\n```{{eval-rst}}\n.. {directive}:: {home}{members}\n```"

@@ -1,43 +1,126 @@
-"""Docstrings of the public interface: valid for numpydoc, from which the reference is made."""
+"""Docstrings of the product: Google style, with the arguments of the signature, and fields described below them."""
 
+import ast
 import inspect
-from collections.abc import Iterator
-
-import pytest
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pantocheck.conformance
 import pantocheck.model
 
-validation = pytest.importorskip("numpydoc.validate", reason="the extra docs is not installed")
+FOLDERS = [Path(module.__file__).parent for module in (pantocheck.conformance, pantocheck.model)]
+NODES = [
+    (f"{path.parent.name}/{path.name}:{node.lineno} {node.name}", node)
+    for folder in FOLDERS
+    for path in sorted(folder.rglob("*.py"))
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+]
+"""Place and syntax tree of every function and class."""
 
-CHECKS = {
-    "GL03", "GL06", "GL07", "GL08",  # blank lines, unknown sections, their order, a docstring
-    "SS01", "SS02", "SS03", "SS04",  # a summary: capital letter, full stop, no indentation
-    "PR01", "PR02", "PR03", "PR04", "PR05", "PR06", "PR07", "PR08", "PR09", "PR10",  # every parameter with its type
-    "RT02", "RT03", "RT04", "RT05", "YD01",  # returned values, where a section describes them
-}  # fmt: skip
-"""Not RT01: the summary of a formula or a method names its value with the unit, and the annotation states its type.
-Not EX01, SA01, ES01: examples are in the pages, related names on one page, and a summary may be all there is to say."""
+ENTRY = re.compile(r"^ {4}(\*{0,2}\w+(?:, \w+)*)(.*)$", re.MULTILINE)
+EXCEPTION = re.compile(r"[\w.]+(?:, [\w.]+)*: \S")
 
 
-def list_public_names() -> Iterator[str]:
-    """Import paths of the public functions and classes, and of the public methods of the latter."""
+def read_section(docstring: str, title: str) -> str:
+    """Indented text below the title of a section; empty without the section."""
+    found = re.search(rf"^{title}:\n((?:(?: {{4}}.*)?(?:\n|\Z))+)", docstring, re.MULTILINE)
+    return found[1] if found else ""
+
+
+def list_arguments(docstring: str) -> list[str]:
+    """Names in the section `Args`."""
+    heads = [match[1] for match in ENTRY.finditer(read_section(docstring, "Args"))]
+    return [name.lstrip("*") for head in heads for name in head.split(", ")]
+
+
+def list_signature(function: ast.FunctionDef | ast.AsyncFunctionDef) -> list[str]:
+    """Names of the arguments of a function."""
+    given = function.args
+    named = [*given.posonlyargs, *given.args, given.vararg, *given.kwonlyargs, given.kwarg]
+    return [argument.arg for argument in named if argument and argument.arg not in ("self", "cls")]
+
+
+def list_fields(definition: ast.ClassDef) -> list[ast.AnnAssign]:
+    """Annotated fields of a class."""
+    return [part for part in definition.body if isinstance(part, ast.AnnAssign)]
+
+
+def find_init(node: ast.AST) -> ast.FunctionDef | None:
+    """Method `__init__` of a class."""
+    found = (part for part in getattr(node, "body", ()) if getattr(part, "name", "") == "__init__")
+    return next((part for part in found if isinstance(part, ast.FunctionDef)), None)
+
+
+def public_functions() -> Iterator[tuple[str, Callable[..., object]]]:
+    """Public functions, and public methods of the public classes."""
     for module in (pantocheck.conformance, pantocheck.model):
-        for name in module.__all__:
-            item = getattr(module, name)
-            if not (inspect.isfunction(item) or inspect.isclass(item)) or name == "Kind":
-                continue  # an enumeration has the parameters of `enum.Enum`
-            path = f"{item.__module__}.{item.__qualname__}"
-            yield path
-            parts = vars(item).items() if inspect.isclass(item) else ()
-            yield from (
-                f"{path}.{key}"
-                for key, part in parts
-                if not key.startswith("_") and (inspect.isfunction(part) or isinstance(part, property))
-            )
+        for item in (getattr(module, name) for name in module.__all__):
+            methods = vars(item).items() if inspect.isclass(item) else [(getattr(item, "__name__", ""), item)]
+            for name, method in methods:
+                function = method.__func__ if isinstance(method, classmethod | staticmethod) else method
+                if inspect.isfunction(function) and not name.startswith("_"):
+                    yield f"{function.__module__}.{function.__qualname__}", function
 
 
-@pytest.mark.parametrize("name", sorted(list_public_names()))
-def test_docstring_is_valid(name: str) -> None:
-    errors = [f"{code}: {text}" for code, text in validation.validate(name)["errors"] if code in CHECKS]
-    assert errors == []
+def test_sections_are_those_of_google_style() -> None:
+    wrong = [place for place, node in NODES if re.search(r"^-{3,}$", ast.get_docstring(node) or "", re.MULTILINE)]
+    assert wrong == []
+
+
+def test_documented_arguments_are_those_of_the_signature() -> None:
+    wrong = []
+    for place, node in NODES:
+        documented = list_arguments(ast.get_docstring(node) or "")
+        function = find_init(node) if isinstance(node, ast.ClassDef) else node
+        if documented and (function is None or sorted(documented) != sorted(list_signature(function))):
+            wrong.append(f"{place}: documents {documented}")
+    assert wrong == []
+
+
+def test_public_functions_document_their_arguments() -> None:
+    wrong = [
+        name
+        for name, function in public_functions()
+        if set(inspect.signature(function).parameters) - {"self", "cls"}
+        and not list_arguments(inspect.getdoc(function) or "")
+    ]
+    assert wrong == []
+
+
+def test_arguments_repeat_no_type() -> None:
+    wrong = [
+        f"{place}: {match[0].strip()}"
+        for place, node in NODES
+        for match in ENTRY.finditer(read_section(ast.get_docstring(node) or "", "Args"))
+        if not re.match(r": \S", match[2])
+    ]
+    assert wrong == []
+
+
+def test_documented_exceptions_are_named() -> None:
+    wrong = [
+        f"{place}: {line.strip()}"
+        for place, node in NODES
+        for line in read_section(ast.get_docstring(node) or "", "Raises").splitlines()
+        if re.match(r" {4}\S", line) and not EXCEPTION.match(line.strip())
+    ]
+    assert wrong == []
+
+
+def test_fields_are_described_below_them() -> None:
+    """One text for a field: neither a section of the class nor a description in `Field`."""
+    wrong = []
+    for place, node in NODES:
+        if isinstance(node, ast.ClassDef) and list_fields(node) and find_init(node) is None:
+            docstring = ast.get_docstring(node) or ""
+            sections = [title for title in ("Args", "Attributes") if read_section(docstring, title)]
+            wrong += [f"{place}: {title}" for title in sections]
+            wrong += [
+                f"{place}: description of {ast.unparse(field.target)}"
+                for field in list_fields(node)
+                for call in ast.walk(field)
+                if isinstance(call, ast.Call) and any(keyword.arg == "description" for keyword in call.keywords)
+            ]
+    assert wrong == []
