@@ -21,7 +21,8 @@ Text = Callable[[str], str]
 INLINE = {"a", "abbr", "b", "cite", "code", "em", "i", "mark", "small", "span", "strong", "sub", "sup", "time", "wbr"}
 """Elements of a page that do not separate words."""
 
-REFERENCE = re.compile(r"#[\w.:-]+")
+REFERENCE = re.compile(r"^(?:xlink:)?href=#.*|url\(#[^)]*\)")
+"""Names of other elements of a page, which carry no meaning."""
 
 
 def read_contents(path: Path, text: Text) -> Contents:
@@ -115,7 +116,7 @@ class _Page(HTMLParser):
             if not self._depth:
                 self._figures.append([])
             self._depth += 1
-        attributes = [f"{key}={REFERENCE.sub('#', values[key] or '')}" for key in sorted(values) if key != "id"]
+        attributes = [REFERENCE.sub("<reference>", f"{key}={values[key]}") for key in sorted(values) if key != "id"]
         self._figures[-1].append(self._text(" ".join([f"<{tag}>", *attributes])))
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
