@@ -14,7 +14,7 @@ from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 
-FROZEN = Path(__file__).parents[3] / "data" / "frozen"
+MODES = Path(__file__).parents[3] / "data" / "modes"
 TRUTH = {
     ("contact_wire", "mass"): 0.055,
     ("contact_wire", "stiffness"): 5e-5,
@@ -29,7 +29,7 @@ def test_fit_finds_the_damping_of_the_records(record: str, messenger_tension: fl
     """48 pairs with MAC of at least 0.992; the farthest coefficient is 2.2 % off and inside its interval."""
     line = read_model(library_folder() / "mass-drop-line" / "line.toml", LineFile, "line")
     messenger = line.messenger_wire.model_copy(update={"tension_N": messenger_tension})
-    text = lzma.decompress((FROZEN / record / "modes.json.xz").read_bytes())
+    text = lzma.decompress((MODES / f"{record}.json.xz").read_bytes())
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(text))
     catenary = build_catenary(line.model_copy(update={"messenger_wire": messenger}))
     fit = build_damping_results(modes, catenary, 0.75, "fit")

@@ -40,7 +40,7 @@ CASE = "vovan2015/mass-drop/printed"
 SPANS = (63.0, 63.0, 58.5, 63.0, 54.0, 63.0)
 SENSORS = (("contact wire", "CW", 195.75), ("contact wire", "CW", 144.0), ("messenger wire", "MW", 272.25))
 DAMPING = {Kind.CONTACT_WIRE: Rayleigh(0.055, 5e-5), Kind.MESSENGER_WIRE: Rayleigh(0.075, 8e-5)}
-FROZEN = Path(__file__).parents[3] / "data" / "frozen" / "T1" / "modes.json.xz"
+MODES = Path(__file__).parents[3] / "data" / "modes" / "T1.json.xz"
 
 
 @pytest.fixture(scope="module")
@@ -243,7 +243,7 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
 
 def test_modes_without_facts_stay_readable_and_are_not_verified(catenary: Catenary) -> None:
     """File of an earlier version; its record T1 is from another line, which the fit can only see by its matching."""
-    modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(FROZEN.read_bytes())))
+    modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
     results = build_damping_results(modes, catenary, 1.5, "modes.json")
     assert results.line.state == "unverified"
     assert "not verified" in results.warnings[0]
