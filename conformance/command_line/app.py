@@ -39,7 +39,6 @@ COMMANDS = {
     "sign": "Sign a certificate or results.",
     "verify": "Verify a document: its verdicts, its pages, its cases and its signatures.",
     "site": "Write a static site from many results: systems against cases, and versions over time.",
-    "guide": "Write the verification and validation guide: every number is computed now, by this version.",
     "doctor": "Show versions, extras, caches and folders of this installation.",
     "schema": "Print or write the JSON Schema of a file format, for editors and validators.",
     "self-test": "Test the suite with faulty systems: each fault must be detected.",

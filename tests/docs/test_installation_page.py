@@ -65,7 +65,7 @@ def test_command_can_reach_the_extras_of_the_page(command: str, imports: grimp.I
 
 
 def test_size_of_the_core_is_below_380_mb() -> None:
-    """Demanded of the record grader with HTML figures; `benchmarks/installation.py` measures it."""
+    """Demanded of the record grader with HTML figures; `verification/speed/installation.py` measures it."""
     (core,) = (row for row in read_rows("Sizes and times") if row[0] == "core")
     assert float(core[1]) < 380
     assert float(core[2]) < 0.2, "`pantocheck --help`"

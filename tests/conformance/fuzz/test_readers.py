@@ -1,14 +1,13 @@
-"""A short fuzz of every reader; benchmarks/fuzz.py runs the same rounds for any time."""
+"""A short fuzz of every reader; verification/attacks/fuzz.py runs the same rounds for any time."""
 
 import importlib
 import logging
 import os
 import random
 import signal
-import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,7 +26,6 @@ from pantocheck.conformance.records.record_reading import open_record, read_samp
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
 
-BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
 ROUNDS = 12
 
 NAMES = (
@@ -66,15 +64,13 @@ NAMES = (
 
 
 @pytest.fixture(scope="module")
-def fuzz() -> Iterator[SimpleNamespace]:
+def fuzz() -> SimpleNamespace:
     """Modules of the fuzz campaign: `campaign`, `files`, `uses`."""
-    sys.path.insert(0, str(BENCHMARKS))
-    yield SimpleNamespace(
-        campaign=importlib.import_module("fuzz"),
-        files=importlib.import_module("fuzz_files"),
-        uses=importlib.import_module("fuzz_uses"),
+    return SimpleNamespace(
+        campaign=importlib.import_module("verification.attacks.fuzz"),
+        files=importlib.import_module("verification.attacks.fuzz_files"),
+        uses=importlib.import_module("verification.attacks.fuzz_uses"),
     )
-    sys.path.remove(str(BENCHMARKS))
 
 
 @pytest.fixture(scope="module")
