@@ -164,8 +164,8 @@ def write_damping(ratio: RealArray, line: GroupedLine) -> str:
         "trust": "provisional",
         "source": "assumed",
         "note": "Damping of the stand-in for the measured line, written by verification/tables/stand_in_search.py. "
-        "Each group of span modes has a constant damping ratio, which the search chose with the imposed findings of the "
-        "paper. Above the last group, stiffness damping of both wires continues it.",
+        "Each group of span modes has a constant damping ratio, which the search chose with the imposed findings of "
+        "the paper. Above the last group, stiffness damping of both wires continues it.",
         "contact_wire": wire,
         "messenger_wire": wire,
         "modal": bands,
