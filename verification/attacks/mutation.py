@@ -1,283 +1,351 @@
-"""Mutation run: share of single changes of the code that the tests detect. docs/mutation.md explains the method.
+"""Mutation sample of the product with the operators of cosmic-ray: share of changed places that related tests detect.
 
-    python -m verification.attacks.mutation OUT [--mutants 600] [--areas verdict,kernels] [--jobs 2] [--seconds 7200]
-    python -m verification.attacks.mutation OUT --list survived     list the mutants with an outcome
-    python -m verification.attacks.mutation OUT --mutant ID         one mutant, with the report of its failing test
+    python -m verification.attacks.mutation OUT [--mutants 60] [--folders conformance/grading ...] [--jobs 2]
 
-OUT is a folder outside the checkout. It holds the snapshot of the sources that is mutated, the traced runs, and
-`results.json`. A run that was ended continues where it stopped. Exit code 1 if less than 90 % of the mutants of an area
-are killed.
+OUT is a folder outside the checkout; the same command continues an ended run. Method and settings: docs/mutation.md.
 """
 
 import argparse
+import ast
+import contextlib
 import difflib
-import resource
+import hashlib
+import json
+import math
+import os
+import queue
 import shutil
+import signal
+import subprocess
 import sys
+import threading
 import time
-from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import replace
-from functools import partial
-from json import loads
+import tomllib
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from verification.attacks.mutation_mutants import Mutant
-from verification.attacks.mutation_processes import Run, lock, preload, run_jobs, run_tests, write_json
-from verification.attacks.mutation_project import Settings, Sources, copy_checkout, copy_tree, link_packages, packages
-from verification.attacks.mutation_selection import Selection, Traces, has_kernels, select_tests
-from verification.attacks.mutation_tracing import trace_tests
+from cosmic_ray.ast import ast_nodes, get_ast
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.plugins import get_operator
 
-LEAST_KILLED = 0.9
-COMPILE_S = 180.0
-"""Time allowed for the compilation of kernels, on top of the start and of three times the tests."""
-SURVIVED = ("survived", "untested")
-"""Outcomes of a mutant that no test detects; no test executes the code of an untested mutant."""
-UNRELIABLE_TESTS = 5
-"""Largest number of tests that fail with and without a mutant; the mutant is left out if there are more."""
+CHECKOUT = Path(__file__).parents[2]
+ROOTS = ("model", "conformance")
+TESTED = ("tests/model", "tests/conformance")
+COPIED = ("conformance", "model", "pantocheck", "reference_cases", "templates", "tests", "verification", "docs")
+COPIED += ("examples", "pyproject.toml", "pytest_pantocheck.py", "README.md", "CHANGELOG.md")
+SEED = 20261122
+SUFFICIENT = 0.9
+"""Share of killed mutants that every folder needs."""
+Z_95 = 1.959964
+SLOWER, EXTRA_S = 3.0, 30.0
+"""A mutant whose tests take longer than this multiple of their time, and this time [s], counts as killed."""
+OPERATORS = tuple(
+    f"core/{name}"
+    for name in (
+        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Lt_LtE", "LtE_Lt", "Gt_GtE", "GtE_Gt", "Lt_Gt", "Gt_Lt")),
+        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is")),
+        *(f"ReplaceBinaryOperator_{pair}" for pair in ("Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul")),
+        *("ReplaceUnaryOperator_Delete_USub", "ReplaceUnaryOperator_Delete_Not", "AddNot", "NumberReplacer"),
+        *("ReplaceTrueWithFalse", "ReplaceFalseWithTrue", "ReplaceAndWithOr", "ReplaceOrWithAnd"),
+        *("ReplaceBreakWithContinue", "ReplaceContinueWithBreak", "ZeroIterationForLoop"),
+    )
+)
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file."""
+
+    file: str
+    operator: str
+    occurrence: int
+    """Number of the place among those of the operator in the file, from 0."""
+
+    @property
+    def order(self) -> str:
+        """Place in the sample: a digest, so that a change of one file leaves the sample of the others as it is."""
+        return hashlib.sha256(f"{SEED} {self.file} {self.operator} {self.occurrence}".encode()).hexdigest()
+
+    def mutate(self, source: str) -> str:
+        """Source of the file with the change."""
+        changed = mutate_code(source, get_operator(self.operator)(), self.occurrence)
+        if changed is None:
+            raise ValueError(f"{self.file} has no place {self.occurrence} of {self.operator}")
+        return str(changed)
+
+
+@dataclass
+class Worker:
+    """Private copy of the checkout, importable as the installed packages are."""
+
+    place: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def create(cls, snapshot: Path, place: Path) -> "Worker":
+        """Copy the snapshot, and link its folders below the names of the packages."""
+        if not place.exists():
+            shutil.copytree(snapshot, place, symlinks=True)
+        names = place / ".names"
+        names.mkdir(exist_ok=True)
+        folders = tomllib.loads((place / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-dir"]
+        for package, folder in folders.items():
+            link = names / package.replace(".", "/")
+            link.parent.mkdir(exist_ok=True)
+            if "." in package and not link.is_symlink():
+                link.symlink_to(place / folder, target_is_directory=True)
+        path = os.pathsep.join([str(names), str(place)])
+        settings = {"PYTHONPATH": path, "HYPOTHESIS_STORAGE_DIRECTORY": str(place / ".hypothesis")}
+        return cls(place, {**os.environ, **settings})
+
+    def run_tests(self, files: list[str], limit_s: float | None) -> int | None:
+        """Exit code of pytest on test files; None if it takes longer than the limit [s]."""
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
+        process = subprocess.Popen(
+            command, cwd=self.place, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )  # fmt: skip
+        try:
+            return process.wait(limit_s)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def write(self, file: str, source: str) -> None:
+        """Write a source, and remove its compiled files, which Python compares by the second only."""
+        path = self.place / file
+        path.write_text(source, "utf-8")
+        for compiled in (path.parent / "__pycache__").glob(f"{path.stem}.*"):
+            compiled.unlink()
+
+
+class RelatedTests:
+    """Test files by their distance from a file of the product in the graph of imports."""
+
+    def __init__(self, root: Path) -> None:
+        files = [path for folder in (*ROOTS, "tests", "verification") for path in sorted((root / folder).rglob("*.py"))]
+        names = {_module_name(path.relative_to(root)): path.relative_to(root).as_posix() for path in files}
+        self.importers: dict[str, set[str]] = {}
+        for path in files:
+            for name in names.keys() & set(_list_imports(path)):
+                self.importers.setdefault(names[name], set()).add(path.relative_to(root).as_posix())
+
+    def select(self, file: str) -> Iterator[str]:
+        """Test files that import a file, the nearest first, those of the same folder before others."""
+        seen, waiting = {file}, deque([file])
+        folder = f"tests/{Path(file).parent.as_posix()}"
+        while waiting:
+            level = [importer for name in waiting for importer in self.importers.get(name, ()) if importer not in seen]
+            waiting = deque(dict.fromkeys(level))
+            seen.update(waiting)
+            tests = [name for name in waiting if name.startswith(TESTED) and Path(name).name.startswith("test_")]
+            yield from sorted(tests, key=lambda name: (not name.startswith(folder), name))
+
+
+def _module_name(path: Path) -> str:
+    parts = path.with_suffix("").parts
+    parts = parts[:-1] if parts[-1] == "__init__" else parts
+    if parts[0] in ROOTS:
+        return ".".join(("pantocheck", *parts))
+    return ".".join(parts[1:] if parts[:2] == ("tests", "helpers") else parts)
+
+
+def _list_imports(path: Path) -> Iterator[str]:
+    """Names of imported modules, and of names that may be modules, anywhere in a file."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def list_folders(root: Path) -> dict[str, list[str]]:
+    """Files with code of every folder below `model` and `conformance`, subfolders included; no compiled kernels."""
+    folders: dict[str, list[str]] = {}
+    for top in ROOTS:
+        for path in sorted((root / top).rglob("*.py")):
+            parts = path.relative_to(root).parts
+            imports = set(_list_imports(path))
+            if "numba" not in imports and "llvmlite" not in imports:
+                folders.setdefault("/".join(parts[:2]) if len(parts) > 2 else top, []).append("/".join(parts))
+    return folders
+
+
+def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
+    """All mutants of a file; annotations of types hold none of these operators but numbers of a literal."""
+    nodes = list(ast_nodes(get_ast((root / file).read_text("utf-8"))))
+    for name in OPERATORS:
+        operator = get_operator(name)()
+        places = sum(len(list(operator.mutation_positions(node))) for node in nodes)
+        yield from (Mutant(file, name, occurrence) for occurrence in range(places))
+
+
+def draw_sample(root: Path, files: list[str], size: int) -> list[Mutant]:
+    """Mutants of a folder in the order of their digests."""
+    mutants = (mutant for file in files for mutant in list_mutants(root, file))
+    return sorted(mutants, key=lambda mutant: mutant.order)[:size]
+
+
+def wilson_interval(killed: int, total: int) -> tuple[float, float]:
+    """95 % interval of a share by Wilson's score.
+
+    Args:
+        killed: Number of killed mutants.
+        total: Number of mutants, at least 1.
+
+    Returns:
+        Lower and upper end of the share [-].
+    """
+    share, spread = killed / total, Z_95**2 / total
+    half = Z_95 * math.sqrt(share * (1 - share) / total + spread / (4 * total))
+    return (share + spread / 2 - half) / (1 + spread), (share + spread / 2 + half) / (1 + spread)
+
+
+@dataclass
+class Run:
+    """Mutation run: snapshot, times of the test files without a mutant, and outcomes, all stored in OUT."""
+
+    out: Path
+    tests: int
+    budget_s: float
+
+    def __post_init__(self) -> None:
+        self.snapshot = self.out / "snapshot"
+        if not self.snapshot.exists():
+            partial = self.out / "snapshot.partial"
+            shutil.rmtree(partial, ignore_errors=True)
+            partial.mkdir(parents=True)
+            skipped = shutil.ignore_patterns("__pycache__", ".*", "generated", "gallery")
+            for name in COPIED:
+                if (CHECKOUT / name).is_dir():
+                    shutil.copytree(CHECKOUT / name, partial / name, ignore=skipped)
+                else:
+                    shutil.copyfile(CHECKOUT / name, partial / name)
+            partial.rename(self.snapshot)
+        self.related = RelatedTests(self.snapshot)
+        self.lock = threading.Lock()
+        self.times = {row["file"]: row for row in _read_rows(self.out / "tests.jsonl")}
+        self.outcomes = {row["order"]: row for row in _read_rows(self.out / "outcomes.jsonl")}
+
+    def judge(self, mutant: Mutant, worker: Worker) -> None:
+        """Run the related tests of a mutant, and store its outcome."""
+        tests, spent = [], 0.0
+        for file in self.related.select(mutant.file):
+            seconds = self._time_tests(file, worker)
+            if seconds is not None and spent + seconds <= self.budget_s:
+                tests.append(file)
+                spent += seconds
+            if len(tests) == self.tests:
+                break
+        source = (self.snapshot / mutant.file).read_text("utf-8")
+        changed = mutant.mutate(source)
+        worker.write(mutant.file, changed)
+        try:
+            code = worker.run_tests(tests, SLOWER * spent + EXTRA_S) if tests else 0
+        finally:
+            worker.write(mutant.file, source)
+        diff = [
+            line
+            for line in difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
+            if not line.startswith(("---", "+++"))
+        ]
+        outcome = "untested" if not tests else "timeout" if code is None else "survived" if code == 0 else "killed"
+        row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": tests}
+        with self.lock:
+            self.outcomes[mutant.order] = row
+            _append_row(self.out / "outcomes.jsonl", row)
+
+    def _time_tests(self, file: str, worker: Worker) -> float | None:
+        """Time of a test file without a mutant [s]; None if it fails, has no test, or exceeds the budget."""
+        if file not in self.times:
+            begin = time.perf_counter()
+            code = worker.run_tests([file], 2 * self.budget_s + EXTRA_S)
+            row = {"file": file, "seconds": time.perf_counter() - begin, "passed": code == 0}
+            with self.lock:
+                self.times[file] = row
+                _append_row(self.out / "tests.jsonl", row)
+        row = self.times[file]
+        return row["seconds"] if row["passed"] else None
+
+
+def _read_rows(path: Path) -> list[dict[str, Any]]:
+    """Whole lines of a file; a last line that an interruption cut is removed."""
+    text = path.read_text("utf-8") if path.exists() else ""
+    whole = text[: text.rfind("\n") + 1]
+    path.write_text(whole, "utf-8")
+    return [json.loads(line) for line in whole.splitlines()]
+
+
+def _append_row(path: Path, row: dict[str, Any]) -> None:
+    with path.open("a", encoding="utf-8") as file:
+        file.write(f"{json.dumps(row)}\n")
+
+
+def is_equivalent(row: dict[str, Any], known: list[dict[str, str]]) -> bool:
+    """Whether a survivor is listed as a change that no test can notice."""
+    old, new = ([line[1:].strip() for line in row["diff"] if line.startswith(sign)] for sign in "-+")
+    return any([item["line"]] == old and [item["mutant"]] == new and item["file"] == row["file"] for item in known)
+
+
+def report(folder: str, rows: list[dict[str, Any]]) -> bool:
+    """Print the share of a folder and its survivors; whether enough mutants are killed."""
+    killed = sum(row["outcome"] in {"killed", "timeout"} for row in rows)
+    low, high = wilson_interval(killed, len(rows))
+    share = killed / len(rows)
+    print(f"{folder}: {killed} of {len(rows)} killed, {share:.0%} (95 % interval {low:.0%} to {high:.0%})", flush=True)
+    for row in rows:
+        if row["outcome"] in {"survived", "untested"}:
+            print(f"  {row['outcome']} {row['file']} {row['operator']} {row['occurrence']}")
+            print("\n".join(f"    {line}" for line in row["diff"]), flush=True)
+    return share >= SUFFICIENT
 
 
 def main() -> int:
-    """Run, continue or list a mutation run."""
-    arguments = _parse_arguments()
-    out, root = arguments.out.resolve(), arguments.root.resolve()
-    if out.is_relative_to(root):
-        sys.exit(f"{out}: lies inside the checkout {root}; give a folder outside it")
-    out.mkdir(parents=True, exist_ok=True)
-    results_file = out / "results.json"
-    if arguments.list:
-        return _list(loads(results_file.read_text(encoding="utf-8")), arguments.list)
-    _ = lock(out)
-    snapshot = out / "snapshot"
-    if not snapshot.exists():
-        shutil.rmtree(out / "unfinished", ignore_errors=True)
-        copy_checkout(root, out / "unfinished")
-        (out / "unfinished").rename(snapshot)
-        link_packages(snapshot)
-    settings = Settings.read(arguments.settings)
-    if arguments.seed is not None:
-        settings = replace(settings, seed=arguments.seed)
-    sources = Sources(snapshot, settings)
-    preload(["coverage", *settings.preload])
-    patterns = [pattern for area in settings.areas.values() for pattern in area["files"]]
-    if unmatched := [pattern for pattern in patterns if not sources.files([pattern])]:
-        sys.exit(f"{arguments.settings.name}: no file matches {', '.join(unmatched)}")
-    areas = arguments.areas.split(",") if arguments.areas else list(settings.areas)
-    traces = _trace(sources, arguments, out)
-    results = (
-        loads(results_file.read_text(encoding="utf-8"))
-        if results_file.exists()
-        else {"seed": settings.seed, "mutants": {}, "reliable": []}
-    )
-    sample = _sample(sources, areas, arguments)
-    jobs = partial(_jobs, sample, sources, traces, results, arguments)
-    known = {mutant.id: (area, mutant) for area, mutant in sample}
-    for identity, answer in run_jobs(jobs(), out, 1 if arguments.mutant else arguments.jobs):
-        area, mutant = known[identity]
-        results["reliable"] = sorted({*results["reliable"], *answer.pop("reliable")})
-        results["mutants"][identity] = {"area": area, **_facts(mutant), **answer}
-        write_json(results_file, results)
-        print(f"{identity} {answer['outcome']:9} {answer['seconds']:6.1f} s  {_describe(mutant)}", flush=True)
-        if arguments.mutant:
-            print(_difference(mutant, sources), (out / "slot-0" / "log").read_text(encoding="utf-8"), sep="\n")
-    for area, mutant in sample:
-        if (reason := settings.equivalence(mutant)) is not None:
-            entry = {"area": area, **_facts(mutant), "outcome": "equivalent", "reason": reason, "seconds": 0.0}
-            results["mutants"][mutant.id] = entry
-    write_json(results_file, results)
-    return _summarise(results, {mutant.id: area for area, mutant in sample})
-
-
-def _parse_arguments() -> argparse.Namespace:
-    here = Path(__file__).resolve().parent
+    """Run the open mutants of all folders; exit code 1 if a folder has too few killed ones."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--root", type=Path, default=here.parent, help="checkout to mutate")
-    parser.add_argument("--settings", type=Path, default=here / "mutation.toml")
-    parser.add_argument("--areas", help="areas, separated by commas; default all")
-    parser.add_argument("--mutants", type=int, help="size of the sample, shared out like that of the settings")
-    parser.add_argument("--seed", type=int)
-    parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="start no mutant after this time")
-    parser.add_argument("--budget", type=float, default=60.0, help="processor time of the tests of a mutant [s]")
-    parser.add_argument("--start", type=float, default=30.0, help="processor time allowed for the start of a run [s]")
-    parser.add_argument("--tests", default="tests", help="test files and folders, separated by commas")
-    parser.add_argument("--again", help="repeat mutants with this outcome, for example survived")
-    parser.add_argument("--only", type=Path, help="results.json whose survivors are the sample")
-    parser.add_argument("--mutant", help="id of a single mutant")
-    parser.add_argument("--list", metavar="OUTCOME", help="list the mutants with this outcome and end")
-    return parser.parse_args()
+    parser.add_argument("--mutants", type=int, default=60, help="size of the sample of each folder")
+    parser.add_argument("--folders", nargs="*", help="default: all")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--tests", type=int, default=4, help="largest number of test files of a mutant")
+    parser.add_argument("--budget", type=float, default=45.0, help="largest time of the tests of a mutant [s]")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    run = Run(options.out.resolve(), options.tests, options.budget)
+    known = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text("utf-8"))["equivalent"]
+    workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+    for number in range(options.jobs):
+        workers.put(Worker.create(run.snapshot, run.out / f"worker-{number}"))
+    end = time.monotonic() + options.seconds
 
+    def judge(mutant: Mutant) -> None:
+        if time.monotonic() < end and mutant.order not in run.outcomes:
+            worker = workers.get()
+            try:
+                run.judge(mutant, worker)
+            finally:
+                workers.put(worker)
 
-def _sample(sources: Sources, areas: list[str], arguments: argparse.Namespace) -> list[tuple[str, Mutant]]:
-    """Sample of all areas in the order of the run: every area advances at the same pace."""
-    if arguments.mutant or arguments.only:
-        if arguments.only:
-            entries = loads(arguments.only.read_text(encoding="utf-8"))["mutants"]
-            wanted = {identity for identity, entry in entries.items() if entry["outcome"] in SURVIVED}
-        else:
-            wanted = {arguments.mutant}
-        found = [(area, mutant) for area in areas for mutant in sources.mutants(area) if mutant.id in wanted]
-        if missing := wanted - {mutant.id for _, mutant in found}:
-            print(f"no such mutant: {', '.join(sorted(missing))}")
-        return found
-    sizes = {area: sources.settings.areas[area]["mutants"] for area in areas}
-    if arguments.mutants is not None:
-        total = sum(sizes.values())
-        sizes = {area: max(1, round(size * arguments.mutants / total)) for area, size in sizes.items()}
-    ranked = [
-        (number / size, area, mutant)
-        for area, size in sizes.items()
-        for number, mutant in enumerate(sources.sample(area, size))
-    ]
-    return [(area, mutant) for _, area, mutant in sorted(ranked, key=lambda entry: entry[:2])]
-
-
-def _trace(sources: Sources, arguments: argparse.Namespace, out: Path) -> Traces:
-    """Traced runs of the test files, those of an earlier call from the folder of results."""
-    folder = out / "traces"
-    folder.mkdir(exist_ok=True)
-    files = sources.test_files(arguments.tests.split(","))
-    stored = {file: folder / (file.replace("/", "--") + ".json") for file in files}
-    folders = list(packages(sources.tree).values())
-    jobs = ((f, partial(trace_tests, sources.tree, f, folders)) for f in files if not stored[f].exists())
-    for file, run in run_jobs(jobs, out, arguments.jobs):
-        if "problem" in run:
-            sys.exit(f"{file}: no traced run\n{run['problem']}")
-        write_json(stored[file], run)
-        failed = [test for test, facts in run["tests"].items() if not facts["passed"]]
-        print(f"traced {file}: {len(run['tests'])} tests, {len(failed)} not passed and left out", flush=True)
-        if failed:
-            print("", *failed, sep="\n  ", flush=True)
-    traces = Traces()
-    for path in stored.values():
-        traces.add(loads(path.read_text(encoding="utf-8")))
-    if not traces.lines:
-        sys.exit("the tests execute no line of the snapshot; do they import the project from another place?")
-    return traces
-
-
-def _jobs(
-    sample: list[tuple[str, Mutant]], sources: Sources, traces: Traces, results: dict[str, Any], arguments: Any
-) -> Iterator[tuple[str, Callable[[Path], dict[str, Any]]]]:
-    end = time.monotonic() + arguments.seconds
-    for _, mutant in sample:
-        known = results["mutants"].get(mutant.id)
-        repeated = bool(arguments.mutant) or (known is not None and known["outcome"] == arguments.again)
-        if (known is None or repeated) and sources.settings.equivalence(mutant) is None:
-            if time.monotonic() > end:
-                print("time limit: call again to continue")
-                return
-            selection = select_tests(mutant, sources, traces, arguments.budget)
-            limit = 3 * selection.seconds + arguments.start + (COMPILE_S if _is_kernel(mutant, sources) else 0.0)
-            yield mutant.id, partial(try_mutant, mutant, sources, selection, limit, frozenset(results["reliable"]))
-
-
-def try_mutant(
-    mutant: Mutant, sources: Sources, selection: Selection, limit: float, reliable: frozenset[str], slot: Path
-) -> dict[str, Any]:
-    """Run the tests of a mutant in a private copy of the snapshot.
-
-    A failing test counts if it passes in the same run without the mutant. Otherwise the mutant is repeated without it.
-    """
-    begin = time.monotonic()
-    tests, unreliable = list(selection.tests), []
-    newly_reliable: list[str] = []
-    while tests and len(unreliable) <= UNRELIABLE_TESTS:
-        copy_tree(sources.tree, slot / "tree")
-        _mutate(mutant, sources, slot / "tree")
-        run = run_tests(slot / "tree", tests, limit)
-        if run.outcome not in ("failed", "timeout") or run.test in reliable:
-            break
-        if _passes_without(run, tests, sources, slot, limit):
-            newly_reliable.append(str(run.test))
-            break
-        unreliable.append(str(run.test))
-        tests = [test for test in tests if test != run.test and test.partition("::")[0] != run.test]
-    else:
-        run = Run("no tests", None, 0, 0.0)
-    outcome = {"failed": "killed", "passed": "survived", "no tests": "untested"}.get(run.outcome, run.outcome)
-    return {
-        "outcome": outcome,
-        "test": run.test,
-        "tests_run": run.tests_run,
-        "tests_selected": len(selection.tests),
-        "tests_found": selection.found,
-        "unreliable": unreliable,
-        "seconds": round(time.monotonic() - begin, 2),
-        "cpu_seconds": round(sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]), 2),
-        "reliable": newly_reliable,
-    }
-
-
-def _mutate(mutant: Mutant, sources: Sources, tree: Path) -> None:
-    """Write the mutated file, and remove the compiled kernels of this file and of its users."""
-    path = tree / mutant.file
-    path.write_bytes(mutant.apply(path.read_bytes()))
-    for cached in (path.parent / "__pycache__").glob(f"{path.stem}.*.pyc"):
-        cached.unlink()
-    if mutant.compiled:
-        for file in sources.dependents(mutant.file):
-            for cached in (tree / file).parent.glob(f"__pycache__/{Path(file).stem}.*.nb[ic]"):
-                cached.unlink()
-
-
-def _passes_without(run: Run, tests: list[str], sources: Sources, slot: Path, limit: float) -> bool:
-    """Whether the failing test passes, after the same tests, without the mutant."""
-    copy_tree(sources.tree, slot / "tree")
-    before = tests[: tests.index(run.test) + 1] if run.test in tests else tests[: max(1, run.tests_run)]
-    log = (slot / "log").read_bytes()
-    repeated = run_tests(slot / "tree", before, limit)
-    (slot / "log").write_bytes(log)
-    return repeated.outcome == "passed"
-
-
-def _is_kernel(mutant: Mutant, sources: Sources) -> bool:
-    """Whether numba compiles files that use the mutated code."""
-    return mutant.compiled and any(has_kernels(sources, file) for file in sources.dependents(mutant.file))
-
-
-def _facts(mutant: Mutant) -> dict[str, Any]:
-    names = ("file", "line", "scope", "operator", "change", "source")
-    return {name: getattr(mutant, name) for name in names}
-
-
-def _describe(mutant: Mutant) -> str:
-    return f"{mutant.file}:{mutant.line} {mutant.operator}: {mutant.change}"
-
-
-def _difference(mutant: Mutant, sources: Sources) -> str:
-    before = sources.read(mutant.file)
-    lines = (text.decode().splitlines() for text in (before, mutant.apply(before)))
-    return "\n".join(difflib.unified_diff(*lines, mutant.file, mutant.id, n=2, lineterm=""))
-
-
-def _list(results: dict[str, Any], outcome: str) -> int:
-    entries = [(name, entry) for name, entry in results["mutants"].items() if entry["outcome"] == outcome]
-    for name, entry in sorted(entries, key=lambda item: (item[1]["area"], item[1]["file"], item[1]["line"])):
-        tests = f"{entry.get('tests_run', 0)} of {entry.get('tests_found', 0)} tests"
-        print(f"{name} {entry['area']:14} {entry['file']}:{entry['line']} {entry['operator']}: {entry['change']}")
-        print(f"{'':10} {entry['source']}   [{entry['test'] or tests}]")
-    return 0
-
-
-def _summarise(results: dict[str, Any], sample: dict[str, str]) -> int:
-    """Print the score of each area; exit code 1 if one is below the limit or incomplete."""
-    poor = False
-    outcomes = ("killed", "timeout", *SURVIVED, "equivalent", "not run")
-    print(f"{'area':15}", *(f"{outcome:>10}" for outcome in outcomes), f"{'score':>7} {'CPU s':>7}")
-    for area in dict.fromkeys(sample.values()):
-        names = [name for name, of_area in sample.items() if of_area == area]
-        entries = [results["mutants"].get(name, {"outcome": "not run"}) for name in names]
-        count = Counter(entry["outcome"] for entry in entries)
-        killed = count["killed"] + count["timeout"]
-        tried = killed + sum(count[outcome] for outcome in SURVIVED)
-        score = killed / max(1, tried)
-        poor |= score < LEAST_KILLED or count["not run"] > 0
-        seconds = sum(entry.get("cpu_seconds", 0.0) for entry in entries) / max(1, tried)
-        print(f"{area:15}", *(f"{count[outcome]:10}" for outcome in outcomes), f"{score:7.1%} {seconds:7.1f}")
-    return int(poor)
+    sufficient = True
+    for folder, files in list_folders(run.snapshot).items():
+        if options.folders and folder not in options.folders:
+            continue
+        sample = draw_sample(run.snapshot, files, options.mutants)
+        with ThreadPoolExecutor(options.jobs) as pool:
+            list(pool.map(judge, sample))
+        rows = [run.outcomes[mutant.order] for mutant in sample if mutant.order in run.outcomes]
+        rows = [row for row in rows if not is_equivalent(row, known)]
+        sufficient = (not rows or report(folder, rows)) and sufficient
+    return 0 if sufficient else 1
 
 
 if __name__ == "__main__":
