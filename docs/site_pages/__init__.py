@@ -12,6 +12,7 @@ from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
 from site_pages.start_pictures import write_start_pictures
+from site_pages.threshold_pages import build_threshold_page
 from site_pages.tutorial_pages import write_tutorial_pictures
 
 DOCS = Path(__file__).parents[1]
@@ -20,6 +21,7 @@ PAGES = {
     "commands": build_command_page,
     "formats": build_format_page,
     "quantity-reference": build_quantity_page,
+    "thresholds": build_threshold_page,
     "interface": build_interface_page,
     "contributing": build_contributing_page,
     "known-limitations": build_limitations_page,
