@@ -22,7 +22,7 @@ version = release = installed_version("pantocheck")
 
 extensions = ["myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "site_pages"]
+exclude_patterns = ["_build", "generated/tables", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 numpydoc_show_class_members = False

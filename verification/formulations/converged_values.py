@@ -97,30 +97,8 @@ def _difference(runs: Runs, reference: dict[str, Extrapolation], key: str) -> fl
     return difference_pct(quantity, reference[key].value, second_value(runs, key), None if mean is None else mean.value)
 
 
-def print_table(case: Case, runs: Runs) -> None:
-    """Print the table of a case for docs/second-formulation.md."""
-    forces = ", ".join(f"{force:.3f}" for force in runs["uplift_forces"])
-    print(f"\n### {case.id}\n" + (f"\nUplift force {forces} N.\n" if forces else ""))
-    row = f"library/{case.id}/{{pantograph}}/{{quantity}}"
-    print(f"<!-- guide-table: {row}; 0.5 m=value; converged=converged; extrapolated=second -->\n")
-    columns = [*(f"{mesh[0]:g} m" for mesh in MESHES), "converged", "order", *(f"{h:g} m" for h in SPACINGS)]
-    print(f"| pantograph | quantity | {' | '.join(columns)} | extrapolated | difference [%] |")
-    print("| --: | :-- |" + " --: |" * (len(columns) + 2))
-    reference = {key: extrapolate_key(runs, key) for key in runs["reference"][f"{MESHES[0][0]:g}"]}
-    for key, entry in sorted(reference.items(), key=lambda item: (item[0].startswith("0|"), item[0].split("|")[0])):
-        owner, quantity = key.split("|")
-        digits = 4 if quantity == "elasticity_mm_N" else 2
-        meshes = [runs["reference"][f"{mesh[0]:g}"][key] for mesh in MESHES]
-        points = [runs["second"][f"{h:g}"][key] for h in SPACINGS]
-        order = "-" if entry.order is None else f"{entry.order:.1f}"
-        cells = [*(f"{value:.{digits}f}" for value in (*meshes, entry.value)), order]
-        cells += [f"{value:.{digits}f}" for value in (*points, second_value(runs, key))]
-        name = owner if owner != "0" else "line"
-        print(f"| {name} | {quantity} | {' | '.join(cells)} | {_difference(runs, reference, key):+.2f} |", flush=True)
-
-
 def main() -> None:
-    """Run, print and write."""
+    """Run and write."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
     options.add_argument("--runs", type=Path, default=Path("converged-runs.json"), help="file of finished runs")
@@ -129,7 +107,6 @@ def main() -> None:
     known = {case.id: case for case in select_cases(chosen.cases)}
     for case in (known[name] for name in chosen.cases):
         runs = complete_runs(case, chosen.runs, print)
-        print_table(case, runs)
         path = chosen.out / f"{case.id}.toml"
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(write_file(case, runs), encoding="utf-8")

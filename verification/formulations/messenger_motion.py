@@ -15,7 +15,7 @@ from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.formulations.cable_stiffness import TensionLaw, irvine_parameter, linearise_wire
 from verification.formulations.exact_building import AlongTrack
-from verification.formulations.exact_case import ExactCase, build_exact_case, print_rows
+from verification.formulations.exact_case import ExactCase, build_exact_case, change_pct, print_rows
 from verification.formulations.exact_line import ExactLine
 from verification.formulations.exact_passage import Rest, find_rest
 from verification.formulations.exact_points import support_points, watched_points
@@ -23,6 +23,11 @@ from verification.formulations.exact_tangent import natural_frequencies, point_e
 
 MESSENGER = 1
 """Number of the messenger wire."""
+COMPARED: dict[str, tuple[TensionLaw, ...]] = {
+    "fixed": ("constant", "per span", "per span, second order"),
+    "free": ("constant", "per section", "axial field free"),
+}
+"""Linear laws that are compared with the exact model, by the motion of the supports along the track."""
 TANGENT_SPANS = 3
 """Spans of the line whose tangent stiffness is compared."""
 
@@ -72,6 +77,14 @@ def print_passages(spans: int, element: float) -> None:
         print(f"{name}: {rows[name]}", file=sys.stderr, flush=True)
     print(f"\nPassage, spans {study.section[0]} to {study.section[1]} of {spans}, elements of {element:g} m\n")
     print_rows(rows)
+    print("\nDifference to the exact model [%]\n")
+    print_rows(
+        {
+            f"{along_track}: {law}": change_pct(rows[law], rows[f"exact, {along_track}"])
+            for along_track, laws in COMPARED.items()
+            for law in laws
+        }
+    )
 
 
 def main() -> None:
