@@ -54,8 +54,6 @@ def link_repository_files(app: Any, page: str, source: list[str]) -> None:
     """Turn links to files that the site builds as pages, as the repository has them, into links to these pages."""
     source[0] = re.sub(r"\(((?:\.\./)*)\.\./examples/gallery/(\w+)\.py\)", r"(\1gallery/\2.rst)", source[0])
     source[0] = re.sub(r"\(((?:\.\./)*)\.\./CONTRIBUTING\.md", r"(\1generated/contributing.md", source[0])
-    limitations = r"(\1generated/known-limitations.md"
-    source[0] = re.sub(r"\(((?:\.\./)*)\.\./templates/known-limitations\.md", limitations, source[0])
 
 
 def setup(app: Any) -> None:

@@ -9,12 +9,12 @@ from site_pages.converged_pages import build_converged_page
 from site_pages.format_pages import build_format_page
 from site_pages.guide_tables import build_guide_counts
 from site_pages.interface_pages import build_interface_page
-from site_pages.limitations_page import build_limitations_page
 from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
 from site_pages.start_pictures import write_start_pictures
 from site_pages.threshold_pages import build_threshold_page
+from site_pages.trust_table import build_trust_table
 from site_pages.tutorial_pages import write_tutorial_pictures
 
 DOCS = Path(__file__).parents[1]
@@ -27,12 +27,11 @@ PAGES = {
     "interface": build_interface_page,
     "converged-values": build_converged_page,
     "contributing": build_contributing_page,
-    "known-limitations": build_limitations_page,
     "all-pages": build_page_list,
 }
 """Builder of each page by its name."""
 
-TABLES = {"guide-counts": build_guide_counts}
+TABLES = {"guide-counts": build_guide_counts, "limit-trust": build_trust_table}
 """Builder of each table that a written page includes."""
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))

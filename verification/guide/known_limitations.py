@@ -1,15 +1,17 @@
 """Known limitations of the suite, from the Markdown file that is their only home."""
 
-from pantocheck.conformance.reports.words import TEMPLATES
+from pathlib import Path
+
 from verification.guide.guide_format import Limitation
 
+DOCS = Path(__file__).parents[2] / "docs"
 LIMITATIONS_FILE = "known-limitations.md"
-"""File among the templates: a heading of second level per limitation, and list items below it."""
+"""Page of the documentation: a heading of second level per limitation, and list items below it."""
 
 
 def read_limitations() -> list[Limitation]:
     """Known limitations, in the order of their file."""
-    text = (TEMPLATES / LIMITATIONS_FILE).read_text("utf-8")
+    text = (DOCS / LIMITATIONS_FILE).read_text("utf-8")
     return [_read_limitation(part) for part in text.split("\n## ")[1:]]
 
 

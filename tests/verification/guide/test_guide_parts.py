@@ -101,7 +101,7 @@ def test_limitations_have_one_home_to_which_the_documentation_leads() -> None:
     limitations = read_limitations()
     assert len(limitations) >= 5
     assert all(part.title and part.sentences for part in limitations)
-    file = ROOT / "templates" / LIMITATIONS_FILE
+    file = ROOT / "docs" / LIMITATIONS_FILE
     assert sum(len(part.sentences) for part in limitations) == file.read_text("utf-8").count("\n* ")
     for page in ("README.md", "docs/guide.md"):
         assert LIMITATIONS_FILE in (ROOT / page).read_text("utf-8")
