@@ -41,7 +41,6 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.campaign_format import CampaignResults
-from pantocheck.conformance.results.guide_format import Guide
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
@@ -81,7 +80,6 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "drop-comparison": DropComparison,
     "response-comparison": ResponseComparison,
     "pantograph-fit": PantographFit,
-    "guide": Guide,
 }
 """JSON files that the suite writes."""
 

@@ -73,7 +73,6 @@ VERSIONED_FORMATS: dict[str, FileFormat] = {
         FileFormat("dossier"),
         FileFormat("drop-comparison"),
         FileFormat("drop-limits"),
-        FileFormat("guide"),
         FileFormat("identification"),
         FileFormat("pantograph-fit"),
         FileFormat("population"),

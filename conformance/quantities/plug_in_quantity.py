@@ -32,6 +32,7 @@ NEEDS: dict[ForceNeed, Need[ForceSignals]] = {
 
 LONGEST_UNIT = 20
 LONGEST_DEFINITION = 300
+"""Largest numbers of characters, so that both fit into the columns of pages."""
 
 
 @dataclass(frozen=True)
