@@ -22,7 +22,6 @@ COMMANDS = {
     "new": "Write a commented, valid line, case, pantograph, response, administration or dossier file.",
     "describe": "Describe a measured file: channels, rates, ranges, gaps and suspicious contents.",
     "check": "Check input files and report all their problems at once.",
-    "migrate": "Write files in the current version of their format into a folder.",
     "simulate": "Simulate a case and write its record.",
     "drop": "Simulate the mass drops of a case and write their records.",
     "drop-campaign": "Simulate a campaign of mass drops: every combination of masses, places and tensions.",
