@@ -23,7 +23,6 @@ from pantocheck.conformance.results.input_values import StoredValues
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.origin_format import OriginFacts
-from pantocheck.conformance.results.plug_in_format import PlugInFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
@@ -43,11 +42,7 @@ class SystemIdentity(ResultsPart):
 
     name: str
     version: str
-    kind: Literal["builtin", "record", "command", "plugin"]
-    plug_in: Annotated[
-        PlugInFacts | None,
-        Field(exclude_if=is_absent, description="distribution that offers the system; missing: none"),
-    ] = None
+    kind: Literal["builtin", "record", "command"]
 
 
 class Platform(ResultsPart):
@@ -187,10 +182,6 @@ class CaseResult(ResultsPart):
     origin: Annotated[
         OriginFacts | None,
         Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
-    ] = None
-    plug_ins: Annotated[
-        list[PlugInFacts] | None,
-        Field(exclude_if=is_absent, description="reader and quantities of other distributions; missing: none"),
     ] = None
     profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
     edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None

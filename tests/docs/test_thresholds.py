@@ -76,7 +76,6 @@ from pantocheck.conformance.quantities import (
     limit_text,
     line_signals,
     pantograph_signals,
-    plug_in_quantity,
 )
 from pantocheck.conformance.records import events, record
 from pantocheck.conformance.records.logger import arc_tables, track_position
@@ -101,7 +100,7 @@ MODULES: list[ModuleType] = [
     force_content, force_copy, force_dynamics, implied_force, mean_force, roll_off,
     rounding, support_coincidence, support_passing, assessed_record, baseline, discretisation,
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
-    verification_limits, bands, filters, force_signals, limit_text, line_signals, pantograph_signals, plug_in_quantity,
+    verification_limits, bands, filters, force_signals, limit_text, line_signals, pantograph_signals,
     record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
