@@ -97,6 +97,7 @@ def grade_record(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
         verdict=judge_case((criterion.verdict for criterion in criteria), record),
+        criteria_verdict=None,
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
         warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],

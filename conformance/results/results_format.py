@@ -69,7 +69,7 @@ class Renderer(ResultsPart):
 
 
 class InputGroup(ResultsPart):
-    """Source and values of a group of inputs; older results have no values."""
+    """Source and values of a group of inputs; a single key has no values, because its group has them."""
 
     group: str
     trust: Trust
@@ -121,7 +121,7 @@ class ScopeStep(ResultsPart):
     cases: list[str]
 
 
-def name_case(case_id: str, library: LibraryIdentity | None) -> str:
+def name_case(case_id: str, library: LibraryIdentity) -> str:
     """Name of a case in reports: its id, or `modified copy of` the library case with this id."""
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
@@ -137,8 +137,8 @@ class CaseResult(ResultsPart):
     title: str
     verdict: Verdict
     criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
-    ] = None
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: an assessment by a profile")
+    ]
     verification: Annotated[
         CaseVerification | None, Field(description="verification; null: the case has no converged values")
     ] = None
@@ -146,8 +146,7 @@ class CaseResult(ResultsPart):
         BaselineComparison | None,
         Field(
             exclude_if=is_absent,
-            description="comparison with a baseline; missing: none was made, or by an older version, which counted a "
-            "drift in `criteria_verdict`",
+            description="comparison with a baseline; missing: none was made",
         ),
     ] = None
     reason: str | None
@@ -156,29 +155,21 @@ class CaseResult(ResultsPart):
     inputs: list[InputGroup]
     derived: Annotated[
         list[DerivedFact],
-        Field(
-            description="values that the suite derives from the inputs, and the uplift forces of its own run; empty: "
-            "made by an older version"
-        ),
+        Field(description="values that the suite derives from the inputs, and the uplift forces of its own run"),
     ] = []
     input_digest: str
     changes: Annotated[
         list[str],
         Field(description="inputs that were changed on the command line, with the values of the files"),
     ] = []
-    limits_digest: Annotated[
-        str | None, Field(description="SHA-256 of the limits, those of a limits file included")
-    ] = None
+    limits_digest: Annotated[str, Field(description="SHA-256 of the limits, those of a limits file included")]
     stated_limits_digest: Annotated[
-        str | None, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
-    ] = None
+        str, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
+    ]
     limit_changes: Annotated[
         list[str], Field(description="limits of the case file or profile that a limits file weakens")
     ] = []
-    library: Annotated[
-        LibraryIdentity | None,
-        Field(description="comparison with the library case or profile of this name; null: made by an older version"),
-    ] = None
+    library: Annotated[LibraryIdentity, Field(description="comparison with the library case or profile of this name")]
     origin: Annotated[
         OriginFacts | None,
         Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
@@ -265,8 +256,8 @@ class Results(ResultsPart):
     statement: str = STATEMENT
     verdict: Verdict
     criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
-    ] = None
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: no case takes part in it")
+    ]
     verification_verdict: Annotated[
         Verdict | None, Field(description="verdict by verification; null: no case has converged values")
     ] = None
@@ -290,12 +281,8 @@ class Results(ResultsPart):
     administration: Annotated[
         Administration | None, Field(description="administrative data of the report; null: none were given")
     ] = None
-    renderer: Annotated[
-        Renderer | None, Field(description="software that made the pages; null: made by an older version")
-    ] = None
-    scope: Annotated[
-        list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
-    ] = []
+    renderer: Annotated[Renderer, Field(description="software that made the pages")]
+    scope: Annotated[list[ScopeStep], Field(description="every step of the procedure")]
     findings: Annotated[
         FindingCounts | None, Field(description="findings of publications by outcome; null: the cases grade none")
     ] = None

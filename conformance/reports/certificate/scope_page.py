@@ -122,7 +122,7 @@ def _kind(case: dict[str, Any]) -> str:
 
 
 def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """Table of the steps of the procedure with the verdicts of their cases; empty for results of older versions.
+    """Table of the steps of the procedure with the verdicts of their cases.
 
     Parameters
     ----------

@@ -1,6 +1,5 @@
 """Genuine documents: none is refused, whatever its format and its verdict."""
 
-import lzma
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -86,27 +85,3 @@ def test_other_limits_are_named_and_not_refused(
     verification = verify_document(tmp_path / "results.json")
     assert verification.consistent, verification.checks
     assert [check for check in verification.checks if check.outcome == "open"]
-
-
-FROZEN = Path(__file__).parents[2] / "data" / "frozen"
-OLDER = (
-    "en50318-2002/certificate.pdf",
-    *sorted(f"{path.parent.name}/{path.name}" for path in FROZEN.glob("*/results.json.xz")),
-)
-CHANGED_VERDICT = {"ac-simple/results.json.xz": ("verdict 'pass' stated, 'info' follows from the cases",)}
-"""Discrepancies that follow from a changed rule, which docs/verdicts.md lists under "Changes of verdicts"."""
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("name", ["en50318-2002/certificate.pdf", *OLDER])
-def test_documents_of_an_older_version_are_compared_in_part(tmp_path: Path, name: str) -> None:
-    """Files of commit 07ce9e7 do not contradict themselves; the output says that another version made them."""
-    content = (FROZEN / name).read_bytes()
-    path = tmp_path / Path(name).name.removesuffix(".xz")
-    path.write_bytes(lzma.decompress(content) if name.endswith(".xz") else content)
-    verification = verify_document(path)
-    assert verification.discrepancies == CHANGED_VERDICT.get(name, ())
-    [versions] = [check for check in verification.checks if check.statement.startswith("Other versions")]
-    assert versions.outcome == "incomplete"
-    assert "stated no digest of its files" in versions.details[0]
-    assert CliRunner().invoke(app, ["verify", str(path), "--any-verdict"]).exit_code == 1
