@@ -29,8 +29,6 @@ from pantocheck.conformance.results.reference_format import ReferenceValues
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 from pantocheck.conformance.results.suite_part import Suite
 
-RESULTS_SCHEMA = "pantocheck.results/1"
-
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
 VerdictName = Literal["criteria", "verification"]
