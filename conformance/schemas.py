@@ -45,7 +45,7 @@ from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
 
-READ_FORMATS: dict[str, type[BaseModel]] = {
+USER_FORMATS: dict[str, type[BaseModel]] = {
     "case": CaseFile,
     "line": LineFile,
     "pantograph": PantographFile,
@@ -63,6 +63,11 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "summary": RecordSummary,
     "profile": Profile,
     "administration": Administration,
+}
+"""TOML files that users write; `reference_cases/schema` has their schemas, for editors."""
+
+READ_FORMATS: dict[str, type[BaseModel]] = {
+    **USER_FORMATS,
     "converged": ConvergedFile,
     "model-uncertainty": ModelUncertaintyFile,
 }

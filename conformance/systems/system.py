@@ -18,7 +18,7 @@ class System(Protocol):
         """Version in reports."""
 
     @property
-    def kind(self) -> Literal["builtin", "record", "command", "plugin"]:
+    def kind(self) -> Literal["builtin", "record", "command"]:
         """Kind of the system."""
 
     def run(self, case: Case) -> Outcome:

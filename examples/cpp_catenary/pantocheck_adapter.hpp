@@ -339,7 +339,7 @@ inline int serve(
         const std::string kind = message["message"].characters;
         if (kind == "stop") break;
         if (kind == "start") {
-            std::cout << "{\"message\": \"started\", \"protocol\": \"pantocheck.command/2\", \"name\": " << quote(name)
+            std::cout << "{\"message\": \"started\", \"protocol\": \"pantocheck.command/1\", \"name\": " << quote(name)
                       << ", \"version\": " << quote(version) << "}" << std::endl;
         } else {
             const std::string answer = run(message["case"], system, simulate);

@@ -16,7 +16,7 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
-PROTOCOL = "pantocheck.command/2"
+PROTOCOL = "pantocheck.command/1"
 FORCES = ("uplift_force_N", "target_mean_force_N")
 
 

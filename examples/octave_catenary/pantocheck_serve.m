@@ -23,7 +23,7 @@ function pantocheck_serve(name, version, simulate)
     if strcmp(message.message, 'stop')
       break
     elseif strcmp(message.message, 'start')
-      answer = struct('message', 'started', 'protocol', 'pantocheck.command/2', 'name', name, 'version', version);
+      answer = struct('message', 'started', 'protocol', 'pantocheck.command/1', 'name', name, 'version', version);
     else
       names = fieldnames(message);
       given = message.(names{strcmpi(names, 'xcase')});  % jsondecode renames the keyword `case`

@@ -25,7 +25,7 @@ import time
 import traceback
 from dataclasses import dataclass, field
 
-PROTOCOL = "pantocheck.command/2"
+PROTOCOL = "pantocheck.command/1"
 
 START_OF_THE_CASE = "as in the case"
 """The line starts at rest under the uplift forces, and the train at full speed, at the place of the case."""

@@ -34,9 +34,7 @@ BANDS = ("std_force_N", "rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
 def write_file(case: Case, runs: Runs) -> str:
     """Content of the file of converged values of a case."""
     steps = [build_model(build_line(build_case_message(case)), spacing).arrays.step for spacing in SPACINGS]
-    depth = "../" * (len(case.id.split("/")))
     lines = [
-        f"#:schema {depth}schema/converged.schema.json",
         "# Written by verification/formulations/converged_values.py; do not edit.",
         'schema = "pantocheck.converged/1"',
         f'case = "{case.id}"',

@@ -74,7 +74,7 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         f"{format_plain(results['time_step_s'])} s",
         "Digest of the line": results["line_digest"],
         "Digest of the record": results["record_digest"],
-        "Digest of the suite": results["suite"]["digest"] or "not known",
+        "Digest of the suite": results["suite"]["digest"],
     }
     return tuple((name, text) for name, text in facts.items() if text)
 

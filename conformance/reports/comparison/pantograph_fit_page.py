@@ -96,5 +96,5 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         ("Natural frequencies, undamped, head free", f"{frequencies} Hz"),
         ("Measured values in the fit", format_plain(results["rows"])),
         ("Uncertainty of the measurement", "stated" if results["is_noise_stated"] else "not stated"),
-        ("Digest of the suite", results["suite"]["digest"] or "not known"),
+        ("Digest of the suite", results["suite"]["digest"]),
     )

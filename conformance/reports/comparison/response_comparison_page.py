@@ -40,7 +40,7 @@ def build_response_comparison(results: dict[str, Any]) -> doc.Document:
     )
     facts = (
         ("Digest of the pantograph", results["pantograph_digest"]),
-        ("Digest of the suite", results["suite"]["digest"] or "not known"),
+        ("Digest of the suite", results["suite"]["digest"]),
     )
     remarks = tuple(list_response_remarks(results))
     blocks: list[doc.Block] = [doc.WarningBox(remarks)] if remarks else []

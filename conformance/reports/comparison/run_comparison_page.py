@@ -21,7 +21,7 @@ def build_run_comparison(results: dict[str, Any]) -> doc.Document:
     header = doc.PlainHeader("Comparison of runs", f"{', '.join(names[1:])} beside {names[0]}.")
     facts = {subject["name"]: _describe_subject(subject) for subject in results["subjects"]}
     suite = results["suite"]
-    facts |= {"Suite": f"Pantocheck {suite['version']}", "Digest of the suite": suite["digest"] or "not known"}
+    facts |= {"Suite": f"Pantocheck {suite['version']}", "Digest of the suite": suite["digest"]}
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
     for case in results["cases"]:
         owners = [_build_owner(owner, names) for owner in case["owners"] if owner["quantities"]]

@@ -89,7 +89,7 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         "Element length of the model": f"{format_plain(results['element_m'])} m",
         "Digest of the line": results["line_digest"],
         "Digest of the record": results["record_digest"],
-        "Digest of the suite": results["suite"]["digest"] or "not known",
+        "Digest of the suite": results["suite"]["digest"],
         "Note": results["note"],
     }
     return tuple((name, text) for name, text in facts.items() if text)

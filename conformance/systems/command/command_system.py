@@ -16,6 +16,7 @@ from pantocheck.conformance.systems.command.delivery import DeliveryRefused, rea
 from pantocheck.conformance.systems.command.program import Program, ProgramFailed
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import (
+    PROTOCOL,
     AnswerRefused,
     DeliveredAnswer,
     ErroredAnswer,
@@ -24,7 +25,6 @@ from pantocheck.conformance.systems.command.protocol_messages import (
     encode_message,
     parse_message,
 )
-from pantocheck.conformance.systems.command.protocol_versions import FIRST_VERSION, PROTOCOLS, find_newer_key
 
 START_LIMIT = 120.0
 """Time limit of the first answer of a program [s]; large environments need half a minute to start."""
@@ -67,14 +67,7 @@ class CommandSystem:
             folder = Path(name)
             try:
                 with Program(self.arguments, folder) as program:
-                    newer_key = find_newer_key(case.line)
-                    if _start_program(program, self.timeout_s).protocol == FIRST_VERSION and newer_key is not None:
-                        program.send(encode_message("stop"))
-                        program.wait_for_end()
-                        return Skipped(
-                            f"the line has the key {newer_key}, which {FIRST_VERSION} does not contain; a program that"
-                            f" reads it answers 'start' with {PROTOCOLS[-1]}"
-                        )
+                    _start_program(program, self.timeout_s)
                     begin = time.monotonic()
                     limit, content = self.timeout_s, build_case_message(case)
                     program.send(encode_message("run", id=RUN, folder=name, time_limit_s=limit, case=content))
@@ -121,13 +114,12 @@ def _find_late_error(lines: list[bytes]) -> ErroredAnswer | None:
 
 def _start_program(program: Program, limit: float) -> Started:
     """Send the message `start` and return the answer."""
-    versions = {"protocol": FIRST_VERSION, "protocols": PROTOCOLS}
-    program.send(encode_message("start", **versions, suite_version=version("pantocheck")))
+    program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
     answer = parse_message(program.read_line(min(limit, START_LIMIT)))
     if not isinstance(answer, Started):
         raise AnswerRefused(f"its first answer is {answer.message!r}; expected 'started'")
-    if answer.protocol not in PROTOCOLS:
-        raise AnswerRefused(f"it uses the protocol {answer.protocol!r}; expected {' or '.join(map(repr, PROTOCOLS))}")
+    if answer.protocol != PROTOCOL:
+        raise AnswerRefused(f"it uses the protocol {answer.protocol!r}; expected {PROTOCOL!r}")
     return answer
 
 

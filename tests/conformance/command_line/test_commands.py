@@ -355,7 +355,7 @@ def write_refusal(folder: Path) -> Path:
         "import json, sys\n"
         "for line in sys.stdin:\n"
         "    message = json.loads(line)\n"
-        "    started = {'message': 'started', 'protocol': 'pantocheck.command/2', 'name': 'none', 'version': ''}\n"
+        "    started = {'message': 'started', 'protocol': 'pantocheck.command/1', 'name': 'none', 'version': ''}\n"
         "    skipped = {'message': 'skipped', 'id': message.get('id'), 'reason': 'no solver'}\n"
         "    answer = {'start': started, 'run': skipped}.get(message['message'])\n"
         "    if answer is None:\n"

@@ -19,7 +19,7 @@ def build_fit() -> dict[str, Any]:
         "free_parameters": 5, "starts": 10, "best_starts": 9,
     }  # fmt: skip
     return {
-        "suite": {"version": "1", "commit": None, "digest": None}, "title": "Rig 12", "masses": 2,
+        "suite": {"version": "1", "commit": None, "digest": "sha256:b"}, "title": "Rig 12", "masses": 2,
         "band_Hz": [0.5, 50.0], "rows": 120, "is_noise_stated": True,
         "parameters": [dict(zip(keys, item, strict=True)) for item in parameters],
         "natural_frequencies_Hz": [0.2386, 4.66],

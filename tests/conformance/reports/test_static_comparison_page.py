@@ -40,7 +40,7 @@ def build_results(spans: int = 12) -> dict[str, Any]:
         "close": ["lies near"],
     }  # fmt: skip
     return {
-        "suite": {"version": "1", "commit": None, "digest": None}, "line": "My line", "line_digest": "sha256:a",
+        "suite": {"version": "1", "commit": None, "digest": "sha256:b"}, "line": "My line", "line_digest": "sha256:a",
         "record": "measured.csv", "record_digest": "sha256:b", "record_state": "unverified", "verdict": "fail",
         "element_m": 0.5, "force_N": [60.0, 120.0], "evaluated_spans": [2, 11], "evaluated_m": [60.0, 660.0],
         "largest_distance_m": None, "values": [values], "criteria": [criterion], "note": None,

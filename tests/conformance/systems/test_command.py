@@ -10,22 +10,17 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import jsonschema
 import pytest
 from numpy.testing import assert_allclose
 
-from helpers.listed_spans import list_spans
 from helpers.section_lines import section_line
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_toml
 from pantocheck.conformance.plan import read_plan
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
@@ -34,7 +29,6 @@ from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
-from pantocheck.conformance.systems.command.protocol_versions import find_newer_key
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -188,33 +182,8 @@ def test_message_contains_the_whole_case_without_limits(
     assert given["evaluated_m"] == [240.0, 360.0]
 
 
-@pytest.mark.parametrize(
-    ("geometry", "key"),
-    [
-        ({"support": [{"number": 2, "encumbrance_m": 1.1}]}, "geometry.support"),
-        (
-            {"schedule": {"a": {"x_m": [9.0], "contact_wire_height_m": [0.0]}}},
-            "geometry.schedule.a.contact_wire_height_m",
-        ),
-    ],
-)
-def test_program_of_the_first_version_does_not_get_a_line_that_it_cannot_read(
-    program: Callable[..., System], case_250: Case, tmp_path: Path, geometry: dict[str, Any], key: str
-) -> None:
-    """It would compute another line from the values that it knows. Listed spans alone are a line of version 1."""
-    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
-    assert find_newer_key(LineFile.model_validate(tables)) is None
-    tables["geometry"] |= geometry
-    case = replace(case_250, line=LineFile.model_validate(tables))
-    outcome = program("well").run(case)
-    assert isinstance(outcome, Skipped)
-    assert f"the line has the key {key}, which pantocheck.command/1 does not contain" in outcome.reason
-    messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
-    assert messages == ["start", "stop"] * 2
-
-
 def test_line_of_several_sections_is_skipped(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
-    """No version of the protocol describes them; the program is not asked."""
+    """The protocol does not describe them; the program is not asked."""
     outcome = program("well").run(replace(case_250, line=section_line()))
     assert isinstance(outcome, Skipped)
     assert "the line has 2 tension sections (key section)" in outcome.reason

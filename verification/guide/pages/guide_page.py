@@ -69,7 +69,7 @@ def _list_facts(guide: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     return (
         ("Suite", f"Pantocheck {suite['version']}"),
         ("Commit", suite["commit"] or "not known"),
-        ("Digest of the suite", suite["digest"] or "not known"),
+        ("Digest of the suite", suite["digest"]),
         ("Python", platform["python"]),
         ("Libraries", software),
         ("Machine", f"{platform['system']}, {platform['machine']}"),
