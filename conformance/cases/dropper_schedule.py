@@ -9,6 +9,7 @@ from pydantic import Field
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NumberList,
@@ -19,7 +20,9 @@ from pantocheck.conformance.input_files.sourced_table import (
 
 DropperPositions = Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
 DropperPresags = Annotated[
-    NumberList | None, Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0")
+    NumberList | None,
+    Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
+    Feature("presag", lambda heights: any(heights or ())),
 ]
 DropperHeights = Annotated[
     NumberList | None,
@@ -28,9 +31,10 @@ DropperHeights = Annotated[
         "presag_m [m]",
         exclude_if=is_absent,
     ),
+    Feature("surveyed_wire_heights"),
 ]
 DropperLengths = Annotated[
-    PositiveList | None, Field(description="published length of each dropper, for comparison [m]")
+    PositiveList | None, Field(description="published length of each dropper, for comparison [m]"), NO_FEATURE
 ]
 
 

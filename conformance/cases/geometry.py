@@ -11,8 +11,15 @@ from typing import Annotated, Self
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
-from pantocheck.conformance.cases.support_tables import MOST_SPANS, Encumbrance, Height, SupportTable
+from pantocheck.conformance.cases.support_tables import (
+    MOST_SPANS,
+    SINGLE_SUPPORTS,
+    Encumbrance,
+    Height,
+    SupportTable,
+)
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature, always
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -23,7 +30,11 @@ from pantocheck.conformance.input_files.sourced_table import (
 from pantocheck.conformance.input_files.suggestions import suggest_names
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]
-Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]")]
+Stagger = Annotated[
+    float,
+    Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]"),
+    Feature("stagger"),
+]
 ScheduleName = Annotated[str, Field(min_length=1, max_length=100)]
 
 
@@ -137,6 +148,7 @@ class Span(InputTable):
     droppers: Annotated[
         SpanDroppers | None,
         Field(description="name of a table in geometry.schedule, or the schedule itself; default: that of [droppers]"),
+        Feature("listed_spans"),
     ] = None
 
 
@@ -167,15 +179,19 @@ class ListedSpans(SpanPositions, SourcedTable):
     span_list: Annotated[
         tuple[Span, ...],
         Field(strict=False, min_length=1, max_length=MOST_SPANS, description="spans in running order"),
+        Feature("listed_spans", always),
     ]
     schedule: Annotated[
         dict[ScheduleName, DropperSchedule],
         Field(default_factory=dict, max_length=MOST_SPANS, description="dropper schedules by name"),
+        Feature("listed_spans"),
     ]
     encumbrance_m: Encumbrance
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
-    contact_wire_height_m: Annotated[Height, Field(exclude_if=lambda height: height == 0.0)] = 0.0
+    contact_wire_height_m: Annotated[Height, Field(exclude_if=lambda height: height == 0.0), Feature("wire_height")] = (
+        0.0
+    )
     support: Annotated[
         tuple[SupportTable, ...],
         Field(
@@ -184,6 +200,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             description="supports and ends of the line with their own values",
             exclude_if=is_absent,
         ),
+        SINGLE_SUPPORTS,
     ] = ()
     gradient: Annotated[
         tuple[GradientTable, ...],
@@ -193,6 +210,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             description="gradients of the contact wire; they add to the heights of the supports",
             exclude_if=is_absent,
         ),
+        Feature("gradients"),
     ] = ()
 
     @property

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import Positive, SourcedTable, is_absent, validation_problem
 
 MOST_POINTS = 50_000
@@ -26,6 +27,7 @@ class ScaledIrregularity(SourcedTable):
     height_factor: Annotated[
         float | None,
         Field(ge=0, le=100, description="factor of all heights; default: 1 [-]", exclude_if=is_absent),
+        Feature("irregularity"),
     ] = None
 
     @property

@@ -18,6 +18,7 @@ from pantocheck.conformance.cases.geometry import GeometryTable, ListedSpans
 from pantocheck.conformance.cases.irregularity_table import IrregularityTable, SpectralIrregularity
 from pantocheck.conformance.cases.line_layout import LineLayout, build_layout
 from pantocheck.conformance.cases.section_tables import (
+    SECTIONS,
     OverlapTable,
     SectionPlace,
     SectionTable,
@@ -32,8 +33,9 @@ from pantocheck.conformance.cases.support_tables import (
     overlay_changes,
 )
 from pantocheck.conformance.cases.track_table import CurveTable, TrackTable, check_curves
-from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation
+from pantocheck.conformance.cases.variation import VARIATION, ListedLengthChanges, Variation
 from pantocheck.conformance.cases.wire_changes import (
+    CHANGES,
     MOST_CHANGES,
     BendingStiffness,
     ContactWireChange,
@@ -45,6 +47,7 @@ from pantocheck.conformance.cases.wire_changes import (
     check_point_masses,
 )
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     Positive,
@@ -53,16 +56,21 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 
-Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]")]
+DROPPERS = Feature("droppers")
+DROPPER_MASS = Feature("dropper_mass", bool)
+
+Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]"), NO_FEATURE]
 
 
 class WireTable(SourcedTable):
     """Contact wire or messenger wire; the values are those of one wire, also of two parallel wires."""
 
-    number: Annotated[Literal[1, 2], Field(description="number of parallel wires")] = 1
-    spacing_m: Annotated[float | None, Field(gt=0, le=1, description="lateral distance between parallel wires [m]")] = (
-        None
-    )
+    number: Annotated[Literal[1, 2], Field(description="number of parallel wires"), Feature("twin_wires")] = 1
+    spacing_m: Annotated[
+        float | None,
+        Field(gt=0, le=1, description="lateral distance between parallel wires [m]"),
+        Feature("twin_wires"),
+    ] = None
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
@@ -75,10 +83,12 @@ class ContactWireTable(WireTable):
     change: Annotated[
         tuple[ContactWireChange, ...],
         Field(strict=False, max_length=MOST_CHANGES, description="worn or other stretches", exclude_if=is_absent),
+        CHANGES,
     ] = ()
     irregularity: Annotated[
         IrregularityTable | None,
         Field(description="heights that a pantograph feels in addition to those at rest", exclude_if=is_absent),
+        Feature("irregularity"),
     ] = None
 
 
@@ -88,10 +98,12 @@ class MessengerWireTable(WireTable):
     axial_stiffness_EA_N: Annotated[
         float | None,
         Field(gt=0, le=1e9, description="axial stiffness EA; needed with messenger_support.along_track = 'fixed' [N]"),
+        NO_FEATURE,  # it acts with messenger_wire_held_along_track only
     ] = None
     change: Annotated[
         tuple[WireChange, ...],
         Field(strict=False, max_length=MOST_CHANGES, description="other stretches", exclude_if=is_absent),
+        CHANGES,
     ] = ()
 
 
@@ -102,7 +114,7 @@ class StitchWireTable(SourcedTable):
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
-    clamp_kg: ClampMass = 0.0
+    clamp_kg: Annotated[ClampMass, Feature("stitch_wire")] = 0.0
 
 
 class DropperTable(SourcedTable):
@@ -112,14 +124,20 @@ class DropperTable(SourcedTable):
     presag_m: DropperPresags = None
     contact_wire_height_m: DropperHeights = None
     length_m: DropperLengths = None
-    stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]")] = None
+    stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]"), DROPPERS] = (
+        None
+    )
     axial_stiffness_EA_N: Annotated[
-        float | None, Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]")
+        float | None,
+        Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]"),
+        DROPPERS,
     ] = None
-    mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of a dropper [kg]")] = None
-    mass_kg_m: Annotated[float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]")] = None
-    clamp_on_messenger_kg: ClampMass = 0.0
-    clamp_on_contact_kg: ClampMass = 0.0
+    mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of a dropper [kg]"), DROPPER_MASS] = None
+    mass_kg_m: Annotated[
+        float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]"), DROPPER_MASS
+    ] = None
+    clamp_on_messenger_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
+    clamp_on_contact_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
 
     @cross_check
     def _check_schedule(self) -> Problems:
@@ -159,7 +177,7 @@ class LineFile(InputTable):
     geometry: GeometryTable
     contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable
-    stitch_wire: StitchWireTable | None = None
+    stitch_wire: Annotated[StitchWireTable | None, Feature("stitch_wire")] = None
     droppers: DropperTable
     steady_arm: SteadyArmTable
     messenger_support: MessengerSupportTable
@@ -167,6 +185,7 @@ class LineFile(InputTable):
     point_mass: Annotated[
         tuple[PointMassTable, ...],
         Field(strict=False, max_length=MOST_CHANGES, description="masses on the wires", exclude_if=is_absent),
+        Feature("point_masses"),
     ] = ()
     section: Annotated[
         tuple[SectionTable, ...] | None,
@@ -177,13 +196,18 @@ class LineFile(InputTable):
             description="tension sections in running order; default: one section from end to end",
             exclude_if=is_absent,
         ),
+        SECTIONS,
     ] = None
-    overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent)] = None
+    overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent), SECTIONS] = None
     track: Annotated[
-        TrackTable | None, Field(description="curves and cant of the track; default: straight", exclude_if=is_absent)
+        TrackTable | None,
+        Field(description="curves and cant of the track; default: straight", exclude_if=is_absent),
+        Feature("curves", lambda track: track is not None and bool(track.curve)),
     ] = None
     variation: Annotated[
-        Variation | None, Field(description="variation of the line after it was built", exclude_if=is_absent)
+        Variation | None,
+        Field(description="variation of the line after it was built", exclude_if=is_absent),
+        VARIATION,
     ] = None
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 

@@ -19,7 +19,10 @@ from pydantic import Field
 from pantocheck.conformance.cases.support_tables import MOST_SPANS
 from pantocheck.conformance.cases.wire_changes import BendingStiffness, MassPerLength, Tension
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+
+SECTIONS = Feature("sections")
 
 MOST_OVERLAP_SPANS = 5
 """Largest number of spans of an overlap."""
@@ -30,6 +33,7 @@ WireEnd = Annotated[
         description="termination of the wires; weight: a tensioning weight keeps their tension; anchor: rigid, so that "
         "the tension of the messenger wire changes with its elongation up to the next holding point"
     ),
+    Feature("messenger_wire_held_along_track"),
 ]
 WireRise = Annotated[float, Field(gt=0, le=3)]
 
@@ -37,9 +41,9 @@ WireRise = Annotated[float, Field(gt=0, le=3)]
 class SectionWire(InputTable):
     """Values of a wire of one section that differ from those of the line."""
 
-    tension_N: Tension | None = None
-    mass_kg_m: MassPerLength | None = None
-    bending_stiffness_N_m2: BendingStiffness | None = None
+    tension_N: Annotated[Tension | None, SECTIONS] = None
+    mass_kg_m: Annotated[MassPerLength | None, SECTIONS] = None
+    bending_stiffness_N_m2: Annotated[BendingStiffness | None, SECTIONS] = None
 
 
 class SectionTable(InputTable):
@@ -56,10 +60,13 @@ class SectionTable(InputTable):
             description="number of the support, counted along the line, at which the messenger wire is held along the "
             "track; default: none",
         ),
+        Feature("messenger_wire_held_along_track"),
     ] = None
 
-    contact_wire: Annotated[SectionWire | None, Field(description="own values of the contact wires")] = None
-    messenger_wire: Annotated[SectionWire | None, Field(description="own values of the messenger wires")] = None
+    contact_wire: Annotated[SectionWire | None, Field(description="own values of the contact wires"), SECTIONS] = None
+    messenger_wire: Annotated[SectionWire | None, Field(description="own values of the messenger wires"), SECTIONS] = (
+        None
+    )
 
     @property
     def holding_points(self) -> int:
@@ -77,6 +84,7 @@ class OverlapTable(InputTable):
             description="rise of the wires at their anchor, for a parabola that ends at the first support behind the "
             "middle of the overlap [m]"
         ),
+        SECTIONS,
     ] = None
     support_rises_m: Annotated[
         tuple[WireRise, ...] | None,
@@ -86,6 +94,7 @@ class OverlapTable(InputTable):
             max_length=MOST_OVERLAP_SPANS,
             description="rises at the anchor and at the next supports, in place of a parabola; straight in between [m]",
         ),
+        SECTIONS,
     ] = None
 
     @cross_check

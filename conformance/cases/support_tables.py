@@ -5,6 +5,7 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -13,14 +14,24 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 
+SINGLE_SUPPORTS = Feature("single_supports")
+"""Feature of values of single supports, in place of those of the line."""
+
 MOST_SPANS = 1000
 """Largest number of spans of a line."""
 
 Table = TypeVar("Table", bound=InputTable)
 
+ARMS = Feature("steady_arms")
+ARM_MASS = Feature("steady_arm_mass")
+ARM_DAMPER = Feature("steady_arm_dampers")
+PUSHING = Feature("pushing_steady_arms")
+HELD = Feature("messenger_wire_held_along_track")
+
 ArmStiffness = Annotated[
     float | None,
     Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
+    ARMS,
 ]
 StaticShare = Annotated[
     Literal["level", "none"],
@@ -29,21 +40,26 @@ StaticShare = Annotated[
         "support; none: no weight"
     ),
 ]
-ArmLength = Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]")]
-ArmMass = Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]")]
+ArmLength = Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]"), ARMS]
+ArmMass = Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]"), ARM_MASS]
 ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
-ArmDamper = Annotated[NonNegative, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")]
+ArmDamper = Annotated[
+    NonNegative, Field(le=1e6, description="vertical damper between wire and ground [N s/m]"), ARM_DAMPER
+]
 ArmAction = Annotated[
-    Literal["pull", "push"], Field(description="kind of lateral force of the arm on the contact wire")
+    Literal["pull", "push"],
+    Field(description="kind of lateral force of the arm on the contact wire"),
+    PUSHING,
 ]
 SupportStiffness = Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
-SupportDamper = Annotated[NonNegative, Field(description="vertical damper [N s/m]")]
+SupportDamper = Annotated[NonNegative, Field(description="vertical damper [N s/m]"), Feature("support_dampers")]
 AlongTrack = Annotated[
     Literal["free", "fixed"],
     Field(
         description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
         "fixed: its tension changes with its elongation between two supports"
     ),
+    HELD,
 ]
 Encumbrance = Annotated[
     float,
@@ -62,7 +78,7 @@ class SteadyArmTable(SourcedTable):
     static_share: StaticShare
     length_m: ArmLength = None
     mass_kg_m: ArmMass = 0.0
-    clamp_kg: ClampMass = 0.0
+    clamp_kg: Annotated[ClampMass, ARM_MASS] = 0.0
     vertical_damper_N_s_m: ArmDamper = 0.0
     acts: ArmAction = "pull"
 
@@ -88,20 +104,20 @@ class SteadyArmChanges(InputTable):
     """Values of the steady arm at one support that differ from the table steady_arm of the line."""
 
     vertical_stiffness_N_m: ArmStiffness = None
-    static_share: StaticShare | None = None
+    static_share: Annotated[StaticShare | None, SINGLE_SUPPORTS] = None
     length_m: ArmLength = None
-    mass_kg_m: ArmMass | None = None
-    clamp_kg: ClampMass | None = None
-    vertical_damper_N_s_m: ArmDamper | None = None
-    acts: ArmAction | None = None
+    mass_kg_m: Annotated[ArmMass | None, ARM_MASS] = None
+    clamp_kg: Annotated[ClampMass | None, ARM_MASS] = None
+    vertical_damper_N_s_m: Annotated[ArmDamper | None, ARM_DAMPER] = None
+    acts: Annotated[ArmAction | None, PUSHING] = None
 
 
 class MessengerSupportChanges(InputTable):
     """Values of the messenger support at one support that differ from the table messenger_support of the line."""
 
-    stiffness_N_m: SupportStiffness | None = None
-    damping_N_s_m: SupportDamper | None = None
-    along_track: AlongTrack | None = None
+    stiffness_N_m: Annotated[SupportStiffness | None, SINGLE_SUPPORTS] = None
+    damping_N_s_m: Annotated[SupportDamper | None, Feature("support_dampers")] = None
+    along_track: Annotated[AlongTrack | None, HELD] = None
 
 
 class SupportTable(InputTable):
@@ -115,12 +131,12 @@ class SupportTable(InputTable):
             description="number of the support in running order, from 1; 0 and the number of spans: ends of the line",
         ),
     ]
-    stagger_contact_wire_m: SignedStagger | None = None
-    stagger_messenger_m: SignedStagger | None = None
-    contact_wire_height_m: Height | None = None
-    encumbrance_m: Encumbrance | None = None
-    steady_arm: SteadyArmChanges | None = None
-    messenger_support: MessengerSupportChanges | None = None
+    stagger_contact_wire_m: Annotated[SignedStagger | None, Feature("stagger", bool)] = None
+    stagger_messenger_m: Annotated[SignedStagger | None, Feature("stagger", bool)] = None
+    contact_wire_height_m: Annotated[Height | None, SINGLE_SUPPORTS] = None
+    encumbrance_m: Annotated[Encumbrance | None, SINGLE_SUPPORTS] = None
+    steady_arm: Annotated[SteadyArmChanges | None, SINGLE_SUPPORTS] = None
+    messenger_support: Annotated[MessengerSupportChanges | None, SINGLE_SUPPORTS] = None
 
 
 def overlay_changes(table: Table, changes: InputTable | None) -> Table:

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -27,8 +28,12 @@ class CurveTable(InputTable):
     radius_m: Annotated[
         float, Field(ge=-1e5, le=1e5, description="radius; positive: its centre lies at positive y [m]")
     ]
-    transition_m: Annotated[NonNegative, Field(description="length of the transition at either end [m]")] = 0.0
-    cant_m: Annotated[float, Field(ge=-0.3, le=0.3, description="height of the outer above the inner rail [m]")] = 0.0
+    transition_m: Annotated[
+        NonNegative, Field(description="length of the transition at either end [m]"), Feature("curves")
+    ] = 0.0
+    cant_m: Annotated[
+        float, Field(ge=-0.3, le=0.3, description="height of the outer above the inner rail [m]"), Feature("cant")
+    ] = 0.0
 
     @cross_check
     def _check_radius(self) -> Problems:
@@ -58,7 +63,9 @@ class TrackTable(SourcedTable):
     rail_distance_m: Annotated[
         float, Field(gt=0.5, le=2, description="distance between the centre lines of both rails [m]")
     ]
-    curve: Annotated[tuple[CurveTable, ...], Field(strict=False, max_length=1000, description="curves in order")] = ()
+    curve: Annotated[
+        tuple[CurveTable, ...], Field(strict=False, max_length=1000, description="curves in order"), Feature("curves")
+    ] = ()
 
 
 def check_curves(curves: Sequence[CurveTable], length: float) -> Problems:

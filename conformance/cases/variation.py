@@ -5,7 +5,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import InputTable, SourcedTable, is_absent, validation_problem
+
+VARIATION = Feature("variation")
 
 LengthChange = Annotated[float, Field(ge=-0.2, le=0.2)]
 
@@ -19,16 +22,18 @@ class WireVariation(InputTable):
             description="weight: the tension does not depend on the temperature; anchor: both ends are rigid anchors, "
             "and the tension changes with the temperature"
         ),
+        VARIATION,
     ] = "weight"
     axial_stiffness_EA_N: Annotated[
-        float | None, Field(gt=0, le=1e9, description="axial stiffness EA; needed with ends = 'anchor' [N]")
+        float | None, Field(gt=0, le=1e9, description="axial stiffness EA; needed with ends = 'anchor' [N]"), VARIATION
     ] = None
     expansion_coefficient_1_K: Annotated[
         float | None,
         Field(gt=0, le=1e-4, description="thermal expansion coefficient; needed with ends = 'anchor' [1/K]"),
+        VARIATION,
     ] = None
     tension_change_share: Annotated[
-        float, Field(ge=-0.5, le=0.5, description="tolerance of the tension: share of it that is added [-]")
+        float, Field(ge=-0.5, le=0.5, description="tolerance of the tension: share of it that is added [-]"), VARIATION
     ] = 0.0
 
     @cross_check
@@ -83,14 +88,17 @@ class Variation(SourcedTable):
     """Variation of a line after it was built with its nominal data; its droppers keep their lengths."""
 
     temperature_change_K: Annotated[
-        float, Field(ge=-100, le=200, description="change of the temperature of the wires [K]")
+        float, Field(ge=-100, le=200, description="change of the temperature of the wires [K]"), VARIATION
     ] = 0.0
     contact_wire: WireVariation = WireVariation()
     messenger_wire: WireVariation = WireVariation()
     droppers: Annotated[
-        DropperVariation | None, Field(description="changes of the lengths of the droppers", exclude_if=is_absent)
+        DropperVariation | None,
+        Field(description="changes of the lengths of the droppers", exclude_if=is_absent),
+        VARIATION,
     ] = None
     supports: Annotated[
         SupportVariation | None,
         Field(description="changes of the stagger of the contact wire", exclude_if=is_absent),
+        VARIATION,
     ] = None

@@ -8,6 +8,7 @@ from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -18,7 +19,11 @@ from pantocheck.conformance.input_files.sourced_table import (
 
 Tension = Annotated[float, Field(ge=500, le=200e3, description="axial tension of one wire [N]")]
 MassPerLength = Annotated[float, Field(ge=0.02, le=10, description="mass per length of one wire [kg/m]")]
-BendingStiffness = Annotated[float, Field(ge=0, le=1e4, description="bending stiffness EI of one wire [N m2]")]
+BendingStiffness = Annotated[
+    float, Field(ge=0, le=1e4, description="bending stiffness EI of one wire [N m2]"), Feature("bending_stiffness")
+]
+
+CHANGES = Feature("wire_changes")
 
 MOST_CHANGES = 1000
 """Largest number of changes of a wire, and of point masses of a line."""
@@ -29,9 +34,9 @@ class WireChange(InputTable):
 
     from_m: Annotated[NonNegative, Field(description="start of the stretch [m]")]
     to_m: Annotated[Positive, Field(description="end of the stretch [m]")]
-    tension_N: Tension | None = None
-    mass_kg_m: MassPerLength | None = None
-    bending_stiffness_N_m2: BendingStiffness | None = None
+    tension_N: Annotated[Tension | None, CHANGES] = None
+    mass_kg_m: Annotated[MassPerLength | None, CHANGES] = None
+    bending_stiffness_N_m2: Annotated[BendingStiffness | None, CHANGES] = None
 
     @cross_check
     def _check_order(self) -> Problems:
@@ -52,6 +57,7 @@ class ContactWireChange(WireChange):
             description="worn share of the cross-section [-]; mass and bending stiffness follow from it, unless given: "
             "the stiffness as that of a round bar worn flat from below",
         ),
+        CHANGES,
     ] = None
 
     @cross_check
@@ -68,7 +74,7 @@ class PointMassTable(SourcedTable):
     x_m: Annotated[NonNegative, Field(description="position along the track [m]")]
     wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="wire that carries the mass")]
     mass_kg: Annotated[float, Field(gt=0, le=200, description="mass on one wire [kg]")]
-    name: Annotated[str | None, Field(description="name in reports", max_length=100)] = None
+    name: Annotated[str | None, Field(description="name in reports", max_length=100), NO_FEATURE] = None
 
 
 def check_changes(key: str, changes: Sequence[WireChange], length: float) -> Problems:

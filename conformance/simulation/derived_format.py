@@ -204,18 +204,9 @@ class DerivedMessengerSupports(InputTable):
     mass_kg: Annotated[float, Field(description="moving mass of a support [kg]")] = 0.0
 
 
-class DerivedLine(InputTable):
-    """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
+class DerivedSection(InputTable):
+    """Tension section at rest: its wires and the parts on them."""
 
-    gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]
-    origin_x_m: Annotated[float, Field(description="position of the first anchor of the line [m]")] = 0.0
-    zero_height_m: Annotated[
-        float,
-        Field(
-            description="datum of all heights [m]; on a level line the height of the contact wire at anchors, and at "
-            "supports whose arm keeps it level"
-        ),
-    ] = 0.0
     span_limits_m: Annotated[
         Numbers, Field(description="positions of both anchors, and of the supports between them [m]")
     ]
@@ -229,9 +220,32 @@ class DerivedLine(InputTable):
         tuple[DerivedPointMass, ...],
         Field(strict=False, exclude_if=is_absent, description="masses on the wires; absent: none"),
     ] = ()
+
+
+class DerivedLine(DerivedSection):
+    """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
+
+    gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]
+    origin_x_m: Annotated[float, Field(description="position of the first anchor of the line [m]")] = 0.0
+    zero_height_m: Annotated[
+        float,
+        Field(
+            description="datum of all heights [m]; on a level line the height of the contact wire at anchors, and at "
+            "supports whose arm keeps it level"
+        ),
+    ] = 0.0
     curves: Annotated[
         tuple[DerivedCurve, ...],
         Field(strict=False, exclude_if=is_absent, description="curves of the track; absent: a straight track"),
+    ] = ()
+    further_sections: Annotated[
+        tuple[DerivedSection, ...],
+        Field(
+            strict=False,
+            exclude_if=is_absent,
+            description="every tension section behind the first one, in running order; the tables beside this key hold "
+            "for the first. Absent: one section",
+        ),
     ] = ()
 
 

@@ -19,11 +19,13 @@ from pantocheck.conformance.simulation.derived_format import (
     DerivedDroppers,
     DerivedLine,
     DerivedMessengerSupports,
+    DerivedSection,
     DerivedSteadyArms,
     DerivedStitchWires,
     DerivedWire,
 )
 from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
+from pantocheck.conformance.simulation.section_model import BuiltSection, divide_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.fem.beam import wave_speed
@@ -42,34 +44,44 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
     line : DiscretisedLine
         Its finite elements.
     """
+    sections = [_derive_section(section) for section in divide_line(file, line)]
     return DerivedLine(
+        **dict(sections[0]),
         gravity_m_s2=GRAVITY,
-        span_limits_m=round_positions(file.geometry.span_limits),
-        contact_wire=DerivedContactWire(
-            **_wire(file, line, Kind.CONTACT_WIRE).model_dump(), irregularity=derive_irregularity(line.catenary)
-        ),
-        messenger_wire=_wire(file, line, Kind.MESSENGER_WIRE),
-        stitch_wires=_stitch_wires(line.catenary),
-        droppers=_droppers(file, line),
-        steady_arms=_steady_arms(line),
-        messenger_supports=_messenger_supports(line.catenary),
-        point_masses=derive_point_masses(line.catenary),
         curves=derive_curves(line.catenary),
+        further_sections=tuple(sections[1:]),
     )
 
 
-def _wire(file: LineFile, line: DiscretisedLine, kind: Kind) -> DerivedWire:
-    wires = _wires_of(line.catenary, kind)
+def _derive_section(section: BuiltSection) -> DerivedSection:
+    """Derived values of one tension section."""
+    line = section.line
+    return DerivedSection(
+        span_limits_m=round_positions(section.limits),
+        contact_wire=DerivedContactWire(
+            **_wire(section, Kind.CONTACT_WIRE).model_dump(), irregularity=derive_irregularity(line.catenary)
+        ),
+        messenger_wire=_wire(section, Kind.MESSENGER_WIRE),
+        stitch_wires=_stitch_wires(line.catenary),
+        droppers=_droppers(section),
+        steady_arms=_steady_arms(line),
+        messenger_supports=_messenger_supports(line.catenary),
+        point_masses=derive_point_masses(line.catenary),
+    )
+
+
+def _wire(section: BuiltSection, kind: Kind) -> DerivedWire:
+    line, wires = section.line, section.wires(kind)
     first, row = wires[0], line.mesh.row_of[wires[0].name, "z"]
-    stations = [line.mesh.station(x) for x in file.geometry.span_limits]
+    stations = [line.mesh.station(x) for x in section.limits]
     staggers = [wire.stagger for wire in wires if wire.stagger is not None]
     return DerivedWire(
-        start_m=first.start,
-        end_m=first.end,
+        start_m=round_positions([first.start])[0],
+        end_m=round_positions([first.end])[0],
         wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
         height_m=round_numbers(line.state.deflection[row, stations, 0]),
         lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
-        stretches=derive_stretches(file, line, first),
+        stretches=derive_stretches(section.file, line, first),
     )
 
 
@@ -92,10 +104,11 @@ def _stitch_wires(catenary: Catenary) -> DerivedStitchWires | None:
     )
 
 
-def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
+def _droppers(section: BuiltSection) -> DerivedDroppers:
+    line = section.line
     catenary, state, droppers = line.catenary, line.state, line.catenary.droppers
     length, direction = state.dropper_length, state.dropper_direction
-    spans, rayleigh = _count_by_span(file, catenary), catenary.rayleigh(Kind.DROPPER)
+    spans, rayleigh = _count_by_span(section), catenary.rayleigh(Kind.DROPPER)
     contact = {wire.name: n for n, wire in enumerate(catenary.contact_wires, 1)}
 
     def by_span(values: Sequence[float] | RealArray) -> tuple[tuple[float, ...], ...]:
@@ -122,10 +135,10 @@ def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
     )
 
 
-def _count_by_span(file: LineFile, catenary: Catenary) -> list[int]:
+def _count_by_span(section: BuiltSection) -> list[int]:
     """Number of droppers of every span."""
-    positions = [dropper.position for dropper in catenary.droppers]
-    return [int(count) for count in np.histogram(positions, file.geometry.span_limits)[0]]
+    positions = [dropper.position for dropper in section.line.catenary.droppers]
+    return [int(count) for count in np.histogram(positions, section.limits)[0]]
 
 
 def _split(values: Sequence[Entry], counts: Sequence[int]) -> tuple[tuple[Entry, ...], ...]:
