@@ -9,7 +9,7 @@ from exact_passage import Rest, find_rest, simulate_exact_passage
 from lines import ac_simple, figures, passage, staggered, vertical
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.line_file import WireTable
+from pantocheck.conformance.line.elements.wire import WireTable
 from pantocheck.model import DiscretisedLine, Passage, discretise, simulate_passage
 
 REFERENCE_STEP_PER_LENGTH = 2e-3

@@ -19,7 +19,7 @@ import numpy as np
 from lines import ac_simple, passage
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.section_tables import OverlapTable, SectionTable
+from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage

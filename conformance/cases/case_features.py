@@ -1,6 +1,6 @@
 """Features of a case: the parts of its line, pantographs and run that a simulator must not neglect."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.lift_force import AppliedForces
@@ -22,7 +22,7 @@ def list_case_features(case: Case) -> list[str]:
     return sorted(features | {name for name, is_used in RUN_FEATURES.items() if is_used(case)})
 
 
-def find_missing_features(case: Case, simulated: frozenset[str] | None) -> str | None:
+def find_missing_features(case: Case, simulated: Collection[str] | None) -> str | None:
     """Reason to skip a case because a simulator neglects a feature of it; None if it simulates all of them.
 
     Args:

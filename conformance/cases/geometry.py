@@ -10,14 +10,6 @@ from typing import Annotated, Self
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
-from pantocheck.conformance.cases.support_tables import (
-    MOST_SPANS,
-    SINGLE_SUPPORTS,
-    Encumbrance,
-    Height,
-    SupportTable,
-)
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.features import Feature, always
 from pantocheck.conformance.input_files.sourced_table import (
@@ -28,6 +20,9 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS
+from pantocheck.conformance.line.support_table import Encumbrance, Height, SupportTable
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]
 Stagger = Annotated[
@@ -133,6 +128,10 @@ class EqualSpans(SpanPositions, SourcedTable):
     def choose_schedules(self, common: DropperSchedule) -> tuple[DropperSchedule, ...]:
         """Dropper schedule of every span: the common one of the line."""
         return (common,) * self.spans
+
+    def schedule_key(self, number: int) -> str:
+        """Key of the dropper schedule of a span in the line file."""
+        return "droppers"
 
 
 SpanDroppers = Annotated[
@@ -252,6 +251,15 @@ class ListedSpans(SpanPositions, SourcedTable):
             else span.droppers
             for span in self.span_list
         )  # fmt: skip
+
+    def schedule_key(self, number: int) -> str:
+        """Key of the dropper schedule of a span in the line file."""
+        droppers = self.span_list[number - 1].droppers
+        if droppers is None:
+            return "droppers"
+        return (
+            f"geometry.schedule.{droppers}" if isinstance(droppers, str) else f"geometry.span_list[{number}].droppers"
+        )
 
     @cross_check
     def _schedules_exist(self) -> Problems:

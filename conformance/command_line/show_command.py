@@ -27,7 +27,7 @@ from pantocheck.conformance.input_files.documentation_pages import Documentation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drawing_marks import list_marks, list_point_masses
+from pantocheck.conformance.simulation.drawing_marks import list_labelled_marks, list_marks
 from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
 from pantocheck.conformance.systems.command.case_message import build_case_message
 from pantocheck.model import discretise
@@ -128,7 +128,7 @@ def _draw_line(file: LineFile, path: Path) -> None:
     """Draw a line without a case, with the default mesh of cases."""
     line = discretise(build_catenary(file), Discretisation().element_m)
     _write_drawing(
-        LineDrawing(line, file.title, file.geometry, list_point_masses(line.catenary), file.section_places), path
+        LineDrawing(line, file.title, file.geometry, list_labelled_marks(line.catenary), file.section_places), path
     )
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.line.derived_numbers import round_number, round_numbers, round_positions
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.simulation.case_run import start_forces
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -15,7 +16,6 @@ from pantocheck.conformance.simulation.derived_format import (
     DerivedTrain,
 )
 from pantocheck.conformance.simulation.derived_line import build_derived_line
-from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.uplift_tuning import TOLERANCE
 from pantocheck.conformance.simulation.working_height import (

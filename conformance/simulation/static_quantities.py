@@ -5,7 +5,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.track_table import TrackTable
+from pantocheck.conformance.line.elements.curve import TrackTable
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph

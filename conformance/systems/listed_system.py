@@ -32,5 +32,5 @@ class ListedSystem:
     def run(self, case: Case) -> Outcome:
         """Run a case if the system simulates all of its features."""
         features = getattr(self.system, "features", None)
-        reason = find_missing_features(case, None if features is None else frozenset(features))
+        reason = find_missing_features(case, features)
         return self.system.run(case) if reason is None else Skipped(reason)

@@ -120,7 +120,7 @@ class Started(InputTable):
     name: Annotated[str, Field(min_length=1, max_length=200, description="name of the simulator in reports")]
     version: Annotated[str, Field(max_length=200, description="version of the simulator")]
     features: Annotated[
-        frozenset[Annotated[str, Field(max_length=100)]] | None,
+        tuple[Annotated[str, Field(max_length=100)], ...] | None,
         Field(
             strict=False,
             max_length=1000,

@@ -12,7 +12,7 @@ from helpers.listed_spans import vary_short_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.wire_changes import PointMassTable
+from pantocheck.conformance.line.elements.point_mass import PointMassTable
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped

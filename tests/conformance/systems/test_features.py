@@ -21,9 +21,9 @@ from pantocheck.conformance.cases.case_features import RUN_FEATURES, list_case_f
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.cases.wire_changes import PointMassTable
 from pantocheck.conformance.input_files.features import find_declaration
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, is_absent
+from pantocheck.conformance.line.elements.point_mass import PointMassTable
 from pantocheck.conformance.pytest_plugin.user_fixtures import run_and_grade
 from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.self_test.adapter_cases import build_short_case
