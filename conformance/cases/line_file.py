@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.geometry import GeometryTable
 from pantocheck.conformance.cases.line_layout import LineLayout, build_layout
 from pantocheck.conformance.input_files.features import NO_FEATURE
 from pantocheck.conformance.input_files.sourced_table import InputTable
-from pantocheck.conformance.line.elements.registry import LineElements
+from pantocheck.conformance.line.elements.element_registry import LineElements
 
 
 class LineHead(InputTable):

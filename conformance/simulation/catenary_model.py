@@ -2,7 +2,7 @@
 
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.line_layout import LineLayout
-from pantocheck.conformance.line.elements.registry import ELEMENTS
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.model import Catenary
 
 

@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent
 from pantocheck.conformance.line.derived_numbers import Numbers, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection
-from pantocheck.conformance.line.elements.registry import ELEMENTS
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.model import DiscretisedLine
 from pantocheck.model.catenary import GRAVITY
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark, Symbol
-from pantocheck.conformance.line.elements.registry import ELEMENTS
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.model import Catenary, DiscretisedLine
 
 

@@ -23,7 +23,7 @@ FEATURES = [
     "modal_damping", "modes", "point_masses", "presag", "pushing_steady_arms", "rayleigh_damping", "sections",
     "several_pantographs", "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms",
     "stitch_wire", "support_dampers", "surveyed_wire_heights", "twin_wires", "uplift_force_tuning", "variation",
-    "wire_changes", "wire_height",
+    "wire_changes", "wire_springs", "wire_height",
 ]  # fmt: skip
 """Features that the program takes into account. A case with another one, such as `line_at_rest`, is skipped."""
 FORCES = ("uplift_force_N", "target_mean_force_N")

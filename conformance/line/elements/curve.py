@@ -1,8 +1,8 @@
-"""Curves of the track, and their cant."""
+"""TrackCurves of the track, and their cant."""
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -82,7 +82,7 @@ class DerivedCurve(InputTable):
 
 
 class DerivedCurves(InputTable):
-    """Curves in the derived values."""
+    """TrackCurves in the derived values."""
 
     curves: Annotated[
         tuple[DerivedCurve, ...],
@@ -90,10 +90,10 @@ class DerivedCurves(InputTable):
     ] = ()
 
 
-class Curves(Element):
-    """Curves of the track, and their cant."""
+class TrackCurves(Element):
+    """TrackCurves of the track, and their cant."""
 
-    derived = DerivedCurves
+    derived: ClassVar[type[InputTable]] = DerivedCurves
 
     track: Annotated[
         TrackTable | None,
@@ -103,7 +103,7 @@ class Curves(Element):
 
     @property
     def curves(self) -> tuple[CurveTable, ...]:
-        """Curves of the track."""
+        """TrackCurves of the track."""
         return () if self.track is None else self.track.curve
 
     @cross_check
@@ -136,7 +136,7 @@ class Curves(Element):
         return replace(catenary, curves=tuple(curves))
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
-        """Curves with their curvatures."""
+        """TrackCurves with their curvatures."""
         curves = (
             DerivedCurve(
                 from_m=round_position(curve.start),

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -231,7 +231,7 @@ class DerivedDropperTable(InputTable):
 class Droppers(Element):
     """Droppers of all spans."""
 
-    derived = DerivedDropperTable
+    derived: ClassVar[type[InputTable]] = DerivedDropperTable
 
     droppers: DropperTable
 

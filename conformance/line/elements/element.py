@@ -1,8 +1,8 @@
 """Element of a line: base class of the declarations in this folder.
 
 An element is a class. Its fields are keys of the line file. Its methods say what the element does wherever the suite
-uses a line: each of them has a default for elements that do nothing there. `registry.ELEMENTS` lists all elements, and
-nothing outside this folder knows one by its name.
+uses a line: each of them has a default for elements that do nothing there. `element_registry.ELEMENTS` lists all
+elements, and a new one needs no change outside this folder.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_layout import LineLayout
     from pantocheck.model import DiscretisedLine
 
-MOST_PARTS = 1000
+MOST_LINE_PARTS = 1000
 """Largest number of changes of a wire, and of parts at single positions."""
 
 Symbol = Literal["anchor", "messenger support", "steady arm", "sensor", "mass"]

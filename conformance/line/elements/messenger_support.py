@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -81,7 +81,7 @@ class DerivedMessengerSupportTable(InputTable):
 class MessengerSupports(Element):
     """Supports of the messenger wires at all supports of the line."""
 
-    derived = DerivedMessengerSupportTable
+    derived: ClassVar[type[InputTable]] = DerivedMessengerSupportTable
 
     messenger_support: MessengerSupportTable
 

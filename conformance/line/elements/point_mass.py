@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -12,7 +12,7 @@ from pantocheck.conformance.input_files.sourced_table import InputTable, NonNega
 from pantocheck.conformance.line.derived_numbers import MassCoefficient, round_number, round_position
 from pantocheck.conformance.line.elements.element import (
     KINDS,
-    MOST_PARTS,
+    MOST_LINE_PARTS,
     BuiltSection,
     DrawnMark,
     Element,
@@ -52,11 +52,11 @@ class DerivedPointMasses(InputTable):
 class PointMasses(Element):
     """Masses on the wires."""
 
-    derived = DerivedPointMasses
+    derived: ClassVar[type[InputTable]] = DerivedPointMasses
 
     point_mass: Annotated[
         tuple[PointMassTable, ...],
-        Field(strict=False, max_length=MOST_PARTS, description="masses on the wires", exclude_if=is_absent),
+        Field(strict=False, max_length=MOST_LINE_PARTS, description="masses on the wires", exclude_if=is_absent),
         Feature("point_masses"),
     ] = ()
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -128,7 +128,7 @@ class DerivedSteadyArmTable(InputTable):
 class SteadyArms(Element):
     """Steady arms at all supports."""
 
-    derived = DerivedSteadyArmTable
+    derived: ClassVar[type[InputTable]] = DerivedSteadyArmTable
 
     steady_arm: SteadyArmTable
 

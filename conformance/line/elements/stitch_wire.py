@@ -1,7 +1,7 @@
 """Stitch wires, which carry the droppers nearest to a support."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -56,7 +56,7 @@ class DerivedStitchWire(InputTable):
 class StitchWires(Element):
     """Stitch wires at all supports, clamped to the messenger wires."""
 
-    derived = DerivedStitchWire
+    derived: ClassVar[type[InputTable]] = DerivedStitchWire
 
     stitch_wire: Annotated[StitchWireTable | None, STITCH_WIRE] = None
 

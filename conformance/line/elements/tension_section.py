@@ -344,6 +344,7 @@ def _select_parts(line: "DiscretisedLine", name: str) -> "DiscretisedLine":
             steady_arms=tuple(catenary.steady_arms[n] for n in arms),
             messenger_supports=tuple(s for s in catenary.messenger_supports if s.wire.startswith(name)),
             clamps=tuple(clamp for clamp in catenary.clamps if clamp.upper.startswith(name)),
+            springs=tuple(spring for spring in catenary.springs if spring.upper.startswith(name)),
             point_masses=tuple(mass for mass in catenary.point_masses if mass.wire.startswith(name)),
         ),
         state=replace(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -24,8 +24,12 @@ from pantocheck.conformance.line.derived_numbers import (
     round_position,
     round_positions,
 )
-from pantocheck.conformance.line.elements.element import MOST_PARTS, BuiltSection, DrawnMark, Element, beyond_end
-from pantocheck.conformance.line.elements.irregularity import DerivedIrregularWire, IrregularWire, derive_irregularity
+from pantocheck.conformance.line.elements.element import MOST_LINE_PARTS, BuiltSection, DrawnMark, Element, beyond_end
+from pantocheck.conformance.line.elements.wire_irregularity import (
+    DerivedIrregularWire,
+    IrregularWire,
+    derive_irregularity,
+)
 from pantocheck.model import Catenary, Kind, SectionChange, TensionChange, Wire, wave_speed
 from pantocheck.model.worn_wire import worn_stiffness_share
 
@@ -38,7 +42,7 @@ BendingStiffness = Annotated[
     float, Field(ge=0, le=1e4, description="bending stiffness EI of one wire [N m2]"), Feature("bending_stiffness")
 ]
 
-CHANGES = Feature("wire_changes")
+WIRE_CHANGES = Feature("wire_changes")
 
 Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [mm2]"), NO_FEATURE]
 
@@ -48,9 +52,9 @@ class WireChange(InputTable):
 
     from_m: Annotated[NonNegative, Field(description="start of the stretch [m]")]
     to_m: Annotated[Positive, Field(description="end of the stretch [m]")]
-    tension_N: Annotated[Tension | None, CHANGES] = None
-    mass_kg_m: Annotated[MassPerLength | None, CHANGES] = None
-    bending_stiffness_N_m2: Annotated[BendingStiffness | None, CHANGES] = None
+    tension_N: Annotated[Tension | None, WIRE_CHANGES] = None
+    mass_kg_m: Annotated[MassPerLength | None, WIRE_CHANGES] = None
+    bending_stiffness_N_m2: Annotated[BendingStiffness | None, WIRE_CHANGES] = None
 
     @cross_check
     def _check_order(self) -> Problems:
@@ -71,7 +75,7 @@ class ContactWireChange(WireChange):
             description="worn share of the cross-section [-]; mass and bending stiffness follow from it, unless given: "
             "the stiffness as that of a round bar worn flat from below",
         ),
-        CHANGES,
+        WIRE_CHANGES,
     ] = None
 
     @cross_check
@@ -102,8 +106,8 @@ class ContactWireTable(IrregularWire, WireTable):
 
     change: Annotated[
         tuple[ContactWireChange, ...],
-        Field(strict=False, max_length=MOST_PARTS, description="worn or other stretches", exclude_if=is_absent),
-        CHANGES,
+        Field(strict=False, max_length=MOST_LINE_PARTS, description="worn or other stretches", exclude_if=is_absent),
+        WIRE_CHANGES,
     ] = ()
 
 
@@ -117,8 +121,8 @@ class MessengerWireTable(WireTable):
     ] = None
     change: Annotated[
         tuple[WireChange, ...],
-        Field(strict=False, max_length=MOST_PARTS, description="other stretches", exclude_if=is_absent),
-        CHANGES,
+        Field(strict=False, max_length=MOST_LINE_PARTS, description="other stretches", exclude_if=is_absent),
+        WIRE_CHANGES,
     ] = ()
 
 
@@ -180,7 +184,7 @@ class DerivedWires(InputTable):
 class Wires(Element):
     """Contact and messenger wires, and their changes along the line."""
 
-    derived = DerivedWires
+    derived: ClassVar[type[InputTable]] = DerivedWires
 
     contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable

@@ -2,11 +2,10 @@
 
 from typing import cast
 
-from pantocheck.conformance.line.elements.curve import Curves
+from pantocheck.conformance.line.elements.curve import TrackCurves
 from pantocheck.conformance.line.elements.damping import LineDamping
 from pantocheck.conformance.line.elements.dropper import Droppers
 from pantocheck.conformance.line.elements.element import Element
-from pantocheck.conformance.line.elements.irregularity import Irregularities
 from pantocheck.conformance.line.elements.messenger_support import MessengerSupports
 from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.elements.steady_arm import SteadyArms
@@ -14,12 +13,15 @@ from pantocheck.conformance.line.elements.stitch_wire import StitchWires
 from pantocheck.conformance.line.elements.tension_section import TensionSections
 from pantocheck.conformance.line.elements.variation import Variations
 from pantocheck.conformance.line.elements.wire import Wires
+from pantocheck.conformance.line.elements.wire_irregularity import Irregularities
+from pantocheck.conformance.line.elements.wire_spring import WireSprings
 
 
 class LineElements(
     Variations,
-    Curves,
+    TrackCurves,
     TensionSections,
+    WireSprings,
     PointMasses,
     Irregularities,
     LineDamping,
