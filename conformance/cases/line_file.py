@@ -1,6 +1,6 @@
 """Line file: geometry of a line, and all of its elements."""
 
-from typing import Annotated, Self
+from typing import Annotated
 
 from pydantic import Field
 
@@ -22,16 +22,6 @@ class LineFile(LineElements, LineHead):
     """Content of a line file."""
 
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000), NO_FEATURE] = None
-
-    @property
-    def middle_span(self) -> int:
-        """Number of the span in the middle of the first tension section without its overlap, from 1."""
-        overlap = 0 if self.overlap is None else self.overlap.spans
-        return self.geometry.shorten(self.section_places[0].last - overlap).middle_span
-
-    def shorten(self, spans: int) -> Self:
-        """Same line with the first spans only, as one tension section."""
-        return self.model_copy(update={"geometry": self.geometry.shorten(spans), "section": None, "overlap": None})
 
     @property
     def layout(self) -> LineLayout:

@@ -25,7 +25,7 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
         Positions of supports [m].
     """
     line, layout = case.line, case.line.layout
-    tolerance = line.variation is not None and line.variation.droppers is not None
+    tolerance = line.has_varied_droppers
     sag = STANDARD_GRAVITY * line.contact_wire.mass_kg_m / (2 * line.contact_wire.tension_N)
     rises = [(place, line.section_rise(place)) for place in line.section_places]
     heights = [

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field
 
@@ -19,6 +19,10 @@ from pantocheck.conformance.input_files.sourced_table import (
 from pantocheck.conformance.line.derived_numbers import round_number, round_position
 from pantocheck.conformance.line.elements.element import BuiltSection, Element
 from pantocheck.model import Catenary, TrackCurve
+from pantocheck.model.curves import head_shift
+
+if TYPE_CHECKING:
+    from pantocheck.model import DiscretisedLine
 
 SMALLEST_RADIUS_M = 50.0
 """Smallest radius of a curve [m]: a span of 10 m then turns by 0.2 rad, the limit of small slopes."""
@@ -147,3 +151,19 @@ class TrackCurves(Element):
             for curve in section.line.catenary.curves
         )
         return {"curves": tuple(curves)}
+
+    def measure(self, built: "DiscretisedLine") -> dict[str, float]:
+        """Largest lateral distance of a touched contact wire at rest from the centre of a pantograph head."""
+        from pantocheck.model.fem.contact_wires import touched_wires
+
+        track, catenary, position = self.track, built.catenary, built.mesh.position
+        if track is None or not catenary.has_lateral_field:
+            return {}
+        shift = head_shift(catenary.curves, position, track.rail_distance_m, track.contact_wire_height_m)
+        rows = [built.mesh.row_of[wire.name, "y"] for wire in catenary.contact_wires]
+        offset = max(
+            abs(float(built.state.deflection[rows[wire], station, 0] - shift[station]))
+            for station, x in enumerate(position)
+            for wire in touched_wires(built, float(x))
+        )
+        return {"head_offset_mm": 1e3 * offset}

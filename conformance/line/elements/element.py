@@ -104,6 +104,10 @@ class Element(InputTable):
         """Values of the keys of `derived` for one tension section."""
         return {}
 
+    def measure(self, built: "DiscretisedLine") -> dict[str, float]:
+        """Quantities of the line at rest that exist because of the element, by name."""
+        return {}
+
     @staticmethod
     def mark(catenary: Catenary) -> Iterator[DrawnMark]:
         """Points of the element in a drawing."""

@@ -203,6 +203,18 @@ class TensionSections(Element):
         limits = self.line.geometry.span_limits
         return tuple((limits[after.first], limits[before.last]) for before, after in pairwise(self.section_places))
 
+    @property
+    def middle_span(self) -> int:
+        """Number of the span in the middle of the first tension section without its overlap, from 1."""
+        overlap = 0 if self.overlap is None else self.overlap.spans
+        return self.line.geometry.shorten(self.section_places[0].last - overlap).middle_span
+
+    def shorten(self, spans: int) -> "LineFile":
+        """Same line with the first spans only, as one tension section."""
+        return self.line.model_copy(
+            update={"geometry": self.line.geometry.shorten(spans), "section": None, "overlap": None}
+        )
+
     def section_file(self, place: SectionPlace) -> "LineFile":
         """Same line with the wires of one section."""
         line = self.line

@@ -129,6 +129,16 @@ class Variations(Element):
         VARIATION,
     ] = None
 
+    @property
+    def has_varied_droppers(self) -> bool:
+        """Whether the droppers have other lengths than the line as built."""
+        return self.variation is not None and self.variation.droppers is not None
+
+    @property
+    def without_variation(self) -> "LineFile":
+        """Same line as it was built."""
+        return self.line.model_copy(update={"variation": None})
+
     @cross_check
     def _check_length_changes(self) -> Problems:
         table = None if self.variation is None else self.variation.droppers
