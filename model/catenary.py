@@ -301,6 +301,22 @@ class PointMass:
 
 
 @dataclass(frozen=True)
+class Spring:
+    """Vertical spring and damper between two wires, without force at rest."""
+
+    position: float
+    """Position along the track [m]."""
+    upper: str
+    """Name of the upper wire."""
+    lower: str
+    """Name of the lower wire."""
+    stiffness: float
+    """Stiffness [N/m]."""
+    damping: float = 0.0
+    """Damping [N s/m]."""
+
+
+@dataclass(frozen=True)
 class ModalBand:
     """Damping ratio of all modes in a frequency band, in place of their Rayleigh damping.
 
@@ -341,6 +357,8 @@ class Catenary:
         Masses on the wires, each with the damping of its wire.
     curves : tuple of TrackCurve
         Curves of the track.
+    springs : tuple of Spring
+        Springs between two wires.
     """
 
     wires: tuple[Wire, ...]
@@ -352,6 +370,7 @@ class Catenary:
     modal_damping: tuple[ModalBand, ...] = ()
     point_masses: tuple[PointMass, ...] = ()
     curves: tuple[TrackCurve, ...] = ()
+    springs: tuple[Spring, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

@@ -85,6 +85,10 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
             replace(clamp, position=start + clamp.position, upper=rename(clamp.upper), lower=rename(clamp.lower))
             for clamp in catenary.clamps
         ),
+        springs=tuple(
+            replace(spring, position=start + spring.position, upper=rename(spring.upper), lower=rename(spring.lower))
+            for spring in catenary.springs
+        ),
     )
 
 
@@ -147,6 +151,7 @@ def join_sections(sections: Sequence[Catenary]) -> Catenary:
         steady_arms=tuple(arm for section in sections for arm in section.steady_arms),
         messenger_supports=tuple(support for section in sections for support in section.messenger_supports),
         clamps=tuple(clamp for section in sections for clamp in section.clamps),
+        springs=tuple(spring for section in sections for spring in section.springs),
         point_masses=tuple(mass for section in sections for mass in section.point_masses),
         curves=tuple(dict.fromkeys(curve for section in sections for curve in section.curves)),
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.line_file import WireTable
+from pantocheck.conformance.line.elements.wire import WireTable
 from pantocheck.model import DiscretisedLine, Passage, discretise, simulate_passage
 from verification.formulations.exact_building import AlongTrack, build_exact_line
 from verification.formulations.exact_passage import Rest, find_rest, simulate_exact_passage

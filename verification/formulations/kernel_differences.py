@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.section_tables import OverlapTable, SectionTable
+from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
 from pantocheck.conformance.simulation.case_run import build_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.drop_simulation import simulate_drop

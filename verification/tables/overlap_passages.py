@@ -18,7 +18,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.section_tables import OverlapTable, SectionTable
+from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_features import find_missing_features
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Errored, Outcome, Skipped
 from pantocheck.conformance.systems.command.case_message import build_case_message
@@ -59,15 +60,15 @@ class CommandSystem:
         """Run a case in a new process; a failure of the process is an error of this case only."""
         if self.start_failure is not None:
             return Errored(self.start_failure)
-        if case.line.section is not None:
-            return Skipped(
-                f"the line has {len(case.line.section)} tension sections (key section); the protocol describes one only"
-            )
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:
                 with Program(self.arguments, folder) as program:
-                    _start_program(program, self.timeout_s)
+                    started = _start_program(program, self.timeout_s)
+                    if (reason := find_missing_features(case, started.features)) is not None:
+                        program.send(encode_message("stop"))
+                        program.wait_for_end()
+                        return Skipped(reason)
                     begin = time.monotonic()
                     limit, content = self.timeout_s, build_case_message(case)
                     program.send(encode_message("run", id=RUN, folder=name, time_limit_s=limit, case=content))

@@ -72,6 +72,9 @@ class RequestedCase(InputTable):
         str, Field(description="digest of the inputs of the case, to be repeated in the sidecar of the record")
     ]
     title: str
+    features: Annotated[
+        tuple[str, ...], Field(strict=False, description="features that the case uses, in alphabetic order")
+    ]
     speed_km_h: Annotated[float | None, Field(description="speed of the train; null: check of the line at rest")]
     evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the analysis section [m]")]
     filter: Annotated[Filter, Field(description="filter of the graded force; deliver the force unfiltered if possible")]
@@ -108,6 +111,15 @@ class Started(InputTable):
     ]
     name: Annotated[str, Field(min_length=1, max_length=200, description="name of the simulator in reports")]
     version: Annotated[str, Field(max_length=200, description="version of the simulator")]
+    features: Annotated[
+        tuple[Annotated[str, Field(max_length=100)], ...] | None,
+        Field(
+            strict=False,
+            max_length=1000,
+            description="features that the program simulates; a case that uses another one is skipped, and without "
+            "this list every case",
+        ),
+    ] = None
 
 
 class File(InputTable):

@@ -356,6 +356,7 @@ def write_refusal(folder: Path) -> Path:
         "for line in sys.stdin:\n"
         "    message = json.loads(line)\n"
         "    started = {'message': 'started', 'protocol': 'pantocheck.command/1', 'name': 'none', 'version': ''}\n"
+        "    started['features'] = 'bending_stiffness chain droppers presag rayleigh_damping steady_arms'.split()\n"
         "    skipped = {'message': 'skipped', 'id': message.get('id'), 'reason': 'no solver'}\n"
         "    answer = {'start': started, 'run': skipped}.get(message['message'])\n"
         "    if answer is None:\n"

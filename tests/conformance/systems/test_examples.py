@@ -12,7 +12,7 @@ from helpers.listed_spans import vary_short_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.wire_changes import PointMassTable
+from pantocheck.conformance.line.elements.point_mass import PointMassTable
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped
@@ -79,16 +79,16 @@ def test_plain_simulator_skips_unsupported_cases(short: Case) -> None:
     system = adapter("string_catenary")
     outcome = system.run(replace(short, line=line))
     assert isinstance(outcome, Skipped)
-    assert "twin contact wires" in outcome.reason
+    assert outcome.reason == "the system does not simulate twin_wires"
     assert (system.name, system.version) == ("string catenary", "1.0")
 
 
 def test_plain_simulator_skips_point_masses(short: Case) -> None:
-    """A program of version 2 receives them; one that ignored them would compute another line."""
+    """A program that ignored them would compute another line."""
     mass = PointMassTable(x_m=150.0, wire="contact_wire", mass_kg=5.0, name="section insulator")
     outcome = adapter("string_catenary").run(replace(short, line=short.line.model_copy(update={"point_mass": (mass,)})))
     assert isinstance(outcome, Skipped)
-    assert "point masses are not supported" in outcome.reason
+    assert outcome.reason == "the system does not simulate point_masses"
 
 
 def test_external_program_agrees_with_the_same_program_in_process(short: Case, reference: dict[str, Value]) -> None:

@@ -1,12 +1,28 @@
-"""Irregularity of a contact wire in a line file: measured heights, or a power spectral density with a seed."""
+"""Irregularity of the contact wire: measured heights, or a power spectral density with a seed."""
 
+from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag
 
+from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import Positive, SourcedTable, is_absent, validation_problem
+from pantocheck.conformance.input_files.features import Feature
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    Positive,
+    SourcedTable,
+    is_absent,
+    validation_problem,
+)
+from pantocheck.conformance.line.derived_numbers import Numbers, round_numbers, round_positions
+from pantocheck.conformance.line.elements.element import Element
+from pantocheck.model import Catenary, Kind, Wire
+from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
+from pantocheck.model.irregularity_spline import irregularity_height
 
 MOST_POINTS = 50_000
 """Largest number of measured points: a height every 6 cm over 3 km."""
@@ -26,6 +42,7 @@ class ScaledIrregularity(SourcedTable):
     height_factor: Annotated[
         float | None,
         Field(ge=0, le=100, description="factor of all heights; default: 1 [-]", exclude_if=is_absent),
+        Feature("irregularity"),
     ] = None
 
     @property
@@ -93,3 +110,78 @@ IrregularityTable = Annotated[
     | Annotated[SpectralIrregularity, Tag("SpectralIrregularity")],
     Discriminator(_form_of_irregularity),
 ]
+
+
+class DerivedIrregularity(InputTable):
+    """Heights that a head feels in addition to those of the wire: a cubic spline with zero slope at both ends."""
+
+    x_m: Annotated[Numbers, Field(description="positions of the points [m]")]
+    height_m: Annotated[Numbers, Field(description="heights [m]; beyond the points that of the nearest end")]
+
+
+class IrregularWire(InputTable):
+    """Key of the irregularity in the table of the contact wire."""
+
+    irregularity: Annotated[
+        IrregularityTable | None,
+        Field(description="heights that a pantograph feels in addition to those at rest", exclude_if=is_absent),
+        Feature("irregularity"),
+    ] = None
+
+
+class DerivedIrregularWire(InputTable):
+    """Key of the irregularity in the derived values of the contact wire."""
+
+    irregularity: Annotated[
+        DerivedIrregularity | None, Field(exclude_if=is_absent, description="absent: a smooth wire")
+    ] = None
+
+
+class Irregularities(Element):
+    """Irregularity of the contact wires; parallel wires have the same."""
+
+    @property
+    def built_irregularity(self) -> Irregularity | None:
+        """Irregularity of the contact wires; None: smooth wires."""
+        table = self.line.contact_wire.irregularity
+        return None if table is None else _realise(table, self.line.geometry.length)
+
+    def irregularity_at(self, position: RealArray) -> RealArray:
+        """Heights of the irregularity at positions (n,) [m]; zero on smooth wires [m]."""
+        irregularity = self.built_irregularity
+        return np.zeros_like(position) if irregularity is None else irregularity_height(irregularity, position)
+
+    @cross_check
+    def _check_irregularity(self) -> Problems:
+        table = self.line.contact_wire.irregularity
+        if isinstance(table, SpectralIrregularity):
+            yield from table.check_resolution(self.line.geometry.length)
+
+    def add_to_line(self, catenary: Catenary) -> Catenary:
+        """Give the irregularity to the contact wires."""
+        irregularity = self.built_irregularity
+        wires = (
+            replace(wire, irregularity=irregularity) if wire.kind is Kind.CONTACT_WIRE else wire
+            for wire in catenary.wires
+        )
+        return replace(catenary, wires=tuple(wires))
+
+
+def derive_irregularity(wire: Wire) -> DerivedIrregularity | None:
+    """Points of the irregularity of a contact wire."""
+    irregularity = wire.irregularity
+    if irregularity is None:
+        return None
+    return DerivedIrregularity(
+        x_m=round_positions(irregularity.position), height_m=round_numbers(np.array(irregularity.height))
+    )
+
+
+@lru_cache(maxsize=8)
+def _realise(table: IrregularityTable, length: float) -> Irregularity:
+    """Irregularity of a table over a line of a length [m]."""
+    if isinstance(table, SpectralIrregularity):
+        realised = realise_irregularity(SpectralDensity(table.frequency_1_m, table.density_m3), length, table.seed)
+    else:
+        realised = Irregularity(table.x_m, table.height_m)
+    return replace(realised, height=tuple(table.scale * height for height in realised.height))
