@@ -24,7 +24,14 @@ from pantocheck.conformance.line.derived_numbers import (
     round_position,
     round_positions,
 )
-from pantocheck.conformance.line.elements.element import MOST_LINE_PARTS, BuiltSection, DrawnMark, Element, beyond_end
+from pantocheck.conformance.line.elements.element import (
+    MOST_LINE_PARTS,
+    BuiltSection,
+    DerivedKeys,
+    DrawnMark,
+    Element,
+    beyond_end,
+)
 from pantocheck.conformance.line.elements.wire_irregularity import (
     DerivedIrregularWire,
     IrregularWire,
@@ -174,17 +181,13 @@ class DerivedContactWire(DerivedIrregularWire, DerivedWire):
     """Contact wire; parallel wires differ in their lateral positions only."""
 
 
-class DerivedWires(InputTable):
-    """Contact and messenger wires in the derived values."""
-
-    contact_wire: DerivedContactWire
-    messenger_wire: DerivedWire
-
-
 class Wires(Element):
     """Contact and messenger wires, and their changes along the line."""
 
-    derived: ClassVar[type[InputTable]] = DerivedWires
+    derived: ClassVar[DerivedKeys] = {
+        "contact_wire": (DerivedContactWire, ...),
+        "messenger_wire": (DerivedWire, ...),
+    }
 
     contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable
