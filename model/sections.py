@@ -52,7 +52,7 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
     def rename(wire: str) -> str:
         return f"{name} {wire}"
 
-    moved = {
+    moved: dict[str, Any] = {
         parts: tuple(_place_part(part, rename, start, rise) for part in getattr(catenary, parts)) for parts in PARTS
     }
     return replace(
@@ -125,7 +125,9 @@ def join_sections(sections: Sequence[Catenary]) -> Catenary:
     names = [wire.name for wire in wires]
     if len(set(names)) < len(names):
         raise ValueError("two wires of the line have the same name; give each section another name")
-    joined = {parts: tuple(part for section in sections for part in getattr(section, parts)) for parts in PARTS}
+    joined: dict[str, Any] = {
+        parts: tuple(part for section in sections for part in getattr(section, parts)) for parts in PARTS
+    }
     curves = tuple(dict.fromkeys(curve for section in sections for curve in section.curves))
     return replace(first, wires=wires, curves=curves, **joined)
 

@@ -30,7 +30,7 @@ DerivedSection: Any = create_model(
 )
 
 
-class DerivedLine(DerivedSection):  # type: ignore[misc]  # its keys are those of the registered elements
+class DerivedLine(DerivedSection):
     """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
 
     gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]

@@ -7,7 +7,8 @@ elements, and a new one needs no change outside this folder.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, cast
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 from pydantic import Field
 from pydantic_core import PydanticCustomError
@@ -78,7 +79,7 @@ class DrawnConnection:
 
 def list_key(table: type[InputTable], description: str) -> tuple[Any, Any]:
     """Type and default of a key of the derived values that lists tables, and that is left out without any."""
-    return Annotated[tuple[table, ...], Field(strict=False, exclude_if=is_absent, description=description)], ()
+    return GenericAlias(tuple, (table, ...)), Field((), strict=False, exclude_if=is_absent, description=description)
 
 
 class Element(InputTable):

@@ -12,7 +12,7 @@ outgoing wires rise to their anchor, and the incoming ones descend from theirs.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -345,7 +345,7 @@ def _name_section(place: SectionPlace) -> str:
 def _select_parts(line: "DiscretisedLine", name: str) -> "DiscretisedLine":
     """Line with the wires and parts of one section in catenary and state."""
     catenary, state, kept = line.catenary, line.state, select_parts(line.catenary, name)
-    parts = {key: tuple(getattr(catenary, key)[n] for n in indices) for key, indices in kept.items()}
+    parts: dict[str, Any] = {key: tuple(getattr(catenary, key)[n] for n in indices) for key, indices in kept.items()}
     droppers, arms = kept["droppers"], kept["steady_arms"]
     return replace(
         line,
