@@ -28,7 +28,7 @@ from pantocheck.conformance.line.derived_numbers import (
 )
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnConnection, Element
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
-from pantocheck.model import Catenary, Dropper, Kind, discretise
+from pantocheck.model import Catenary, Dropper, Kind
 
 if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_layout import LineLayout
@@ -242,6 +242,8 @@ class Droppers(Element):
 
     def complete_line(self, catenary: Catenary) -> Catenary:
         """Masses of the droppers from their lengths, if a mass per length is given."""
+        from pantocheck.model import discretise  # loads the solvers, which reading a line does not need
+
         if not self.droppers.mass_kg_m:
             return catenary
         # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.

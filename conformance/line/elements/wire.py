@@ -38,7 +38,6 @@ from pantocheck.conformance.line.elements.wire_irregularity import (
     derive_irregularity,
 )
 from pantocheck.model import Catenary, Kind, SectionChange, TensionChange, Wire, wave_speed
-from pantocheck.model.worn_wire import worn_stiffness_share
 
 if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
@@ -300,6 +299,8 @@ def _change_wire(wire: Wire, changes: Sequence[WireChange]) -> Wire:
 
 def _mass_and_stiffness(wire: Wire, change: WireChange) -> tuple[float, float]:
     """Mass per length and bending stiffness of a stretch [kg/m, N m2]."""
+    from pantocheck.model.worn_wire import worn_stiffness_share  # loads scipy.optimize
+
     mass, stiffness = wire.mass_per_length, wire.bending_stiffness
     if isinstance(change, ContactWireChange) and change.wear_share is not None:
         mass *= 1 - change.wear_share
