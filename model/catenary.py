@@ -302,18 +302,25 @@ class PointMass:
 
 @dataclass(frozen=True)
 class Spring:
-    """Vertical spring and damper between two wires, without force at rest."""
+    """Vertical spring and damper between two wires, without force at rest.
+
+    Parameters
+    ----------
+    position : float
+        Position along the track [m].
+    upper, lower : str
+        Names of the wires.
+    stiffness : float
+        Stiffness [N/m].
+    damping : float
+        Damping [N s/m].
+    """
 
     position: float
-    """Position along the track [m]."""
     upper: str
-    """Name of the upper wire."""
     lower: str
-    """Name of the lower wire."""
     stiffness: float
-    """Stiffness [N/m]."""
     damping: float = 0.0
-    """Damping [N s/m]."""
 
 
 @dataclass(frozen=True)

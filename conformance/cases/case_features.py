@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.lift_force import AppliedForces
+from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.features import list_features
 
 RUN_FEATURES: dict[str, Callable[[Case], bool]] = {
@@ -30,6 +31,6 @@ def find_missing_features(case: Case, simulated: Collection[str] | None) -> str 
         simulated: Features that the simulator states; None: it states none.
     """
     if simulated is None:
-        return "the system does not list the features that it simulates, see docs/systems.md"
+        return f"the system does not list the features that it simulates, see {DocumentationPage.SYSTEMS}"
     missing = [name for name in list_case_features(case) if name not in simulated]
     return f"the system does not simulate {', '.join(missing)}" if missing else None

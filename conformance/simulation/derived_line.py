@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent
@@ -21,11 +21,13 @@ class SectionLimits(InputTable):
     ]
 
 
-_TABLES: tuple[Any, ...] = tuple(dict.fromkeys(element.derived for element in reversed(ELEMENTS)))
-
-
-class DerivedSection(*(table for table in _TABLES if table is not InputTable), SectionLimits):  # type: ignore[misc]
-    """Tension section at rest: its wires and the parts on them."""
+_KEYS: dict[str, Any] = {key: content for element in ELEMENTS for key, content in element.derived.items()}
+DerivedSection: Any = create_model(
+    "DerivedSection",
+    __base__=SectionLimits,
+    __doc__="Tension section at rest: its wires and the parts on them.",
+    **_KEYS,
+)
 
 
 class DerivedLine(DerivedSection):
@@ -62,7 +64,7 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
     return DerivedLine(**dict(first), gravity_m_s2=GRAVITY, further_sections=tuple(further))
 
 
-def _derive_section(section: BuiltSection) -> DerivedSection:
+def _derive_section(section: BuiltSection) -> Any:
     """Derived values of one tension section."""
     values: dict[str, Any] = {"span_limits_m": round_positions(section.limits)}
     for element in ELEMENTS:

@@ -17,7 +17,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.line.derived_numbers import round_number, round_position
-from pantocheck.conformance.line.elements.element import BuiltSection, Element
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, Element, list_key
 from pantocheck.model import Catenary, TrackCurve
 from pantocheck.model.curves import head_shift
 
@@ -85,19 +85,10 @@ class DerivedCurve(InputTable):
     transition_m: Annotated[float, Field(description="length at either end over which the curvature rises [m]")]
 
 
-class DerivedCurves(InputTable):
-    """TrackCurves in the derived values."""
-
-    curves: Annotated[
-        tuple[DerivedCurve, ...],
-        Field(strict=False, exclude_if=is_absent, description="curves of the track; absent: a straight track"),
-    ] = ()
-
-
 class TrackCurves(Element):
     """TrackCurves of the track, and their cant."""
 
-    derived: ClassVar[type[InputTable]] = DerivedCurves
+    derived: ClassVar[DerivedKeys] = {"curves": list_key(DerivedCurve, "curves of the track; absent: a straight track")}
 
     track: Annotated[
         TrackTable | None,

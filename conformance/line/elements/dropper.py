@@ -26,9 +26,9 @@ from pantocheck.conformance.line.derived_numbers import (
     round_numbers,
     round_positions,
 )
-from pantocheck.conformance.line.elements.element import BuiltSection, DrawnConnection, Element
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnConnection, Element
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
-from pantocheck.model import Catenary, Dropper, Kind, discretise
+from pantocheck.model import Catenary, Dropper, Kind
 
 if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_layout import LineLayout
@@ -41,37 +41,50 @@ COARSE = 5.0
 DROPPERS = Feature("droppers")
 DROPPER_MASS = Feature("dropper_mass", bool)
 
-DropperPositions = Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
-DropperPresags = Annotated[
-    NumberList | None,
-    Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
-    Feature("presag", lambda heights: any(heights or ())),
-]
-DropperHeights = Annotated[
-    NumberList | None,
-    Field(
-        description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place of "
-        "presag_m [m]",
-        exclude_if=is_absent,
-    ),
-    Feature("surveyed_wire_heights"),
-]
-DropperLengths = Annotated[
-    PositiveList | None, Field(description="published length of each dropper, for comparison [m]"), NO_FEATURE
-]
-
 
 class DropperSchedule(InputTable):
     """Droppers of one span."""
 
-    x_m: DropperPositions
-    presag_m: DropperPresags = None
-    contact_wire_height_m: DropperHeights = None
-    length_m: DropperLengths = None
+    x_m: Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
+    presag_m: Annotated[
+        NumberList | None,
+        Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
+        Feature("presag", lambda heights: any(heights or ())),
+    ] = None
+    contact_wire_height_m: Annotated[
+        NumberList | None,
+        Field(
+            description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place "
+            "of presag_m [m]",
+            exclude_if=is_absent,
+        ),
+        Feature("surveyed_wire_heights"),
+    ] = None
+    length_m: Annotated[
+        PositiveList | None, Field(description="published length of each dropper, for comparison [m]"), NO_FEATURE
+    ] = None
 
     @cross_check
-    def _consistent(self) -> Problems:
-        yield from find_schedule_problems(self.x_m, self.presag_m, self.contact_wire_height_m, self.length_m)
+    def _check_schedule(self) -> Problems:
+        """Positions increase, every list has one value per position, and heights are given once."""
+        if self.presag_m is not None and self.contact_wire_height_m is not None:
+            yield validation_problem(
+                "contact_wire_height_m",
+                "the height of the contact wire is given twice",
+                "Give either presag_m or contact_wire_height_m.",
+            )
+        for i, (before, x) in enumerate(pairwise(self.x_m), 2):
+            if x <= before:
+                yield validation_problem(
+                    f"x_m[{i}]",
+                    f"{x:g} m is not greater than the preceding {before:g} m",
+                    "List the droppers in the direction of travel.",
+                )
+        for key in ("presag_m", "contact_wire_height_m", "length_m"):
+            values, droppers = getattr(self, key), len(self.x_m)
+            if values is not None and len(values) != droppers:
+                found = f"{len(values)} values for {droppers} droppers"
+                yield validation_problem(key, found, "Give one value per dropper of x_m.")
 
     def prescribed_heights(self, chord: RealArray) -> RealArray:
         """Heights of the contact wire at the droppers [m], above the datum.
@@ -86,54 +99,9 @@ class DropperSchedule(InputTable):
         return np.asarray(chord - np.array(self.presag_m or (0.0,) * len(self.x_m)))
 
 
-def find_schedule_problems(
-    positions: Sequence[float],
-    presags: Sequence[float] | None,
-    heights: Sequence[float] | None,
-    lengths: Sequence[float] | None,
-) -> Problems:
-    """Problems of a schedule: positions increase, every list has one value per position, heights are given once.
-
-    Parameters
-    ----------
-    positions : sequence of float
-        Positions of the droppers [m].
-    presags, heights, lengths : sequence of float or None
-        Further values of the droppers; None: not given [m].
-
-    Yields
-    ------
-    PydanticCustomError
-        A position that does not increase, a list with another number of values, or pre-sags beside heights.
-    """
-    if presags is not None and heights is not None:
-        yield validation_problem(
-            "contact_wire_height_m",
-            "the height of the contact wire is given twice",
-            "Give either presag_m or contact_wire_height_m.",
-        )
-    lists = {"presag_m": presags, "contact_wire_height_m": heights, "length_m": lengths}
-    for i, (before, x) in enumerate(pairwise(positions), 2):
-        if x <= before:
-            yield validation_problem(
-                f"x_m[{i}]",
-                f"{x:g} m is not greater than the preceding {before:g} m",
-                "List the droppers in the direction of travel.",
-            )
-    for key, values in lists.items():
-        if values is not None and len(values) != len(positions):
-            yield validation_problem(
-                key, f"{len(values)} values for {len(positions)} droppers", "Give one value per dropper of x_m."
-            )
-
-
-class DropperTable(SourcedTable):
+class DropperTable(DropperSchedule, SourcedTable):
     """Droppers: bars that carry tension, but no compression; their schedule holds for spans without another one."""
 
-    x_m: DropperPositions
-    presag_m: DropperPresags = None
-    contact_wire_height_m: DropperHeights = None
-    length_m: DropperLengths = None
     stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]"), DROPPERS] = (
         None
     )
@@ -148,10 +116,6 @@ class DropperTable(SourcedTable):
     ] = None
     clamp_on_messenger_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
     clamp_on_contact_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
-
-    @cross_check
-    def _check_schedule(self) -> Problems:
-        yield from find_schedule_problems(self.x_m, self.presag_m, self.contact_wire_height_m, self.length_m)
 
     @cross_check
     def _check_stiffness(self) -> Problems:
@@ -172,12 +136,7 @@ class DropperTable(SourcedTable):
     @property
     def schedule(self) -> DropperSchedule:
         """Schedule of the spans that name no other."""
-        return DropperSchedule.model_construct(
-            x_m=self.x_m,
-            presag_m=self.presag_m,
-            contact_wire_height_m=self.contact_wire_height_m,
-            length_m=self.length_m,
-        )
+        return DropperSchedule.model_construct(**{key: getattr(self, key) for key in DropperSchedule.model_fields})
 
 
 class DerivedDroppers(InputTable):
@@ -222,16 +181,10 @@ class DerivedDroppers(InputTable):
     stiffness_coefficient_s: StiffnessCoefficient
 
 
-class DerivedDropperTable(InputTable):
-    """Droppers in the derived values."""
-
-    droppers: DerivedDroppers
-
-
 class Droppers(Element):
     """Droppers of all spans."""
 
-    derived: ClassVar[type[InputTable]] = DerivedDropperTable
+    derived: ClassVar[DerivedKeys] = {"droppers": (DerivedDroppers, ...)}
 
     droppers: DropperTable
 
@@ -289,6 +242,8 @@ class Droppers(Element):
 
     def complete_line(self, catenary: Catenary) -> Catenary:
         """Masses of the droppers from their lengths, if a mass per length is given."""
+        from pantocheck.model import discretise  # loads the solvers, which reading a line does not need
+
         if not self.droppers.mass_kg_m:
             return catenary
         # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.

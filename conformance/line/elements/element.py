@@ -7,12 +7,14 @@ elements, and a new one needs no change outside this folder.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, cast
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
+from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from pantocheck.conformance.input_files.cross_checks import Problems
-from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
+from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent, validation_problem
 from pantocheck.model import Catenary, Kind, Wire
 
 if TYPE_CHECKING:
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
 MOST_LINE_PARTS = 1000
 """Largest number of changes of a wire, and of parts at single positions."""
+
+DerivedKeys = dict[str, tuple[Any, Any]]
+"""Type and default of every key of the derived values, by name; the default ... marks a required key."""
 
 Symbol = Literal["anchor", "messenger support", "steady arm", "sensor", "mass"]
 """Kind of a point in a drawing."""
@@ -72,10 +77,15 @@ class DrawnConnection:
     """Name of the upper wire."""
 
 
+def list_key(table: type[InputTable], description: str) -> tuple[Any, Any]:
+    """Type and default of a key of the derived values that lists tables, and that is left out without any."""
+    return GenericAlias(tuple, (table, ...)), Field((), strict=False, exclude_if=is_absent, description=description)
+
+
 class Element(InputTable):
     """Keys of a line file that describe one element, and all that the element does."""
 
-    derived: ClassVar[type[InputTable]] = InputTable
+    derived: ClassVar[DerivedKeys] = {}
     """Keys of the derived values that programs receive, see `derive`."""
 
     @property

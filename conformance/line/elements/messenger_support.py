@@ -16,7 +16,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.line.derived_numbers import BySupport, Numbers, join_equal, round_positions
-from pantocheck.conformance.line.elements.element import BuiltSection, DrawnMark, Element
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
 from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
 from pantocheck.model import Catenary, Kind, MessengerSupport
 
@@ -72,16 +72,10 @@ class DerivedMessengerSupports(InputTable):
     mass_kg: Annotated[float, Field(description="moving mass of a support [kg]")] = 0.0
 
 
-class DerivedMessengerSupportTable(InputTable):
-    """Messenger supports in the derived values."""
-
-    messenger_supports: DerivedMessengerSupports
-
-
 class MessengerSupports(Element):
     """Supports of the messenger wires at all supports of the line."""
 
-    derived: ClassVar[type[InputTable]] = DerivedMessengerSupportTable
+    derived: ClassVar[DerivedKeys] = {"messenger_supports": (DerivedMessengerSupports, ...)}
 
     messenger_support: MessengerSupportTable
 

@@ -14,9 +14,11 @@ from pantocheck.conformance.line.elements.element import (
     KINDS,
     MOST_LINE_PARTS,
     BuiltSection,
+    DerivedKeys,
     DrawnMark,
     Element,
     find_position_problems,
+    list_key,
 )
 from pantocheck.model import Catenary, Kind, PointMass
 
@@ -40,19 +42,10 @@ class DerivedPointMass(InputTable):
     mass_coefficient_1_s: MassCoefficient
 
 
-class DerivedPointMasses(InputTable):
-    """Point masses in the derived values."""
-
-    point_masses: Annotated[
-        tuple[DerivedPointMass, ...],
-        Field(strict=False, exclude_if=is_absent, description="masses on the wires; absent: none"),
-    ] = ()
-
-
 class PointMasses(Element):
     """Masses on the wires."""
 
-    derived: ClassVar[type[InputTable]] = DerivedPointMasses
+    derived: ClassVar[DerivedKeys] = {"point_masses": list_key(DerivedPointMass, "masses on the wires; absent: none")}
 
     point_mass: Annotated[
         tuple[PointMassTable, ...],

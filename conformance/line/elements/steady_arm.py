@@ -24,7 +24,7 @@ from pantocheck.conformance.line.derived_numbers import (
     round_numbers,
     round_positions,
 )
-from pantocheck.conformance.line.elements.element import BuiltSection, DrawnMark, Element
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
 from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
 from pantocheck.model import Catenary, Kind, SteadyArm
 
@@ -119,16 +119,10 @@ class DerivedSteadyArms(InputTable):
     stiffness_coefficient_s: StiffnessCoefficient
 
 
-class DerivedSteadyArmTable(InputTable):
-    """Steady arms in the derived values."""
-
-    steady_arms: DerivedSteadyArms
-
-
 class SteadyArms(Element):
     """Steady arms at all supports."""
 
-    derived: ClassVar[type[InputTable]] = DerivedSteadyArmTable
+    derived: ClassVar[DerivedKeys] = {"steady_arms": (DerivedSteadyArms, ...)}
 
     steady_arm: SteadyArmTable
 

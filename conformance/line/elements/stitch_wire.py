@@ -9,7 +9,7 @@ from pantocheck.conformance.input_files.cross_checks import Problems, cross_chec
 from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
 from pantocheck.conformance.line.derived_numbers import MassCoefficient, Numbers, round_number, round_positions
-from pantocheck.conformance.line.elements.element import BuiltSection, Element
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, Element
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
 from pantocheck.model import Catenary, Clamp, Kind, TensionChange, Wire, wave_speed
@@ -47,16 +47,10 @@ class DerivedStitchWires(InputTable):
     mass_coefficient_1_s: MassCoefficient
 
 
-class DerivedStitchWire(InputTable):
-    """Stitch wires in the derived values."""
-
-    stitch_wires: DerivedStitchWires | None
-
-
 class StitchWires(Element):
     """Stitch wires at all supports, clamped to the messenger wires."""
 
-    derived: ClassVar[type[InputTable]] = DerivedStitchWire
+    derived: ClassVar[DerivedKeys] = {"stitch_wires": (DerivedStitchWires | None, ...)}
 
     stitch_wire: Annotated[StitchWireTable | None, STITCH_WIRE] = None
 

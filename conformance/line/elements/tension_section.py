@@ -12,7 +12,7 @@ outgoing wires rise to their anchor, and the incoming ones descend from theirs.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -25,7 +25,7 @@ from pantocheck.conformance.line.elements.single_support import MOST_SPANS, over
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.catenary import Termination
-from pantocheck.model.sections import join_sections, place_section
+from pantocheck.model.sections import join_sections, place_section, select_parts
 
 if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_file import LineFile
@@ -294,7 +294,7 @@ class TensionSections(Element):
             BuiltSection(
                 self.section_file(place),
                 limits[place.first : place.last + 1],
-                _select_parts(built, f"{_name_section(place)} "),
+                _select_parts(built, _name_section(place)),
             )
             for place in self.section_places
         ]
@@ -343,27 +343,21 @@ def _name_section(place: SectionPlace) -> str:
 
 
 def _select_parts(line: "DiscretisedLine", name: str) -> "DiscretisedLine":
-    """Line with the parts on wires whose names begin with a name."""
-    catenary, state = line.catenary, line.state
-    droppers = [n for n, dropper in enumerate(catenary.droppers) if dropper.lower.startswith(name)]
-    arms = [n for n, arm in enumerate(catenary.steady_arms) if arm.wire.startswith(name)]
+    """Line with the wires and parts of one section in catenary and state."""
+    catenary, state, kept = line.catenary, line.state, select_parts(line.catenary, name)
+    parts: dict[str, Any] = {key: tuple(getattr(catenary, key)[n] for n in indices) for key, indices in kept.items()}
+    droppers, arms = kept["droppers"], kept["steady_arms"]
     return replace(
         line,
         catenary=replace(
-            catenary,
-            wires=tuple(wire for wire in catenary.wires if wire.name.startswith(name)),
-            droppers=tuple(catenary.droppers[n] for n in droppers),
-            steady_arms=tuple(catenary.steady_arms[n] for n in arms),
-            messenger_supports=tuple(s for s in catenary.messenger_supports if s.wire.startswith(name)),
-            clamps=tuple(clamp for clamp in catenary.clamps if clamp.upper.startswith(name)),
-            springs=tuple(spring for spring in catenary.springs if spring.upper.startswith(name)),
-            point_masses=tuple(mass for mass in catenary.point_masses if mass.wire.startswith(name)),
+            catenary, wires=tuple(wire for wire in catenary.wires if wire.name.startswith(f"{name} ")), **parts
         ),
         state=replace(
             state,
             dropper_tension=state.dropper_tension[droppers],
             dropper_length=state.dropper_length[droppers],
             dropper_direction=state.dropper_direction[droppers],
+            clamp_force=state.clamp_force[kept["clamps"]],
             arm_force=state.arm_force[arms],
         ),
     )

@@ -24,14 +24,20 @@ from pantocheck.conformance.line.derived_numbers import (
     round_position,
     round_positions,
 )
-from pantocheck.conformance.line.elements.element import MOST_LINE_PARTS, BuiltSection, DrawnMark, Element, beyond_end
+from pantocheck.conformance.line.elements.element import (
+    MOST_LINE_PARTS,
+    BuiltSection,
+    DerivedKeys,
+    DrawnMark,
+    Element,
+    beyond_end,
+)
 from pantocheck.conformance.line.elements.wire_irregularity import (
     DerivedIrregularWire,
     IrregularWire,
     derive_irregularity,
 )
 from pantocheck.model import Catenary, Kind, SectionChange, TensionChange, Wire, wave_speed
-from pantocheck.model.worn_wire import worn_stiffness_share
 
 if TYPE_CHECKING:
     from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
@@ -174,17 +180,13 @@ class DerivedContactWire(DerivedIrregularWire, DerivedWire):
     """Contact wire; parallel wires differ in their lateral positions only."""
 
 
-class DerivedWires(InputTable):
-    """Contact and messenger wires in the derived values."""
-
-    contact_wire: DerivedContactWire
-    messenger_wire: DerivedWire
-
-
 class Wires(Element):
     """Contact and messenger wires, and their changes along the line."""
 
-    derived: ClassVar[type[InputTable]] = DerivedWires
+    derived: ClassVar[DerivedKeys] = {
+        "contact_wire": (DerivedContactWire, ...),
+        "messenger_wire": (DerivedWire, ...),
+    }
 
     contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable
@@ -297,6 +299,8 @@ def _change_wire(wire: Wire, changes: Sequence[WireChange]) -> Wire:
 
 def _mass_and_stiffness(wire: Wire, change: WireChange) -> tuple[float, float]:
     """Mass per length and bending stiffness of a stretch [kg/m, N m2]."""
+    from pantocheck.model.worn_wire import worn_stiffness_share  # loads scipy.optimize
+
     mass, stiffness = wire.mass_per_length, wire.bending_stiffness
     if isinstance(change, ContactWireChange) and change.wear_share is not None:
         mass *= 1 - change.wear_share

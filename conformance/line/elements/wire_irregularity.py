@@ -22,7 +22,6 @@ from pantocheck.conformance.line.derived_numbers import Numbers, round_numbers, 
 from pantocheck.conformance.line.elements.element import Element
 from pantocheck.model import Catenary, Kind, Wire
 from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
-from pantocheck.model.irregularity_spline import irregularity_height
 
 MOST_POINTS = 50_000
 """Largest number of measured points: a height every 6 cm over 3 km."""
@@ -148,6 +147,8 @@ class Irregularities(Element):
 
     def irregularity_at(self, position: RealArray) -> RealArray:
         """Heights of the irregularity at positions (n,) [m]; zero on smooth wires [m]."""
+        from pantocheck.model.irregularity_spline import irregularity_height
+
         irregularity = self.built_irregularity
         return np.zeros_like(position) if irregularity is None else irregularity_height(irregularity, position)
 

@@ -13,9 +13,11 @@ from pantocheck.conformance.line.derived_numbers import round_position
 from pantocheck.conformance.line.elements.element import (
     MOST_LINE_PARTS,
     BuiltSection,
+    DerivedKeys,
     DrawnConnection,
     Element,
     find_position_problems,
+    list_key,
 )
 from pantocheck.model import Catenary, Kind, Spring
 
@@ -43,19 +45,12 @@ class DerivedWireSpring(InputTable):
     damping_N_s_m: Annotated[float, Field(description="damping [N s/m]")]
 
 
-class DerivedWireSprings(InputTable):
-    """Springs between the wires in the derived values."""
-
-    wire_springs: Annotated[
-        tuple[DerivedWireSpring, ...],
-        Field(strict=False, exclude_if=is_absent, description="springs between the wires; absent: none"),
-    ] = ()
-
-
 class WireSprings(Element):
     """Springs between messenger and contact wire."""
 
-    derived: ClassVar[type[InputTable]] = DerivedWireSprings
+    derived: ClassVar[DerivedKeys] = {
+        "wire_springs": list_key(DerivedWireSpring, "springs between the wires; absent: none")
+    }
 
     wire_spring: Annotated[
         tuple[WireSpringTable, ...],

@@ -1,6 +1,8 @@
 """Registry: only its own file and the registry know an element by name."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import ClassVar
 
@@ -69,3 +71,12 @@ def test_registered_element_acts_on_every_line(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(catenary_model, "ELEMENTS", (*ELEMENTS, Counter))
     build_catenary(build_short_case().line)
     assert Counter.calls == 1
+
+
+def test_a_line_is_read_without_solvers() -> None:
+    """Commands that list or show cases must not load them; model parts without solvers need numpy only."""
+    text = "import sys, pantocheck.conformance.cases.line_file; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert "pantocheck.model.catenary" in loaded
+    assert not {"numba", "scipy.linalg", "scipy.sparse", "scipy.optimize", "pantocheck.model.discretised_line"} & loaded

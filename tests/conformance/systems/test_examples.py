@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.listed_spans import vary_short_line
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
@@ -71,6 +72,20 @@ def test_examples_run_a_line_with_listed_spans_and_supports(short: Case, name: s
     tolerance = {"string_catenary": 0.1, "external_program": 1e-9}[name]
     for quantity in ("mean_force_N", "std_force_N", "contact_height_range_mm"):
         assert_allclose(values[quantity], reference[quantity], rtol=tolerance)
+
+
+def test_external_program_runs_a_line_of_several_sections(short: Case) -> None:
+    """The overlap of two sections lies inside the run; the same program gives the same values."""
+    line = section_line(spans=(4, 4))
+    discretisation = short.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
+    file = short.file.model_copy(update={"evaluated_spans": (3,), "discretisation": discretisation})
+    case = replace(short, line=line, file=file)
+    reference = evaluate(ReferenceSimulator().run_unrefined(case), case)
+    command = Path(sysconfig.get_path("scripts"), "pantocheck")
+    values = evaluate(adapter("external_program", f"'{command}'").run(case), case)
+    assert_allclose(values["std_force_N"], reference["std_force_N"], rtol=1e-9)
+    skipped = adapter("string_catenary").run(case)
+    assert skipped == Skipped("the system does not simulate sections")
 
 
 def test_plain_simulator_skips_unsupported_cases(short: Case) -> None:
