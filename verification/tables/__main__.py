@@ -77,6 +77,9 @@ PROGRAMS = {
         "{folder}/results.json",
         "run vovan2015/* --formats json --out {folder}",
     ),
+    "forgeries": Program(
+        "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
+    ),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "--made-up 6"),
