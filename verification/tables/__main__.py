@@ -77,6 +77,7 @@ PROGRAMS = {
         "{folder}/results.json",
         "run vovan2015/* --formats json --out {folder}",
     ),
+    "self-test": Program("tables.self_test_tables", ("self-test-mutants", "self-test-numerical", "self-test-mild")),
     "forgeries": Program(
         "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
     ),
