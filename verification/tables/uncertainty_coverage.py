@@ -144,7 +144,7 @@ def main() -> None:
     for name in options.cases or default:
         (case,) = (case for case in select_cases([name]) if case.id == name)
         found = calibrate(case)
-        found.print_table(name)
+        found.print_table()
         total = total.join(found)
     total.print_summary()
     print(f"\n{time.process_time() - begin:.0f} s of process time.")
