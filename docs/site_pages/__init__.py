@@ -3,6 +3,7 @@
 from functools import partial
 from pathlib import Path
 
+from site_pages.check_table import build_check_table
 from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
 from site_pages.converged_pages import build_converged_page
@@ -31,7 +32,7 @@ PAGES = {
 }
 """Builder of each page by its name."""
 
-TABLES = {"guide-counts": build_guide_counts, "limit-trust": build_trust_table}
+TABLES = {"guide-counts": build_guide_counts, "limit-trust": build_trust_table, "record-checks": build_check_table}
 """Builder of each table that a written page includes."""
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))

@@ -1,6 +1,6 @@
 """Forgeries: each kind is found in results.json, a few in PDF and HTML; `.ci/thorough forgeries` tries all of them."""
 
-import re
+import csv
 from pathlib import Path
 
 import pytest
@@ -14,7 +14,6 @@ from verification.attacks.forged_pdfs import PDF_FORGERIES
 from verification.attacks.forged_results import CHANGES
 from verification.attacks.forgeries import (
     OUTSIDE,
-    PAGE,
     SEED,
     Genuine,
     attempt,
@@ -22,6 +21,7 @@ from verification.attacks.forgeries import (
     list_forgeries,
     list_result_forgeries,
 )
+from verification.tables.__main__ import TABLES
 
 PDF_KINDS = [
     "heading painted over",
@@ -66,10 +66,10 @@ def test_pages_beside_other_results_are_found(genuine: Genuine, tmp_path: Path, 
     assert attempt(kind, *item, tmp_path).outcome == "pages"
 
 
-def test_page_lists_every_kind() -> None:
-    text = PAGE.read_text(encoding="utf-8")
+def test_tables_list_every_kind() -> None:
+    texts = [path.read_text("utf-8") for path in TABLES.glob("forged-*.csv")]
+    rows = [row for text in texts for row in csv.reader(text.splitlines())]
     kinds = {*CHANGES, *PDF_FORGERIES, *HTML_FORGERIES}
     assert len(kinds) >= 60
-    assert {kind for kind in kinds if f"| {kind} |" not in text} == set()
-    consistent = {row.split("|")[1].strip() for row in re.findall(r"^\|.*consistent.*\|$", text, re.MULTILINE)}
-    assert consistent <= set(OUTSIDE)
+    assert kinds <= {row[0] for row in rows}
+    assert {row[0] for row in rows if "consistent" in row} <= set(OUTSIDE)

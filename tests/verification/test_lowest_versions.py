@@ -9,7 +9,7 @@ from verification.packaging import lowest_versions
 
 
 def test_every_extra_has_lower_bounds_and_all_contains_the_others() -> None:
-    path = Path(lowest_versions.__file__).parents[1] / "pyproject.toml"
+    path = Path(lowest_versions.__file__).parents[2] / "pyproject.toml"
     extras = tomllib.loads(path.read_text(encoding="utf-8"))["project"]["optional-dependencies"]
     constraints = {extra: set(lowest_versions.build_constraints([extra])) for extra in extras}
     core = set(lowest_versions.build_constraints([]))

@@ -1,11 +1,11 @@
 """Forged certificates and the outcome of their verification.
 
-    python -m verification.attacks.forgeries [--seed 20261122] [--only WORD] [--jobs N] [--write]
+    python -m verification.attacks.forgeries [--seed 20261122] [--only WORD] [--jobs N]
 
 The genuine document is a run that fails. Each kind of forgery changes the file of a certificate (`forged_pdfs.py`,
 `forged_pages.py`) or its results (`forged_results.py`). Changed results are put into `results.json`, into the PDF and
 the HTML page beside the genuine pages, and into pages that are made again by the same software. `--only` selects kinds
-by a part of their names, `--write` renews `docs/forgeries.md`. The exit code is 1 if a forgery is accepted that is not
+by a part of their names. The exit code is 1 if a forgery is accepted that is not
 listed in `OUTSIDE`.
 """
 
@@ -46,7 +46,6 @@ from verification.attacks.forged_pdfs import PDF_FORGERIES, replace_attachment
 from verification.attacks.forged_results import CHANGES, forge_results
 
 SEED = 20261122
-PAGE = Path(__file__).parents[2] / "docs" / "forgeries.md"
 CASE = "en50318-2002/250"
 
 OUTSIDE = {
@@ -203,94 +202,32 @@ def find_outcome(check: Callable[[], list[DocumentCheck]]) -> str:
         return "refused"
 
 
-def write_page(attempts: list[Attempt], others: dict[str, tuple[str, str]], seed: int) -> str:
-    """Text of `docs/forgeries.md`."""
-    kinds = list(dict.fromkeys(item.kind for item in attempts))
-    missed = {item.kind for item in attempts if item.outcome == "consistent"}
-    result_rows = []
-    for kind in (kind for kind in kinds if kind in CHANGES):
-        outcomes = {item.carrier: item.outcome for item in attempts if item.kind == kind}
-        cells = [outcomes.get(carrier, "not possible") for carrier in CARRIERS]
-        result_rows.append(f"| {kind} | {' | '.join(cells)} |")
-    file_rows = {
-        carrier: [f"| {item.kind} | {item.outcome} |" for item in attempts if item.carrier == carrier]
-        for carrier in ("PDF", "HTML")
-    }
-    outside = [
-        f"| {kind} | {' | '.join(others[kind])} | found | {OUTSIDE[kind]} |" for kind in OUTSIDE if kind in missed
-    ]
-    files, accepted = len(attempts), sum(item.outcome == "consistent" for item in attempts)
-    return TEXT.format(
-        seed=seed,
-        kinds=len(kinds),
-        files=files,
-        caught=len(kinds) - len(missed),
-        found=files - accepted,
-        missed=len(missed),
-        results="\n".join(result_rows),
-        pdf="\n".join(file_rows["PDF"]),
-        html="\n".join(file_rows["HTML"]),
-        outside="\n".join(outside),
-    )
-
-
 CARRIERS = ("results.json", "PDF, attachment alone", "PDF made again", "HTML, data alone", "HTML made again")
 """Files that carry forged results."""
 
-TEXT = """# Forged certificates
 
-Kinds of forged certificates, and the check that finds each.
+def print_tables(attempts: list[Attempt], others: dict[str, tuple[str, str]]) -> None:
+    """Print the tables of docs/forgeries.md: forged results, PDFs and HTML pages, and kinds that are consistent."""
+    results = {item.kind for item in attempts if item.kind in CHANGES}
+    outcomes = {(item.kind, item.carrier): item.outcome for item in attempts}
+    rows = [[kind, *(outcomes.get((kind, carrier), "not possible") for carrier in CARRIERS)] for kind in CHANGES]
+    _print_table(["kind", "`results.json`", *CARRIERS[1:]], [row for row in rows if row[0] in results])
+    for carrier in ("PDF", "HTML"):
+        _print_table(["kind", "outcome"], [[item.kind, item.outcome] for item in attempts if item.carrier == carrier])
+    outside = [[kind, *others[kind], "found", remark] for kind, remark in OUTSIDE.items() if kind in others]
+    _print_table(["kind", "`--record`", "`--rerun`", "`--trust-roots`", "remark"], outside)
 
-`python -m verification.attacks.forgeries --write` makes this page (seed {seed}). The genuine document is a run of
-`en50318-2002/250` that fails. {kinds} kinds of forgery give {files} files. `pantocheck verify` finds {found} of them
-without a record, a new run or a signature; {caught} kinds are found in every file. {missed} kinds are consistent in at
-least one file: the table at the end shows how they are found.
 
-The outcomes name the checks that [verify.md](verify.md) describes. `refused`: the file is no certificate. `not compared
-in full`: the exit code is 1, because another version made the document. `consistent`: the forgery was not found. `not
-possible`: the results contradict themselves, so that the software makes no page from them.
-
-## Forged results
-
-The results are changed in `results.json`, in a PDF or HTML page with the genuine pages, or before the pages are made
-again by the software of the forger. "Regraded": verdicts, margins and remarks follow from the changed numbers.
-
-| kind | `results.json` | PDF, attachment alone | PDF made again | HTML, data alone | HTML made again |
-|---|---|---|---|---|---|
-{results}
-
-## Forged PDF
-
-| kind | outcome |
-|---|---|
-{pdf}
-
-## Forged HTML page
-
-| kind | outcome |
-|---|---|
-{html}
-
-## Kinds that the document alone does not show
-
-A document whose results are invented without a contradiction is consistent. `--record` computes the quantities from the
-record again. `--rerun` runs the built-in simulator again, here on the same case, with the same change of its results. A
-signature covers every byte of the file: with `--trust-roots`, a document that was made again lacks the signature of the
-issuer.
-
-| kind | `--record` | `--rerun` | `--trust-roots` | remark |
-|---|---|---|---|---|
-{outside}
-"""
+def _print_table(heading: list[str], rows: list[list[str]]) -> None:
+    print("\n" + "\n".join(f"| {' | '.join(row)} |" for row in (heading, ["---"] * len(heading), *rows)))
 
 
 def main() -> int:
-    """Forge documents of every kind, print the outcomes, and renew the page on request."""
+    """Forge documents of every kind, and print the outcomes and the tables of docs/forgeries.md."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--only", default="", help="part of the names of the kinds")
     parser.add_argument("--jobs", type=int, default=1, help="number of processes")
-    parser.add_argument("--write", action="store_true", help="renew docs/forgeries.md")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -310,10 +247,7 @@ def main() -> int:
         built_in = run_cases([case], ReferenceSimulator()).to_dict() if missed else {}
         others = {kind: check_outside(kind, genuine, built_in, folder, options.seed) for kind in missed}
     print(Counter(item.outcome for item in attempts))
-    for kind, outcomes in others.items():
-        print(f"{kind:36s} --record {outcomes[0]:8s} --rerun {outcomes[1]}")
-    if options.write:
-        PAGE.write_text(write_page(attempts, others, options.seed), encoding="utf-8")
+    print_tables(attempts, others)
     unexpected = [kind for kind in missed if kind not in OUTSIDE]
     print(f"accepted, and not listed: {', '.join(unexpected) or 'none'}")
     return 1 if unexpected else 0

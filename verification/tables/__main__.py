@@ -9,6 +9,7 @@ import argparse
 import contextlib
 import csv
 import io
+import os
 import re
 import runpy
 import subprocess
@@ -31,6 +32,7 @@ class Program(NamedTuple):
     files: tuple[str, ...]
     """Names of the files, one for each table in the order of the output; a single name takes the rows of all tables."""
     arguments: str = ""
+    """{docs} is the folder of the pages, {drops} that of the records with known modes (DROPS in the environment)."""
     preparation: str = ""
     """Arguments of `pantocheck` for a run before; {folder} is a temporary folder."""
 
@@ -77,9 +79,13 @@ PROGRAMS = {
         "{folder}/results.json",
         "run vovan2015/* --formats json --out {folder}",
     ),
+    "self-test": Program("tables.self_test_tables", ("self-test-mutants", "self-test-numerical", "self-test-mild")),
+    "forgeries": Program(
+        "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
+    ),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
-    "identification": Program("tables.identification", ("identification-scores",), "--made-up 6"),
+    "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
     "set-up": Program("speed.set_up", ("speed-set-up",)),
     "commands": Program("speed.commands", ("speed-commands",)),
@@ -127,7 +133,7 @@ class Copy(io.StringIO):
 def run_program(program: Program) -> None:
     """Run a program with its preparation, and write its tables."""
     with tempfile.TemporaryDirectory() as folder:
-        places = {"folder": folder, "docs": str(DOCS)}
+        places = {"folder": folder, "docs": str(DOCS), "drops": os.environ.get("DROPS", "")}
         if program.preparation:
             arguments = program.preparation.format(**places).split()
             subprocess.run([sys.executable, "-m", "pantocheck", *arguments], check=False)

@@ -47,16 +47,16 @@ class Calibration:
         """Entries of both."""
         return Calibration({**self.entries, **other.entries})
 
-    def print_table(self, title: str) -> None:
+    def print_table(self) -> None:
         """Print the entries in Markdown."""
-        print(f"\n### {title}\n\n| quantity | of | value | half-width | largest change | ratio | contained |")
-        print("| :-- | --: | --: | --: | --: | --: | --: |")
-        for (_, owner, name), entry in self.entries.items():
+        print("\n| case | quantity | of | value | half-width | largest change | ratio | contained |")
+        print("| :-- | :-- | --: | --: | --: | --: | --: | --: |")
+        for (case, owner, name), entry in self.entries.items():
             if not entry.is_trivial:
                 ratio = entry.largest / entry.half_width if entry.half_width else float("inf")
                 share = f"{entry.contained} of {len(entry.changes)}"
                 numbers = f"{entry.value:.3f} | {entry.half_width:.3f} | {entry.largest:.3f} | {ratio:.2f} | {share}"
-                print(f"| {name} | {owner or 'line'} | {numbers} |", flush=True)
+                print(f"| `{case}` | `{name}` | {owner or 'line'} | {numbers} |", flush=True)
 
     def print_summary(self) -> None:
         """Print the share of contained changes and the median ratio of all entries that change."""

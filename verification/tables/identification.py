@@ -39,8 +39,8 @@ def main() -> None:
     parser.add_argument("--no-peers", action="store_true", help="leave pyOMA-2 out")
     options = parser.parse_args()
     peers = not options.no_peers and importlib.util.find_spec("pyoma2") is not None
-    heads = f"{'record':<12}{'method':<12}{'found':>6}{'inside':>10}"
-    print(heads + f"{'90 % [%]':>10}{'worst [%]':>10}{'x bound':>9}{'time [s]':>9}")
+    print("| record | method | modes found | inside | 90 % [%] | worst [%] | x bound | time [s] |")
+    print(f"|---|---|{'--:|' * 6}")
     if options.folder:
         tests = json.loads((options.folder / "truth.json").read_text())["tests"]
         for path in sorted(p for p in options.folder.iterdir() if p.suffix in (".h5", ".csv", ".uff")):
@@ -114,8 +114,8 @@ def line(name: str, method: str, found: Real, truth: Real, bound: Real, seconds:
     ninety, worst = np.percentile(error, 90), error.max()
     times = np.percentile(error / bound, 90) / 1.645  # 1 for an unbiased method that reaches the bound
     print(
-        f"{name:<12}{method:<12}{len(found):>6}{f'{inside}/{len(truth)}':>10}{100 * ninety:>10.3f}{100 * worst:>10.3f}"
-        f"{times:>9.2f}{seconds:>9.1f}",
+        f"| {name} | {method} | {len(found)} | {inside}/{len(truth)} | {100 * ninety:.3f} | {100 * worst:.3f} "
+        f"| {times:.2f} | {seconds:.1f} |",
         flush=True,
     )
 

@@ -3,9 +3,9 @@
 from typing import Any
 
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.figures.convergence_chart import draw_convergence
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_value
+from verification.guide.pages.convergence_chart import draw_convergence
 
 AGREEMENT = {True: "yes", False: "NO"}
 """Words for a value inside or outside its tolerance."""
