@@ -137,7 +137,7 @@ class FittedPantograph:
         write_atomically(out, tomli_w.dumps(self.tables).encode())
         data = out.with_name(f"{out.stem}-fit.json")
         write_model(data, self.report)
-        document = build_pantograph_fit_document(self.report.model_dump(mode="json", by_alias=True))
+        document = build_pantograph_fit_document(self.report)
         return [out, data, *write_document(document, data.with_suffix(""))]
 
 
@@ -197,5 +197,5 @@ def build_fitted_pantograph(
     texts = FileTexts(title, f"pantocheck fit-pantograph, from {names}"[:LONGEST_SOURCE])
     tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)
     pantograph = validate_model(tables, PantographFile, "fitted pantograph")
-    comparison = compare_responses(records, pantograph, None)
+    comparison = compare_responses(records, pantograph)
     return FittedPantograph(tables, build_pantograph_fit(selection, masses, title, comparison), records)

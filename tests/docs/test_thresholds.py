@@ -27,6 +27,7 @@ from pantocheck.conformance.authenticity.signatures import (
 )
 from pantocheck.conformance.cases import start_and_section
 from pantocheck.conformance.comparison import (
+    comparison_limits,
     drop_comparison,
     drop_motion,
     drop_statistics,
@@ -34,12 +35,10 @@ from pantocheck.conformance.comparison import (
     motion_bands,
     paired_forces,
     release_alignment,
-    response_columns,
     response_comparison,
     response_deviation,
     response_record,
     static_comparison,
-    static_criteria,
     static_differences,
     static_record,
 )
@@ -103,9 +102,9 @@ MODULES: list[ModuleType] = [
     extended_band, record_mismatch, record_uncertainty, start_agreement, start_and_section, validity_warnings,
     verification_limits, bands, filters, force_signals, limit_text, line_signals, pantograph_signals, plug_in_quantity,
     record, block_bootstrap, force_checks, usable_sections,
-    results_part, results_reading, traces, static_comparison, static_criteria, static_differences, static_record,
+    results_part, results_reading, traces, static_comparison, comparison_limits, static_differences, static_record,
     drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
-    response_columns, response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,
+    response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,
     certificates, cms_signing, detached_file, key_files, timestamp_client, damping_results, overlapping_bands,
 ]  # fmt: skip
 BY_FILE = {"/".join(module.__name__.split(".")[2:]) + ".py": module for module in MODULES}

@@ -8,7 +8,6 @@ import numpy as np
 from scipy.linalg import eigh
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import ChainSelection, information_criterion
 from pantocheck.conformance.identification.pantograph_fit.chain_stiffness import chain_response
@@ -20,6 +19,7 @@ from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format 
     CorrelatedPair,
     PantographFit,
 )
+from pantocheck.conformance.results.comparison_format import ResponseComparison
 
 CHAIN_KEYS: tuple[ChainKey, ...] = get_args(ChainKey)
 

@@ -1,12 +1,11 @@
 """Report on a fitted pantograph: parameters with intervals, candidates, caveats."""
 
-from typing import Any
-
+from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
 
 
-def build_fit() -> dict[str, Any]:
+def build_fit() -> PantographFit:
     """Two masses, of which the first stiffness is fixed and the second damper is not distinguished from zero."""
     parameters = [
         ("masses_kg", 1, 15.0, 0.06, "determined"), ("masses_kg", 2, 7.2, 0.014, "determined"),
@@ -18,8 +17,13 @@ def build_fit() -> dict[str, Any]:
         "masses": 2, "complex_deviation_pct": 1.2, "variance_ratio": 0.98, "information_criterion": -7.0,
         "free_parameters": 5, "starts": 10, "best_starts": 9,
     }  # fmt: skip
-    return {
-        "suite": {"version": "1", "commit": None, "digest": None}, "title": "Rig 12", "masses": 2,
+    suite = {"version": "1", "commit": None, "digest": None}
+    comparison = {
+        "suite": suite, "model": {"name": "Rig 12", "digest": "a"}, "verdict": "info", "criteria": [], "warnings": [],
+        "responses": [],
+    }  # fmt: skip
+    content = {
+        "suite": suite, "title": "Rig 12", "masses": 2,
         "band_Hz": [0.5, 50.0], "rows": 120, "is_noise_stated": True,
         "parameters": [dict(zip(keys, item, strict=True)) for item in parameters],
         "natural_frequencies_Hz": [0.2386, 4.66],
@@ -27,8 +31,9 @@ def build_fit() -> dict[str, Any]:
         "candidates": [
             candidate, candidate | {"masses": 3, "variance_ratio": None, "information_criterion": 9.0},
         ],
-        "comparison": {"criteria": [], "responses": []}, "warnings": ["a caveat"],
+        "comparison": comparison, "warnings": ["a caveat"],
     }  # fmt: skip
+    return PantographFit.model_validate(content)
 
 
 def find_tables(blocks: tuple[doc.Block, ...]) -> list[doc.Table]:
