@@ -30,70 +30,46 @@ MARGIN_S = 1.0
 
 @dataclass(frozen=True)
 class DropSimulation:
-    """Settings of the simulations of a recorded drop.
-
-    Parameters
-    ----------
-    element : float
-        Largest element length [m].
-    time_step : float
-        Largest time step [s]; the used one divides the sampling interval.
-    release_duration : float
-        Time in which the weight decreases linearly to zero [s].
-    last : float
-        End of the last compared window after the release [s].
-    aligned : tuple of int
-        Numbers of the sensors that find the release; empty: all sensors.
-    """
+    """Settings of the simulations of a recorded drop."""
 
     element: float
+    """Largest element length [m]."""
     time_step: float
+    """Largest time step [s]; the used one divides the sampling interval."""
     release_duration: float
+    """Time in which the weight decreases linearly to zero [s]."""
     last: float
+    """End of the last compared window after the release [s]."""
     aligned: tuple[int, ...] = ()
+    """Numbers of the sensors that find the release; empty: all sensors."""
 
 
 @dataclass(frozen=True)
 class DropMotion:
-    """Motion of a record and of models at the sensors, and of models at the mass; n samples, c sensors.
-
-    Parameters
-    ----------
-    rate : float
-        Sampling rate [Hz].
-    lead : int
-        Number of samples before the release.
-    quantity : str
-        Quantity of the samples: displacement, velocity or acceleration.
-    record : (n, c) ndarray
-        Record, from `lead` samples before the sample that precedes the release.
-    advance : float
-        Time from this sample to the release [s].
-    rest : (r, c) ndarray
-        Record at rest; empty if it is too short for an estimate of the noise.
-    models : mapping of str to (n, c + 1) ndarray
-        Simulated motion by model; the last column is that of the mass.
-    last_slack : mapping of str to float or None
-        Last time with a slack dropper by model [s].
-    release : Release
-        First motion of the record and its warnings.
-    release_time : float
-        Release in the time of the record [s].
-    correlation : float
-        Correlation of the record and the first model at this release [-].
-    """
+    """Motion of a record and of models at the sensors, and of models at the mass; n samples, c sensors."""
 
     rate: float
+    """Sampling rate [Hz]."""
     lead: int
+    """Number of samples before the release."""
     quantity: str
+    """Quantity of the samples: displacement, velocity or acceleration."""
     record: RealArray
+    """Record, from `lead` samples before the sample that precedes the release, (n, c)."""
     advance: float
+    """Time from this sample to the release [s]."""
     rest: RealArray
+    """Record at rest, (r, c); empty if it is too short for an estimate of the noise."""
     models: Mapping[str, RealArray]
+    """Simulated motion by model, (n, c + 1); the last column is that of the mass."""
     last_slack: Mapping[str, float | None]
+    """Last time with a slack dropper by model [s]."""
     release: Release
+    """First motion of the record and its warnings."""
     release_time: float
+    """Release in the time of the record [s]."""
     correlation: float
+    """Correlation of the record and the first model at this release [-]."""
 
     @property
     def time(self) -> RealArray:
@@ -129,28 +105,18 @@ def simulate_models(
 ) -> DropMotion:
     """Simulate a recorded drop under several models, and align the record with the first one.
 
-    Parameters
-    ----------
-    drop : RecordedDrop
-        The drop.
-    models : mapping of str to Catenary
-        Line with the damping of each model; the first one finds the release.
-    settings : DropSimulation
-        Settings of the simulations.
-    progress : callable
-        Called from time to time with the completed share of all simulations, 0 to 1.
+    Args:
+        drop: The drop.
+        models: Line with the damping of each model; the first one finds the release.
+        settings: Settings of the simulations.
+        progress: Called from time to time with the completed share of all simulations, 0 to 1.
 
-    Returns
-    -------
-    DropMotion
+    Returns:
         Motion on one time grid.
 
-    Raises
-    ------
-    InputError
-        The record has no release, or ends too early.
-    NoInitialState, NoEquilibrium, DidNotConverge
-        A simulation has no solution.
+    Raises:
+        InputError: The record has no release, or ends too early.
+        NoInitialState, NoEquilibrium, DidNotConverge: A simulation has no solution.
     """
     record = drop.record
     every = max(1, int(record.rate / WORKING_RATE_HZ))

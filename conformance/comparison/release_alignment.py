@@ -21,12 +21,9 @@ UPSAMPLING = 16
 def find_arrival(simulated: RealArray, rate: float) -> float:
     """Time from the release to the first motion of a sensor [s].
 
-    Parameters
-    ----------
-    simulated : (m, c) ndarray
-        Simulated motion of c sensors from the release on.
-    rate : float
-        Sampling rate [Hz].
+    Args:
+        simulated: Simulated motion of c sensors from the release on, (m, c).
+        rate: Sampling rate [Hz].
     """
     model = simulated[: round(ALIGNED_S * rate)]
     moving = np.any(np.abs(model) > ARRIVAL * np.abs(model).max(axis=0), axis=1)
@@ -36,23 +33,14 @@ def find_arrival(simulated: RealArray, rate: float) -> float:
 def align_release(record: RealArray, simulated: RealArray, rate: float, estimate: float) -> tuple[float, float]:
     """Find the release by the correlation of record and simulation at all sensors together.
 
-    Parameters
-    ----------
-    record : (n, c) ndarray
-        Recorded motion of c sensors, low-pass filtered.
-    simulated : (m, c) ndarray
-        Simulated motion from the release on, with the same filter.
-    rate : float
-        Sampling rate of both [Hz].
-    estimate : float
-        Estimate of the release in the time of the record [s].
+    Args:
+        record: Recorded motion of c sensors, low-pass filtered, (n, c).
+        simulated: Simulated motion from the release on, with the same filter, (m, c).
+        rate: Sampling rate of both [Hz].
+        estimate: Estimate of the release in the time of the record [s].
 
-    Returns
-    -------
-    release : float
-        Release in the time of the record [s].
-    correlation : float
-        Correlation of record and simulation over `ALIGNED_S` from this release [-].
+    Returns:
+        Release in the time of the record [s], and correlation over `ALIGNED_S` from this release [-].
     """
     model = simulated[: round(ALIGNED_S * rate)]
     fine = resample_poly(record, UPSAMPLING, 1, axis=0)

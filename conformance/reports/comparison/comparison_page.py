@@ -4,12 +4,14 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.comparison_parts import (
     PageKind,
     build_criteria_sections,
     list_remarks,
 )
+from pantocheck.conformance.reports.comparison.drop_sections import DROP_PAGE
 from pantocheck.conformance.reports.comparison.response_sections import RESPONSE_PAGE
 from pantocheck.conformance.reports.comparison.static_sections import STATIC_PAGE
 from pantocheck.conformance.reports.page_text import clean_tree
@@ -18,6 +20,7 @@ from pantocheck.conformance.results.comparison_format import ModelComparison, Re
 PAGES: dict[type[ModelComparison], PageKind[Any]] = {
     StaticComparison: STATIC_PAGE,
     ResponseComparison: RESPONSE_PAGE,
+    DropComparison: DROP_PAGE,
 }
 """Texts and blocks of the page by kind of comparison."""
 
