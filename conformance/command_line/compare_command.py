@@ -117,10 +117,7 @@ def _list_tables(comparison: RunComparison) -> Iterator[RenderableType]:
             title = ", ".join(filter(None, (case.id, name_pantograph(owner.number))))
             table = build_table("quantity", *names, title=title, unbroken=("quantity",), right=names)
             for row in rows:
-                values = row.model_dump(mode="json")
-                table.add_row(
-                    escape_text(row.name), *(escape_text(format_compared(values, i)) for i in range(len(names)))
-                )
+                table.add_row(escape_text(row.name), *(escape_text(format_compared(row, i)) for i in range(len(names))))
             yield table
             for agreement in owner.agreements:
                 yield escape_text(

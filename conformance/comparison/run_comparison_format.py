@@ -5,22 +5,15 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
+from pantocheck.conformance.results.comparison_format import ComparedSource, Range
 from pantocheck.conformance.results.figure_data import Chart
 from pantocheck.conformance.results.suite_part import Suite
 
 ComparedValue = Rounded | tuple[Rounded, ...]
 
 
-class ComparedSubject(RoundedModel):
-    """A compared record, result or system."""
-
-    name: Annotated[str, Field(description="name, unique in the comparison")]
-    source: str
-    digest: Annotated[str, Field(description="SHA-256 of the files of a record; empty for a simulation")]
-
-
 class ComparedQuantity(RoundedModel):
-    """ComparedValue of one quantity; lists have one item per subject."""
+    """Values of one quantity; lists have one item per subject."""
 
     name: str
     values: Annotated[tuple[ComparedValue | None, ...], Field(description="null: not known")]
@@ -62,7 +55,7 @@ class ForceAgreement(RoundedModel):
     """Agreement of the force of a subject with that of the first subject."""
 
     subject: str
-    section_m: Annotated[tuple[Rounded, Rounded], Field(description="compared stretch")]
+    section_m: Annotated[Range, Field(description="compared stretch")]
     highest_Hz: Annotated[Rounded, Field(description="frequency up to which both forces are known")]
     correlation: Rounded
     mean_difference_N: Rounded
@@ -97,6 +90,6 @@ class RunComparison(RoundedModel):
     schema_: Annotated[Literal["pantocheck.comparison/1"], Field(alias="schema")] = "pantocheck.comparison/1"
     suite: Suite
     subjects: Annotated[
-        tuple[ComparedSubject, ...], Field(description="the first one is that with which the others are compared")
+        tuple[ComparedSource, ...], Field(description="the first one is that with which the others are compared")
     ]
     cases: tuple[ComparedCase, ...]

@@ -85,8 +85,9 @@ def _draw_deviations(axes: Axes, response: ComparedResponse, limits: Limits, row
             axes.plot(band.band_Hz, [value, value], color=INK, linewidth=1.6, label=label)
             label = ""
     label = "limit of complex"
-    for limit in limits:
-        axes.plot(limit.where.band_Hz, [limit.upper] * 2, color=INK, linewidth=0.9, linestyle=LIMIT_LINE, label=label)
+    bounds = [(item.where.band_Hz, item.upper) for item in limits]
+    for band_Hz, upper in ((band, upper) for band, upper in bounds if band is not None and upper is not None):
+        axes.plot(band_Hz, [upper, upper], color=INK, linewidth=0.9, linestyle=LIMIT_LINE, label=label)
         label = ""
     axes.set(ylabel="deviation [%]", xlabel="frequency [Hz]")
     add_legend(axes)
