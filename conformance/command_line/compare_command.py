@@ -23,13 +23,13 @@ from pantocheck.conformance.comparison.compared_run import (
     simulate_run,
 )
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.comparison.run_comparison_format import RunComparison
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.compared_runs import write_comparison
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 from pantocheck.conformance.reports.words import name_pantograph
+from pantocheck.conformance.results.comparison_format import RunComparison
 from pantocheck.conformance.systems.system_choice import choose_system
 
 SYSTEMS = ("builtin", "record:", "command:")

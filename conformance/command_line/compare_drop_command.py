@@ -19,7 +19,6 @@ from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.progress_display import follow_steps
 from pantocheck.conformance.comparison.comparison_limits import DROPS, read_comparison_limits
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
 from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
@@ -27,6 +26,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.results.drop_comparison_format import DropComparison
 from pantocheck.conformance.step_log import StepSequence
 
 _LOGGER = logging.getLogger(__name__)

@@ -8,13 +8,6 @@ from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow
-from pantocheck.conformance.comparison.drop_comparison_format import (
-    ComparedDrop,
-    ComparedModel,
-    ComparedPlace,
-    DropComparison,
-    WindowStatistics,
-)
 from pantocheck.conformance.comparison.drop_criteria import grade_drop
 from pantocheck.conformance.comparison.drop_motion import DropMotion, DropSimulation, simulate_models
 from pantocheck.conformance.comparison.drop_statistics import compute_energies, compute_statistics, sample_curves
@@ -28,6 +21,13 @@ from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
 from pantocheck.conformance.results.comparison_format import ComparedSource, ComparisonCriterion
+from pantocheck.conformance.results.drop_comparison_format import (
+    ComparedDrop,
+    ComparedModel,
+    ComparedPlace,
+    DropComparison,
+    WindowStatistics,
+)
 from pantocheck.conformance.results.results_building import build_suite
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.step_log import ShareCallback, follow_part, ignore_progress

@@ -6,16 +6,16 @@ import numpy as np
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.comparison.comparison_limits import TimeWindow
-from pantocheck.conformance.comparison.drop_comparison_format import (
+from pantocheck.conformance.comparison.drop_motion import DropMotion
+from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand
+from pantocheck.conformance.identification.repeatability import round_curve
+from pantocheck.conformance.results.comparison_format import ComparedMotion
+from pantocheck.conformance.results.drop_comparison_format import (
     EnergyCurve,
     ModelAgreement,
     MotionCurve,
     WindowStatistics,
 )
-from pantocheck.conformance.comparison.drop_motion import DropMotion
-from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand
-from pantocheck.conformance.identification.repeatability import round_curve
-from pantocheck.conformance.results.comparison_format import ComparedMotion
 
 LARGEST_NOISE = 0.3
 """Largest RMS of the noise over that of the record for which ratio and correlation are stated [-]."""

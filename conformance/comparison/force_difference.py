@@ -9,9 +9,9 @@ import scipy
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.paired_forces import PairedForces
-from pantocheck.conformance.comparison.run_comparison_format import BandAgreement, SpanAgreement
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.results.comparison_format import BandAgreement, SpanAgreement
 
 SEGMENT_S = 1.0
 """Longest segment of the coherence [s]; it resolves 1 Hz."""

@@ -8,19 +8,19 @@ from pantocheck.conformance.comparison.compared_run import ComparedRun
 from pantocheck.conformance.comparison.force_charts import build_force_charts
 from pantocheck.conformance.comparison.force_difference import compare_force_bands, compare_spans, correlation
 from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
-from pantocheck.conformance.comparison.run_comparison_format import (
-    ComparedCase,
-    ComparedOwner,
-    ComparedQuantity,
-    ForceAgreement,
-    RunComparison,
-)
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
-from pantocheck.conformance.results.comparison_format import ComparedSource
+from pantocheck.conformance.results.comparison_format import (
+    ComparedCase,
+    ComparedOwner,
+    ComparedQuantity,
+    ComparedSource,
+    ForceAgreement,
+    RunComparison,
+)
 from pantocheck.conformance.results.results_building import build_suite
 
 THINNED = "{name}: results hold thinned curves. Give the record for differences of the force."

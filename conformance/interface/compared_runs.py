@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.comparison.run_comparison_format import ComparedOwner, ForceAgreement, RunComparison
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.interface.opened_run import OpenedRun, open_run
+from pantocheck.conformance.results.comparison_format import ComparedOwner, ForceAgreement, RunComparison
 
 COMPARED_COLUMNS = (
     "case",

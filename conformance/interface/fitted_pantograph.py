@@ -18,7 +18,6 @@ from pantocheck.conformance.identification.pantograph_fit.fit_description import
     build_pantograph_fit,
     describe_pantograph,
 )
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import ChainParameter, PantographFit
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
@@ -26,6 +25,7 @@ from pantocheck.conformance.input_files.toml_file import validate_model
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import label_logarithms, provide_axes
 from pantocheck.conformance.interface.one_line import describe_in_one_line
+from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 
 LONGEST_SOURCE = 500
 """Largest number of characters of a source in a pantograph file."""

@@ -12,14 +12,14 @@ from pantocheck.conformance.identification.pantograph_fit.chain_fit import Chain
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import ChainSelection, information_criterion
 from pantocheck.conformance.identification.pantograph_fit.chain_stiffness import chain_response
 from pantocheck.conformance.identification.pantograph_fit.fit_intervals import FitIntervals, judge_parameters
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import (
+from pantocheck.conformance.results.comparison_format import ResponseComparison
+from pantocheck.conformance.results.pantograph_fit_format import (
     ChainCandidate,
     ChainKey,
     ChainParameter,
     CorrelatedPair,
     PantographFit,
 )
-from pantocheck.conformance.results.comparison_format import ResponseComparison
 
 CHAIN_KEYS: tuple[ChainKey, ...] = get_args(ChainKey)
 

@@ -1,21 +1,19 @@
 """Page of any comparison of a model with measured values: verdict, remarks, criteria, figures and tables."""
 
-from typing import Any, TypeVar
+from typing import Any
 
-from pydantic import BaseModel
-
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.comparison_parts import (
     PageKind,
     build_criteria_sections,
+    clean_model,
     list_remarks,
 )
 from pantocheck.conformance.reports.comparison.drop_sections import DROP_PAGE
 from pantocheck.conformance.reports.comparison.response_sections import RESPONSE_PAGE
 from pantocheck.conformance.reports.comparison.static_sections import STATIC_PAGE
-from pantocheck.conformance.reports.page_text import clean_tree
 from pantocheck.conformance.results.comparison_format import ModelComparison, ResponseComparison, StaticComparison
+from pantocheck.conformance.results.drop_comparison_format import DropComparison
 
 PAGES: dict[type[ModelComparison], PageKind[Any]] = {
     StaticComparison: STATIC_PAGE,
@@ -23,13 +21,6 @@ PAGES: dict[type[ModelComparison], PageKind[Any]] = {
     DropComparison: DROP_PAGE,
 }
 """Texts and blocks of the page by kind of comparison."""
-
-M = TypeVar("M", bound=BaseModel)
-
-
-def clean_model(model: M) -> M:
-    """Content of a JSON file for a page: numbers as in the file, texts without characters that no page can hold."""
-    return type(model).model_validate(clean_tree(model.model_dump(mode="json", by_alias=True)))
 
 
 def find_headline(comparison: ModelComparison) -> str:

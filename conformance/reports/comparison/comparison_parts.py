@@ -4,13 +4,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from pantocheck.conformance.grading.verdicts import Verdict
+from pydantic import BaseModel
+
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_plain, format_value
+from pantocheck.conformance.reports.page_text import clean_tree, format_beside_limits, format_plain, format_value
 from pantocheck.conformance.reports.words import quantity_label
 from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ModelComparison
 
 C = TypeVar("C", bound=ModelComparison)
+M = TypeVar("M", bound=BaseModel)
 
 
 @dataclass(frozen=True)
@@ -19,7 +21,7 @@ class PageKind(Generic[C]):
 
     heading: str
     statement: str
-    headlines: Mapping[Verdict, str]
+    headlines: Mapping[str, str]
     scope: str
     """Paragraph on what the comparison states."""
     describe: Callable[[C], str]
@@ -32,6 +34,11 @@ class PageKind(Generic[C]):
     """Figures and tables."""
     closing: Callable[[C], tuple[doc.Block, ...]] = lambda comparison: ()
     """Blocks at the end."""
+
+
+def clean_model(model: M) -> M:
+    """Content of a JSON file for a page: numbers as in the file, texts without characters that no page can hold."""
+    return type(model).model_validate(clean_tree(model.model_dump(mode="json", by_alias=True)))
 
 
 def list_remarks(comparison: ModelComparison) -> list[str]:

@@ -1,16 +1,16 @@
 """Page of a drop comparison: motion, residual energy and a table of all bands for each place."""
 
-from pantocheck.conformance.comparison.drop_comparison_format import (
+from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.reports.comparison.comparison_parts import PageKind, format_range, select_facts
+from pantocheck.conformance.reports.figures.drop_figures import draw_drop_motion, draw_residual_energy
+from pantocheck.conformance.reports.page_text import format_plain, format_value
+from pantocheck.conformance.results.drop_comparison_format import (
     ComparedModel,
     ComparedPlace,
     DropComparison,
     ModelAgreement,
     WindowStatistics,
 )
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.comparison.comparison_parts import PageKind, format_range, select_facts
-from pantocheck.conformance.reports.figures.drop_figures import draw_drop_motion, draw_residual_energy
-from pantocheck.conformance.reports.page_text import format_plain, format_value
 
 
 def _build_opening(comparison: DropComparison) -> tuple[doc.Block, ...]:

@@ -1,10 +1,10 @@
 """Report on a fitted pantograph, from its JSON file."""
 
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import ChainParameter, PantographFit
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.comparison.comparison_page import clean_model
+from pantocheck.conformance.reports.comparison.comparison_parts import clean_model
 from pantocheck.conformance.reports.comparison.response_sections import build_response_sections
 from pantocheck.conformance.reports.page_text import format_plain, format_value
+from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 
 PARAMETER_NAMES = {
     "masses_kg": ("Mass", "kg"),

@@ -1,17 +1,17 @@
 """Report on a comparison of runs, from comparison.json."""
 
-from pantocheck.conformance.comparison.run_comparison_format import (
-    ComparedOwner,
-    ComparedQuantity,
-    ForceAgreement,
-    RunComparison,
-)
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.comparison.comparison_page import clean_model
+from pantocheck.conformance.reports.comparison.comparison_parts import clean_model
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
-from pantocheck.conformance.results.comparison_format import ComparedSource
+from pantocheck.conformance.results.comparison_format import (
+    ComparedOwner,
+    ComparedQuantity,
+    ComparedSource,
+    ForceAgreement,
+    RunComparison,
+)
 
 RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "

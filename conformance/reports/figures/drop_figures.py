@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.comparison.drop_comparison_format import EnergyCurve, MotionCurve
 from pantocheck.conformance.reports.figures.figure_style import (
     FULL,
     GREY,
@@ -17,6 +16,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
     render_svg,
     use_decades,
 )
+from pantocheck.conformance.results.drop_comparison_format import EnergyCurve, MotionCurve
 
 RECORD_WIDTH = 2.2
 """Width of the pale line of the record [pt]; the lines of the models lie on it."""

@@ -18,10 +18,10 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.comparison.compared_run import ComparedRun, simulate_run
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.comparison.run_comparison_format import ComparedQuantity
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
+from pantocheck.conformance.results.comparison_format import ComparedQuantity
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 

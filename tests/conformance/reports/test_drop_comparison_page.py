@@ -5,12 +5,12 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison, MotionCurve
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.comparison_page import build_comparison
 from pantocheck.conformance.reports.comparison.drop_sections import DROP_PAGE
 from pantocheck.conformance.reports.figures.drop_figures import draw_drop_motion, draw_residual_energy
 from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.results.drop_comparison_format import DropComparison, MotionCurve
 
 TIME = [0.0, 0.5, 1.0]
 WINDOWS = [[0.0, 1.0], [2.0, 3.0]]

@@ -1,8 +1,8 @@
 """Report on a fitted pantograph: parameters with intervals, candidates, caveats."""
 
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
+from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 
 def build_fit() -> PantographFit:
