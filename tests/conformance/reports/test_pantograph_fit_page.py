@@ -1,5 +1,6 @@
 """Report on a fitted pantograph: parameters with intervals, candidates, caveats."""
 
+from helpers.page_blocks import find_blocks
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
@@ -36,18 +37,12 @@ def build_fit() -> PantographFit:
     return PantographFit.model_validate(content)
 
 
-def find_tables(blocks: tuple[doc.Block, ...]) -> list[doc.Table]:
-    """Tables at all levels."""
-    inner = [table for block in blocks if isinstance(block, doc.Section) for table in find_tables(block.blocks)]
-    return [block for block in blocks if isinstance(block, doc.Table)] + inner
-
-
 def test_page_states_parameters_candidates_and_caveats() -> None:
     document = build_pantograph_fit_document(build_fit())
     assert isinstance(document.header, doc.PlainHeader)
     assert document.header.headline == "Rig 12: chain of 2 masses, RMS deviation 1.20 % from 0.500 to 50.0 Hz."
     assert document.blocks[0] == doc.WarningBox(("a caveat",))
-    parameters, candidates = find_tables(document.blocks)
+    parameters, candidates = find_blocks(document.blocks, doc.Table)
     assert parameters.rows[0] == ("Mass 1 [kg]", "15", "0.06", "0.4", "determined")
     assert parameters.rows[2] == ("Stiffness 1 [N/m]", "50", "–", "–", "fixed")
     assert parameters.rows[3] == ("Stiffness 2 [N/m]", "15580", "240", "1.6", "determined")
