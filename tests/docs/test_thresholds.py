@@ -34,7 +34,6 @@ from pantocheck.conformance.comparison import (
     force_difference,
     motion_bands,
     paired_forces,
-    release_alignment,
     response_comparison,
     response_deviation,
     response_record,
@@ -103,7 +102,7 @@ MODULES: list[ModuleType] = [
     verification_limits, bands, filters, force_signals, limit_text, line_signals, pantograph_signals, plug_in_quantity,
     record, block_bootstrap, force_checks, usable_sections,
     results_part, results_reading, traces, static_comparison, comparison_limits, static_differences, static_record,
-    drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands, release_alignment,
+    drop_comparison, drop_motion, drop_statistics, force_difference, paired_forces, motion_bands,
     response_comparison, response_deviation, response_record, procedure_verdict, compared_sides,
     certificates, cms_signing, detached_file, key_files, timestamp_client, damping_results, overlapping_bands,
 ]  # fmt: skip
