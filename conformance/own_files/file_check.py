@@ -13,8 +13,7 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
-from pantocheck.conformance.comparison.static_record import read_static_table
-from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
+from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, read_static_table
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
 from pantocheck.conformance.grading.validity_warnings import speed_warnings

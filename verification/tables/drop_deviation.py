@@ -47,7 +47,7 @@ def main() -> None:
     line = read_model(library_folder() / "mass-drop-line" / "line.toml", LineFile, "line")
     initial = read_model(library_folder() / "vovan2015" / "damping" / "initial.toml", DampingFile, "damping")
     models = {"own": DampingChoice("line", line.damping), "initial": DampingChoice("initial.toml", initial.damping)}
-    task = DropTask(line, models, WINDOWS, ELEMENT, TIME_STEP, 0.0, None)
+    task = DropTask(line, models, WINDOWS, ELEMENT, TIME_STEP, 0.0)
     print_agreement("elements of the suite", record, task)
     with without_residual_flexibility():
         print_agreement("elements of the record", record, task)

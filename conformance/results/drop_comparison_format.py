@@ -2,16 +2,13 @@
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.comparison.drop_limits import ComparedMotion, DropQuantity
-from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.identification.damping.damping_format import LineComparison
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
-from pantocheck.conformance.results.suite_part import Suite
+from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparedSource, ModelComparison, Range
 
-WindowPair = tuple[Rounded, Rounded]
 CurveValues = tuple[float, ...]
 
 
@@ -65,8 +62,8 @@ class WindowStatistics(RoundedModel):
 
     place: str
     motion: ComparedMotion
-    window_s: WindowPair
-    band_Hz: WindowPair
+    window_s: Range
+    band_Hz: Range
     record_rms: Annotated[
         Rounded | None, Field(description="RMS of the record without its noise [m/s or m/s2]; null: no record")
     ]
@@ -91,57 +88,26 @@ class MotionCurve(RoundedModel):
 
     place: str
     motion: ComparedMotion
-    window_s: WindowPair
+    window_s: Range
     time_s: CurveValues
     record: Annotated[CurveValues | None, Field(description="record [m/s or m/s2]; null: no record")]
     models: Annotated[dict[str, CurveValues], Field(description="motion by model [m/s or m/s2]")]
 
 
-class DropCriterion(RoundedModel):
-    """Agreement of the first model with the record at one sensor, against a limit of the user."""
-
-    quantity: DropQuantity
-    motion: ComparedMotion
-    sensor: int
-    window_s: WindowPair
-    band_Hz: WindowPair
-    value: Rounded | None
-    lower: Rounded | None
-    upper: Rounded | None
-    verdict: Verdict
-    reason: Annotated[str | None, Field(description="data that are missing, or distance beyond the limit")]
-    margin: Rounded | None
-    discretisation: Annotated[
-        Rounded | None, Field(description="change of the value with half the element length and half the time step")
-    ]
-    measurement: Annotated[Rounded, Field(description="half-width of the 95 % interval by the noise of the record")]
-    close: Annotated[tuple[str, ...], Field(description="remark on a value closer to its limit than its uncertainty")]
-
-
-class DropComparison(RoundedModel):
+class DropComparison(ModelComparison):
     """Content of drop_comparison.json."""
 
-    model_config = ConfigDict(populate_by_name=True)
-
     schema_: Annotated[Literal["pantocheck.drop-comparison/1"], Field(alias="schema")] = "pantocheck.drop-comparison/1"
-    suite: Suite
-    line: Annotated[str, Field(description="title of the line")]
-    line_digest: Annotated[str, Field(description="SHA-256 of the content of the line file")]
-    record: Annotated[str, Field(description="test and run")]
-    record_source: Annotated[str, Field(description="name of the file")]
-    record_digest: Annotated[str | None, Field(description="SHA-256 of the file; null: the record was not read")]
+    record: Annotated[ComparedSource, Field(description="test and run, its file, and the SHA-256 of the file")]
     line_comparison: Annotated[LineComparison, Field(description="line of the record beside the line of the models")]
-    verdict: Annotated[Verdict, Field(description="worst verdict of the criteria; info: no limit is given")]
     drop: ComparedDrop
     rate_Hz: Annotated[Rounded, Field(description="sampling rate of the comparison")]
     element_m: Rounded
     time_step_s: Rounded
-    windows_s: Annotated[tuple[WindowPair, ...], Field(description="windows after the release")]
-    bands_Hz: Annotated[tuple[WindowPair, ...], Field(description="compared bands")]
+    windows_s: Annotated[tuple[Range, ...], Field(description="windows after the release")]
+    bands_Hz: Annotated[tuple[Range, ...], Field(description="compared bands")]
     models: Annotated[tuple[ComparedModel, ...], Field(description="damping models; the first one is graded")]
     places: tuple[ComparedPlace, ...]
     statistics: tuple[WindowStatistics, ...]
     energies: tuple[EnergyCurve, ...]
     curves: tuple[MotionCurve, ...]
-    criteria: tuple[DropCriterion, ...]
-    warnings: tuple[str, ...]
