@@ -23,7 +23,7 @@ from pantocheck.conformance.results.lift_force_facts import list_law_forces
 from pantocheck.conformance.results.origin_format import describe_case_origin
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.plug_in_format import list_used_plug_ins
-from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
+from pantocheck.conformance.results.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     FilterFacts,
@@ -103,7 +103,9 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),
-        **describe_uncertainty(values.uncertainty),
+        uncertainty=key_by_owner(select_finite(values.uncertainty.combined)),
+        uncertainty_components=list_components(values.uncertainty),
+        uncertainty_basis=values.uncertainty.basis,
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
         contact_losses=None if signals is None else build_contact_losses(signals.pantographs),

@@ -26,8 +26,8 @@ from pantocheck.conformance.results.plug_in_format import list_used_plug_ins
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
-    describe_uncertainty,
     key_by_owner,
+    list_components,
     select_finite,
     utc_now,
 )
@@ -118,7 +118,9 @@ def grade_record(
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},
-        **describe_uncertainty(subject.uncertainty),
+        uncertainty=key_by_owner(select_finite(subject.uncertainty.combined)),
+        uncertainty_components=list_components(subject.uncertainty),
+        uncertainty_basis=subject.uncertainty.basis,
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,

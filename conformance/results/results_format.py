@@ -131,6 +131,13 @@ def name_case(case_id: str, library: LibraryIdentity | None) -> str:
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
 
+Quantities = dict[Owner, dict[str, Number]]
+"""Values by owner and name of the quantity."""
+
+UncertaintyComponents = dict[Owner, dict[str, dict[ComponentName, Number]]]
+"""Half-widths by owner, name of the quantity and component."""
+
+
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line.
 
@@ -197,7 +204,7 @@ class CaseResult(ResultsPart):
     superseded_by: Annotated[str | None, Field(description="edition that superseded it")] = None
     steps: Annotated[list[Step], Field(description="steps of the procedure that the case belongs to")] = []
     criteria: list[Criterion]
-    quantities: dict[Owner, dict[str, Number]]
+    quantities: Quantities
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[
         dict[Owner, dict[str, float]],
@@ -208,7 +215,7 @@ class CaseResult(ResultsPart):
         ),
     ]
     uncertainty: Annotated[
-        dict[Owner, dict[str, Number]],
+        Quantities,
         Field(
             default_factory=dict,
             description="half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the "
@@ -216,7 +223,7 @@ class CaseResult(ResultsPart):
         ),
     ]
     uncertainty_components: Annotated[
-        dict[Owner, dict[str, dict[ComponentName, Number]]],
+        UncertaintyComponents,
         Field(
             default_factory=dict, description="half-widths by component, as in `quantities`; unknown ones are missing"
         ),

@@ -11,6 +11,12 @@ FiniteNumber = Annotated[float, Field(ge=-LARGEST_RESULT, le=LARGEST_RESULT)]
 
 Number = FiniteNumber | list[FiniteNumber]
 
+
+def select_single(value: Number | None) -> float | None:
+    """Value of a quantity that has one; None for a list of values, and for no value."""
+    return None if isinstance(value, list) else value
+
+
 Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pantograph, 0: the line")]
 
 

@@ -21,6 +21,7 @@ from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 from pantocheck.conformance.reports.site.published_results import publish_results
 from pantocheck.conformance.reports.site.site_index import build_site_index
+from pantocheck.conformance.results.results_format import Results
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """Programs that Playwright can drive without a browser of its own."""
@@ -73,10 +74,10 @@ def build_site_page() -> Document:
 def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
     documents = {
-        "certificate": build_certificate(example()),
-        "measured": build_certificate(with_measured_run()),
-        "reference": build_certificate(with_reference()),
-        "hostile": build_certificate(with_hostile_text()),
+        "certificate": build_certificate(Results.model_validate(example())),
+        "measured": build_certificate(Results.model_validate(with_measured_run())),
+        "reference": build_certificate(Results.model_validate(with_reference())),
+        "hostile": build_certificate(Results.model_validate(with_hostile_text())),
         "identification": build_identification_document([build_example_line()]),
         "plain": build_plain_document(),
         "site": build_site_page(),

@@ -6,6 +6,7 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import clean_tree, format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+from pantocheck.conformance.results.figure_data import Chart
 
 RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "
@@ -39,7 +40,8 @@ def _build_owner(owner: dict[str, Any], names: list[str]) -> doc.Section:
     blocks: list[doc.Block] = []
     if owner["charts"]:
         figures = (
-            doc.Figure(draw_chart(data), data["alternative"], data["caption"], data["wide"]) for data in owner["charts"]
+            doc.Figure(draw_chart(Chart.model_validate(data)), data["alternative"], data["caption"], data["wide"])
+            for data in owner["charts"]
         )
         blocks.append(doc.Figures(tuple(figures)))
     if owner["reasons"]:
@@ -51,7 +53,7 @@ def _build_owner(owner: dict[str, Any], names: list[str]) -> doc.Section:
 
 
 def _draw_figure(data: dict[str, Any]) -> doc.Figure:
-    return doc.Figure(draw_chart(data), data["alternative"], data["caption"], data["wide"])
+    return doc.Figure(draw_chart(Chart.model_validate(data)), data["alternative"], data["caption"], data["wide"])
 
 
 def _build_agreement_table(agreements: list[dict[str, Any]], first: str) -> doc.Table:
