@@ -1,7 +1,6 @@
 """Contact force over the track, its spectrum and its histogram."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,6 +15,7 @@ from pantocheck.conformance.reports.figures.figure_style import (
     LIMIT_FILL,
     PALE,
     SHADES,
+    PlotStyle,
     add_legend,
     render_svg,
 )
@@ -31,7 +31,7 @@ FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.item
 MOST_SUPPORT_TICKS = 12
 """Largest number of supports whose positions are the ticks of the track."""
 
-REFERENCE_STYLE: dict[str, Any] = {
+REFERENCE_STYLE: PlotStyle = {
     "color": INK,
     "linewidth": 1.1,
     "linestyle": (0, (3, 1.5)),
@@ -114,7 +114,7 @@ def draw_spectrum(trace: Traces, quantities: Mapping[str, Number]) -> Figure:
     figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
-    above: dict[str, Any] = {"va": "bottom", "fontsize": 7}
+    above: PlotStyle = {"va": "bottom", "fontsize": 7}
     for number, (low, high, quantity) in enumerate(BANDS):
         axes.axvspan(low, high, color=PALE if number % 2 == 0 else "white", zorder=0)
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")

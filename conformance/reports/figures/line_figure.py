@@ -1,12 +1,10 @@
 """Line at rest around the analysis section: side view and, of a line with stagger, plan view."""
 
-from typing import Any
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, PALE, render_svg
+from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, INK, PALE, PlotStyle, render_svg
 from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.results.figure_data import DrawnView, LineShape
 
@@ -53,7 +51,7 @@ def _draw_view(axes: Axes, view: DrawnView) -> None:
             )
 
 
-def _style(symbol: str) -> dict[str, Any]:
+def _style(symbol: str) -> PlotStyle:
     ground = "white" if symbol == "steady arm" else INK
     return {"marker": POINT_SYMBOLS[symbol], "linestyle": "", "color": INK, "markersize": 3, "markerfacecolor": ground}
 

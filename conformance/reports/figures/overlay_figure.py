@@ -1,13 +1,12 @@
 """Figures of a simulated run and a measured one: forces over the track with their difference, spectra, spans."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, HALF, INK, add_legend, render_svg
+from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, HALF, INK, PlotStyle, add_legend, render_svg
 from pantocheck.conformance.results.figure_data import Spectrum
 from pantocheck.conformance.results.measured_run_format import (
     MeasuredPantograph,
@@ -16,8 +15,8 @@ from pantocheck.conformance.results.measured_run_format import (
     StatisticName,
 )
 
-SIMULATED: dict[str, Any] = {"color": INK, "linewidth": 1.2, "label": "simulated"}
-MEASURED: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "linestyle": "--", "label": "measured"}
+SIMULATED: PlotStyle = {"color": INK, "linewidth": 1.2, "label": "simulated"}
+MEASURED: PlotStyle = {"color": GREY, "linewidth": 1.2, "linestyle": "--", "label": "measured"}
 """Styles of the two runs; they differ without colour."""
 
 SPAN_STATISTICS: tuple[StatisticName, ...] = ("mean_N", "std_N")
@@ -96,7 +95,7 @@ def list_span_limits(pantograph: MeasuredPantograph) -> list[float]:
 
 def _draw_span_values(axes: Axes, spans: Sequence[SpanStatistics], name: StatisticName) -> None:
     edges = [spans[0].start_m, *(span.end_m for span in spans)]
-    runs: tuple[tuple[RunName, dict[str, Any]], ...] = (("simulated", SIMULATED), ("measured", MEASURED))
+    runs: tuple[tuple[RunName, PlotStyle], ...] = (("simulated", SIMULATED), ("measured", MEASURED))
     for run, style in runs:
         values = [span.select_statistic(run, name) for span in spans]
         axes.step(edges, [*values, values[-1]], where="post", **style)
