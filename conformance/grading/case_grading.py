@@ -20,13 +20,11 @@ from pantocheck.conformance.results.extreme_places import find_force_places, fin
 from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.input_values import list_input_values
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
-from pantocheck.conformance.results.origin_format import describe_case_origin
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
 from pantocheck.conformance.results.plug_in_format import list_used_plug_ins
 from pantocheck.conformance.results.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.results.results_format import (
     CaseResult,
-    FilterFacts,
     InputGroup,
     LibraryIdentity,
     RunFacts,
@@ -150,7 +148,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "stated_limits_digest": limits_digest(case.file.limit),
             "limit_changes": list_limit_changes(case),
             "library": library,
-            "origin": None if library == "identical" else describe_case_origin(case),
+            "origin": None if library == "identical" else case.origin,
             "plug_ins": list_used_plug_ins(delivered.table, (limit.quantity for limit in case.limits)),
             "edition": file.edition,
             "superseded_by": file.superseded_by,
@@ -159,7 +157,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
                 **delivered.run.model_dump(),
                 speed_km_h=file.speed_km_h,
                 rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
-                filter=FilterFacts(**file.filter.model_dump()),
+                filter=file.filter,
                 evaluated_m=None if case.is_static else case.analysis_section,
                 law_forces=list_law_forces(case),
             ),

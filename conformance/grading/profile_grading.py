@@ -31,7 +31,7 @@ from pantocheck.conformance.results.results_building import (
     select_finite,
     utc_now,
 )
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts, SystemIdentity
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
 from pantocheck.conformance.results.traces import build_pantograph_traces
 
 
@@ -184,7 +184,7 @@ def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:
         element_m=run.element_m,
         speed_km_h=subject.header.speed_km_h,
         rate_Hz=None if prepared is None else prepared.rate,
-        filter=FilterFacts(**profile.filter.model_dump()),
+        filter=profile.filter,
         evaluated_m=None if section is None else (section[0], section[1]),
     )
 

@@ -1,6 +1,6 @@
 """Criterion of results.json: a value against its limits, with the components of its uncertainty."""
 
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
@@ -76,11 +76,6 @@ class Criterion(ResultsPart):
         if self.trust is None and not self.is_drift:
             raise ValueError("a criterion without trust must compare with a baseline")
         return self
-
-
-def is_drift(row: dict[str, Any]) -> bool:
-    """Whether a criterion of results.json compares with a baseline, or states that a comparison is impossible."""
-    return row["baseline"] is not None or row["quantity"] == BASELINE
 
 
 class CaseVerification(ResultsPart):

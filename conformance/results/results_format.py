@@ -6,11 +6,14 @@ The models check the file when it is written and read. Their JSON Schema is expo
 import json
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
+from pantocheck.conformance.cases.case_file import Filter
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.contact_loss_list import ContactLossFacts
@@ -22,7 +25,6 @@ from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.input_values import StoredValues
 from pantocheck.conformance.results.lift_force_facts import LawForces
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
-from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.plug_in_format import PlugInFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
@@ -82,25 +84,14 @@ class InputGroup(ResultsPart):
     values: StoredValues = {}
 
 
-class FilterFacts(ResultsPart):
-    """Filter of the graded force."""
-
-    kind: str
-    order: int
-    cutoff_Hz: float
-    phase: str
-
-
-class RunFacts(ResultsPart):
+class RunFacts(RunTable):
     """Computation of a case; unknown facts are null."""
 
-    simulated_s: float | None
-    wall_s: float | None
-    dt_s: float | None
-    element_m: float | None
+    model_config = ConfigDict(strict=False)
+
     speed_km_h: float | None
     rate_Hz: float | None
-    filter: FilterFacts
+    filter: Filter
     evaluated_m: tuple[float, float] | None
     law_forces: LawForces = {}
 
@@ -192,7 +183,7 @@ class CaseResult(ResultsPart):
         Field(description="comparison with the library case or profile of this name; null: made by an older version"),
     ] = None
     origin: Annotated[
-        OriginFacts | None,
+        CaseOrigin | None,
         Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
     ] = None
     plug_ins: Annotated[

@@ -1,8 +1,9 @@
 """Facts for reproducing a run: suite, system, platform, filter, time step, digests."""
 
+from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.reports.document import Facts
 from pantocheck.conformance.reports.page_text import format_plain, format_value
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts
 
 
 def list_suite_facts(results: Results) -> Facts:
@@ -68,7 +69,7 @@ def _list_law_forces(run: RunFacts) -> list[tuple[str, str]]:
     return [(f"Force law of pantograph {number}", force.text) for number, force in run.law_forces.items()]
 
 
-def _describe_filter(settings: FilterFacts) -> str:
+def _describe_filter(settings: Filter) -> str:
     kind, cutoff = settings.kind.capitalize(), format_plain(settings.cutoff_Hz)
     return f"{kind}, order {settings.order}, −3 dB at {cutoff} Hz, {settings.phase} phase"
 

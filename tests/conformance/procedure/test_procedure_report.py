@@ -16,6 +16,8 @@ from pantocheck.conformance.reports.certificate.summary_page import build_summar
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.results_format import Results
 
 STEPS = [
@@ -66,20 +68,26 @@ def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     assert "certified" not in render_markdown(document).lower()
 
 
+def headline(content: dict[str, Any]) -> str:
+    results = Results.model_validate(content)
+    assert results.procedure is not None
+    return build_procedure_headline(results, results.procedure)
+
+
 def test_headline_names_steps_that_are_missing_or_for_information(content: dict[str, Any]) -> None:
-    assert build_procedure_headline(content) == "6 of 6 required steps pass."
+    assert headline(content) == "6 of 6 required steps pass."
     changed = copy.deepcopy(content)
     steps = changed["procedure"]["steps"]
     change_keys(steps, {"0.state": "not done", "0.verdict": "skip", "4.verdict": "fail", "5.required": False})
     changed["accepted_unverified"] = [changed["system"]["name"]]
-    assert build_procedure_headline(changed) == (
+    assert headline(changed) == (
         "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
         "Limits of validity (PASS). Accepted by the user: unverified records of Pantocheck reference simulator."
     )
 
 
 def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, Any]) -> None:
-    assert list_step_reasons(content) == ()
+    assert list_step_reasons(Procedure.model_validate(content["procedure"])) == ()
     changed = copy.deepcopy(content)
     change_keys(
         changed["procedure"],
@@ -90,7 +98,7 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
             "claims.2.reason": "the runs that passed cover 160 to 180 km/h",
         },
     )
-    (section,) = list_step_reasons(changed)
+    (section,) = list_step_reasons(Procedure.model_validate(changed["procedure"]))
     (block,) = section.blocks
     assert isinstance(block, doc.BulletList)
     assert block.items == (
@@ -154,10 +162,10 @@ def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
     claimed = {claim["name"] for claim in changed["procedure"]["claims"] if claim["kind"] == "line"}
     own = [item for item in evidence if item["line"] in claimed]
     assert own
-    charts: list[dict[str, Any]] = []
+    charts: list[Chart] = []
     monkeypatch.setattr(step_sections, "draw_chart", lambda chart: charts.append(chart) or "<svg/>")
     changed["procedure"]["evidence"] = [own[0] | {"line": "a line without a claim", "speed_km_h": 999.0}, *own]
     build_certificate(Results.model_validate(changed))
-    points = {series["label"]: series["y"] for series in charts[-1]["series"]}
+    points = {series.label: series.y for series in charts[-1].series}
     assert points.pop("another line") == [999.0]
     assert sorted(speed for speeds in points.values() for speed in speeds) == sorted(item["speed_km_h"] for item in own)

@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.reports.certificate.derived_table import derived_blocks
 from pantocheck.conformance.reports.document import Table
-from pantocheck.conformance.results.derived_facts import list_derived_facts
+from pantocheck.conformance.results.derived_facts import DerivedFact, list_derived_facts
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
@@ -59,12 +59,14 @@ def test_static_case_has_no_doppler_factor() -> None:
     assert [fact.unit for fact in list_derived_facts(case)] == ["m/s", "m/s", "kg/m", "Hz"]
 
 
-def test_table_shows_five_digits_and_is_left_out_for_older_results() -> None:
+def test_table_shows_five_digits_and_is_left_out_without_facts() -> None:
     fact = {"name": "Uplift force of pantograph 1", "value": 163.456789, "unit": "N", "basis": "tuned"}
-    table, _ = derived_blocks({"derived": [fact]})
+    *_, case = select_cases(["en50318-2018/ac-simple/320-twin"])
+    result = build_ungraded(case, "skip", "not run")
+    table, _ = derived_blocks(result.model_copy(update={"derived": [DerivedFact.model_validate(fact)]}))
     assert isinstance(table, Table)
     assert table.rows == (("Uplift force of pantograph 1", "163.46", "N", "tuned"),)
-    assert derived_blocks({"derived": []}) == ()
+    assert derived_blocks(result.model_copy(update={"derived": []})) == ()
 
 
 def test_changed_derived_value_contradicts_the_library() -> None:
