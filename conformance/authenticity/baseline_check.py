@@ -18,8 +18,8 @@ def check_baseline(case: CaseResult) -> Iterator[str]:
 
     Parameters
     ----------
-    case : dict of str
-        Case of results.json.
+    case : CaseResult
+        The case.
 
     Yields
     ------

@@ -9,7 +9,6 @@ from pantocheck.conformance.authenticity.reported_numbers import (
     format_exact,
     same_number,
     select_first,
-    select_item,
 )
 from pantocheck.conformance.authenticity.trace_check import check_trace, check_uplift
 from pantocheck.conformance.authenticity.uncertainty_check import check_combination, check_components
@@ -24,7 +23,7 @@ from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, Cas
 from pantocheck.conformance.results.finding_format import count_findings, count_verdict, judge_finding
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results
-from pantocheck.conformance.results.results_part import Number
+from pantocheck.conformance.results.results_part import Number, select_item
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor
 

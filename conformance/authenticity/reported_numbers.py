@@ -3,18 +3,10 @@
 import math
 from collections.abc import Mapping
 
-from pantocheck.conformance.results.results_part import Number
+from pantocheck.conformance.results.results_part import Number, select_item
 
 EXACT, ROUNDED = 1e-9, 2e-5
 """Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
-
-
-def select_item(reported: Number | None, item: int | None) -> float | None:
-    """Item of a quantity with several values, by default the first; None if there is none."""
-    if not isinstance(reported, list):
-        return reported
-    index = (item or 1) - 1
-    return reported[index] if 0 <= index < len(reported) else None
 
 
 def select_first(reported: Mapping[str, Number]) -> dict[str, float]:

@@ -25,9 +25,9 @@ def check_trace(quantities: Mapping[str, float], trace: Traces) -> Iterator[str]
 
     Parameters
     ----------
-    quantities : dict of str
+    quantities : mapping of str to float
         Quantities of the pantograph.
-    trace : dict of str
+    trace : Traces
         Curves of the pantograph.
 
     Yields

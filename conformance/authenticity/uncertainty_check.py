@@ -3,9 +3,10 @@
 import math
 from collections.abc import Collection, Iterator
 
-from pantocheck.conformance.authenticity.reported_numbers import same_number, select_item
+from pantocheck.conformance.authenticity.reported_numbers import same_number
 from pantocheck.conformance.results.criterion_format import ComponentName, Criterion
 from pantocheck.conformance.results.results_format import CaseResult, UncertaintyComponents
+from pantocheck.conformance.results.results_part import select_item
 
 
 def check_components(
@@ -15,9 +16,9 @@ def check_components(
 
     Parameters
     ----------
-    row : dict of str
+    row : Criterion
         Criterion.
-    components : dict of str
+    components : UncertaintyComponents
         Components of all quantities of the case.
     names : collection of ComponentName
         Components that count for the criterion.

@@ -34,7 +34,7 @@ HEADING = "Conformance report"
 
 
 def build_certificate(results: Results) -> doc.Document:
-    """The certificate of a run, from results.json as a dictionary, with the date of `find_date`."""
+    """The certificate of a run, with the date of `find_date`."""
     return build_dated_certificate(results, find_date(results))
 
 
@@ -43,8 +43,8 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
 
     Parameters
     ----------
-    results : dict
-        Content of results.json.
+    results : Results
+        Results of a run.
     date : int
         Date of the document [s since 1970]; 0: not known.
     """

@@ -30,8 +30,8 @@ def comparison_blocks(case: CaseResult, number: int, anchor: str) -> tuple[doc.B
 
     Parameters
     ----------
-    case : dict
-        Case of results.json.
+    case : CaseResult
+        The case.
     number : int
         Index of the case in the results.
     anchor : str

@@ -19,8 +19,8 @@ def derived_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
 
     Parameters
     ----------
-    case : dict
-        Case of results.json.
+    case : CaseResult
+        The case.
     """
     if not case.derived:
         return ()

@@ -26,7 +26,7 @@ def build_document_section(results: Results, digest: str, date: int) -> Section:
 
     Parameters
     ----------
-    results : dict
+    results : Results
         Results from `prepare_results`.
     digest : str
         Digest of the results before their preparation; it covers the administrative data, and not the page.

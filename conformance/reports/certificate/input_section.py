@@ -31,9 +31,9 @@ def input_blocks(case: CaseResult, earlier: tuple[CaseResult, ...], anchor: str)
 
     Parameters
     ----------
-    case : dict
-        Case of results.json.
-    earlier : tuple of dict
+    case : CaseResult
+        The case.
+    earlier : tuple of CaseResult
         Cases that stand before it in the report.
     anchor : str
         Anchor of the sources, before their number.

@@ -11,9 +11,9 @@ def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Fig
 
     Parameters
     ----------
-    case : dict
-        Case of results.json.
-    earlier : tuple of dict
+    case : CaseResult
+        The case.
+    earlier : tuple of CaseResult
         Cases that stand before it in the report.
     """
     shape = case.line_shape

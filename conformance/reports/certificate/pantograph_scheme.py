@@ -17,9 +17,9 @@ def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[F
 
     Parameters
     ----------
-    case : dict
-        Case of results.json. Older results have no values of inputs, and no scheme.
-    earlier : tuple of dict
+    case : CaseResult
+        The case. Older results have no values of inputs, and no scheme.
+    earlier : tuple of CaseResult
         Cases that stand before it in the report.
     """
     known = {chain for other in earlier for chain in _read_chains(other)}

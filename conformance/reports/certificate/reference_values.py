@@ -7,6 +7,7 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import format_value
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_part import select_item
 
 REFERENCE_PLACE = 4
 """Place of the column in a table of criteria: behind value and error."""
@@ -53,10 +54,7 @@ def has_reference(case: CaseResult) -> bool:
 def find_reference(case: CaseResult, criterion: Criterion) -> float | None:
     """Value of the reference for a criterion; None if it has none."""
     quantities = {} if case.reference is None else case.reference.quantities
-    found = quantities.get(str(criterion.pantograph), {}).get(criterion.quantity)
-    values = found if isinstance(found, list) else [found]
-    item = criterion.item or 1
-    return values[item - 1] if item <= len(values) else None
+    return select_item(quantities.get(str(criterion.pantograph), {}).get(criterion.quantity), criterion.item)
 
 
 def select_reference_force(case: CaseResult, key: str) -> list[float]:

@@ -146,7 +146,7 @@ def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.
 
     Parameters
     ----------
-    results : dict
+    results : Results
         Results from `prepare_results`.
     anchors : dict of str to str
         Anchor of the section of each case, by its name; empty: no links.

@@ -41,8 +41,8 @@ def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Doc
 
     Parameters
     ----------
-    results : dict
-        results.json as a dictionary.
+    results : Results
+        Results of a run.
     certificates : sequence of str
         Names of the certificates in the same folder, which the page links.
 

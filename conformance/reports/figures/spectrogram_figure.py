@@ -27,7 +27,7 @@ def draw_spectrogram(data: Spectrogram, marks: dict[str, float], limits: tuple[f
 
     Parameters
     ----------
-    data : dict
+    data : Spectrogram
         Entry `spectrogram` of a line.
     marks : dict of str to float
         Times after the release that are marked, by their names [s].

@@ -51,8 +51,8 @@ def list_annotations(results: Results, places: ReportPlaces) -> list[Annotation]
 
     Parameters
     ----------
-    results : dict
-        results.json as a dictionary.
+    results : Results
+        Results of a run.
     places : ReportPlaces
         Places of the cases and limits in the files of the user.
 

@@ -40,7 +40,7 @@ def summarise_verdict(results: Results) -> str:
 
 
 def render_badge(results: Results) -> str:
-    """SVG of the badge of results.json as a dictionary."""
+    """SVG of the badge of a run."""
     texts = (LABEL, summarise_verdict(results))
     widths = [round(len(text) * LETTER + 2 * MARGIN) for text in texts]
     total = sum(widths)

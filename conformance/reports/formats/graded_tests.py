@@ -55,10 +55,10 @@ def list_case_tests(case: CaseResult, results: Results) -> list[GradedTest]:
 
     Parameters
     ----------
-    case : dict
+    case : CaseResult
         Case of the results.
-    results : dict
-        results.json as a dictionary, prepared for pages.
+    results : Results
+        Results from `prepare_results`.
 
     Returns
     -------

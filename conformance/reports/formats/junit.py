@@ -18,8 +18,8 @@ def render_junit(results: Results, certificates: Sequence[str] = ()) -> bytes:
 
     Parameters
     ----------
-    results : dict
-        results.json as a dictionary.
+    results : Results
+        Results of a run.
     certificates : sequence of str
         Names of the certificates in the same folder, which the properties of each case name.
 

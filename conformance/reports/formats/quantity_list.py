@@ -19,7 +19,7 @@ NOT_KNOWN = "NA"
 
 
 def render_quantity_list(results: Results) -> str:
-    """Table of all quantities of results.json as a dictionary; numbers have all their digits."""
+    """Table of all quantities of a run; numbers have all their digits."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)

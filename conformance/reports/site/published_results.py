@@ -17,7 +17,7 @@ class PublishedResults:
     Parameters
     ----------
     results : Results
-        Content of results.json.
+        Results of a run.
     discrepancies : tuple of str
         Contradictions between its numbers and verdicts; none if it is consistent.
     folder : str
