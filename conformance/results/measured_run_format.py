@@ -1,15 +1,11 @@
 """Simulated and measured run beside each other in results.json: curves, spectra, and statistics span by span."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
 from pantocheck.conformance.results.figure_data import Spectrum
 from pantocheck.conformance.results.results_part import FiniteNumber, Number, Owner, ResultsPart
-
-StatisticName = Literal["mean_N", "std_N", "max_N", "min_N"]
-
-RunName = Literal["simulated", "measured"]
 
 
 class ForceStatistics(ResultsPart):
@@ -28,17 +24,6 @@ class SpanStatistics(ResultsPart):
     end_m: FiniteNumber
     simulated: ForceStatistics
     measured: ForceStatistics
-
-    def select_statistic(self, run: RunName, name: StatisticName) -> float:
-        """One statistic of one run [N]."""
-        statistics = self.simulated if run == "simulated" else self.measured
-        values = {
-            "mean_N": statistics.mean_N,
-            "std_N": statistics.std_N,
-            "max_N": statistics.max_N,
-            "min_N": statistics.min_N,
-        }
-        return values[name]
 
 
 class MeasuredPantograph(ResultsPart):

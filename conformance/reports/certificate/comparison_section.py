@@ -15,11 +15,10 @@ from pantocheck.conformance.reports.page_text import format_plain, format_value,
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.measured_run_format import (
+    ForceStatistics,
     MeasuredPantograph,
     MeasuredRun,
-    RunName,
     SpanStatistics,
-    StatisticName,
 )
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.results.results_part import select_single
@@ -117,16 +116,25 @@ def _draw_figures(
 
 
 def _build_span_table(key: str, spans: Sequence[SpanStatistics]) -> doc.Table:
-    names: dict[StatisticName, str] = {"mean_N": "Mean", "std_N": "σ", "max_N": "Max.", "min_N": "Min."}
+    statistics: dict[str, Callable[[ForceStatistics], float]] = {
+        "Mean": lambda run: run.mean_N,
+        "σ": lambda run: run.std_N,
+        "Max.": lambda run: run.max_N,
+        "Min.": lambda run: run.min_N,
+    }
     cells: dict[str, Callable[[SpanStatistics], str]] = {
         "From [m]": lambda span: format_plain(span.start_m),
         "To [m]": lambda span: format_plain(span.end_m),
     }
-    cells |= {f"{label} sim.": partial(_format_statistic, "simulated", name) for name, label in names.items()}
-    cells |= {f"{label} meas.": partial(_format_statistic, "measured", name) for name, label in names.items()}
+    cells |= {f"{label} sim.": partial(_format_simulated, select) for label, select in statistics.items()}
+    cells |= {f"{label} meas.": partial(_format_measured, select) for label, select in statistics.items()}
     caption = f"Pantograph {key}: statistics of the filtered force span by span [N], simulated and measured"
     return doc.make_grid(caption, spans, cells)
 
 
-def _format_statistic(run: RunName, name: StatisticName, span: SpanStatistics) -> str:
-    return format_value(span.select_statistic(run, name))
+def _format_simulated(select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
+    return format_value(select(span.simulated))
+
+
+def _format_measured(select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
+    return format_value(select(span.measured))

@@ -1,6 +1,6 @@
 """Figures of a simulated run and a measured one: forces over the track with their difference, spectra, spans."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -9,18 +9,20 @@ from matplotlib.figure import Figure
 from pantocheck.conformance.reports.figures.figure_style import FULL, GREY, HALF, INK, PlotStyle, add_legend, render_svg
 from pantocheck.conformance.results.figure_data import Spectrum
 from pantocheck.conformance.results.measured_run_format import (
+    ForceStatistics,
     MeasuredPantograph,
-    RunName,
     SpanStatistics,
-    StatisticName,
 )
 
 SIMULATED: PlotStyle = {"color": INK, "linewidth": 1.2, "label": "simulated"}
 MEASURED: PlotStyle = {"color": GREY, "linewidth": 1.2, "linestyle": "--", "label": "measured"}
 """Styles of the two runs; they differ without colour."""
 
-SPAN_STATISTICS: tuple[StatisticName, ...] = ("mean_N", "std_N")
-"""Statistics that the figure of the spans shows."""
+SPAN_STATISTICS: dict[str, Callable[[ForceStatistics], float]] = {
+    "mean [N]": lambda run: run.mean_N,
+    "standard\ndeviation [N]": lambda run: run.std_N,
+}
+"""Statistics that the figure of the spans shows, by their labels."""
 
 
 @render_svg
@@ -65,8 +67,8 @@ def draw_spans(pantograph: MeasuredPantograph) -> Figure:
     """Mean and standard deviation of the filtered force span by span in both runs."""
     figure = Figure(figsize=(HALF, 3.0))
     panels = figure.subplots(2, 1, sharex=True)
-    for axes, name, label in zip(panels, SPAN_STATISTICS, ("mean [N]", "standard\ndeviation [N]"), strict=True):
-        _draw_span_values(axes, pantograph.spans, name)
+    for axes, (label, select) in zip(panels, SPAN_STATISTICS.items(), strict=True):
+        _draw_span_values(axes, pantograph.spans, select)
         axes.set_ylabel(label)
     panels[-1].set(xlabel="position along the track [m]")
     add_legend(panels[0])
@@ -93,10 +95,9 @@ def list_span_limits(pantograph: MeasuredPantograph) -> list[float]:
     return sorted({place for span in pantograph.spans for place in (span.start_m, span.end_m)})
 
 
-def _draw_span_values(axes: Axes, spans: Sequence[SpanStatistics], name: StatisticName) -> None:
+def _draw_span_values(axes: Axes, spans: Sequence[SpanStatistics], select: Callable[[ForceStatistics], float]) -> None:
     edges = [spans[0].start_m, *(span.end_m for span in spans)]
-    runs: tuple[tuple[RunName, PlotStyle], ...] = (("simulated", SIMULATED), ("measured", MEASURED))
-    for run, style in runs:
-        values = [span.select_statistic(run, name) for span in spans]
+    for runs, style in (([span.simulated for span in spans], SIMULATED), ([span.measured for span in spans], MEASURED)):
+        values = [select(run) for run in runs]
         axes.step(edges, [*values, values[-1]], where="post", **style)
     axes.set_xlim(edges[0], edges[-1])
