@@ -1,6 +1,5 @@
 """Facts for reproducing a run: suite, system, platform, filter, time step, digests."""
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.reports.document import Facts
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts
@@ -45,7 +44,7 @@ def list_case_facts(case: CaseResult) -> Facts:
             ("Speed", _with_unit(run.speed_km_h, "km/h")),
             *_list_law_forces(run),
             ("Analysis section", f"{format_plain(section[0])} m to {format_plain(section[1])} m" if section else None),
-            ("Filter", _describe_filter(run.filter)),
+            ("Filter", _describe_filter(run)),
             ("Sampling rate of the record", _with_unit(run.rate_Hz, "samples per second")),
             ("Time step", _with_unit(run.dt_s, "s")),
             ("Element length", _with_unit(run.element_m, "m")),
@@ -69,7 +68,8 @@ def _list_law_forces(run: RunFacts) -> list[tuple[str, str]]:
     return [(f"Force law of pantograph {number}", force.text) for number, force in run.law_forces.items()]
 
 
-def _describe_filter(settings: Filter) -> str:
+def _describe_filter(run: RunFacts) -> str:
+    settings = run.filter
     kind, cutoff = settings.kind.capitalize(), format_plain(settings.cutoff_Hz)
     return f"{kind}, order {settings.order}, −3 dB at {cutoff} Hz, {settings.phase} phase"
 
