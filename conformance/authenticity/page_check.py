@@ -95,7 +95,7 @@ def _compare(document: Certificate) -> PageDifferences:
             text = "the file is not as Pantocheck writes it: keys, their order, digits or spaces differ"
             return PageDifferences(same, (text,))
         case HtmlCertificate(_, text, results):
-            page = render_html(build_dated_certificate(results.to_dict(), read_html_date(text)))
+            page = render_html(build_dated_certificate(results, read_html_date(text)))
             if text == page:
                 return PageDifferences(True)
             return PageDifferences(
@@ -115,7 +115,7 @@ def _compare_pdf(document: PdfCertificate) -> PageDifferences:
     from pantocheck.conformance.authenticity.pdf_structure import list_foreign_parts
 
     date = read_date(document.reader, document.name)
-    page = render_pdf(build_dated_certificate(document.results.to_dict(), date))
+    page = render_pdf(build_dated_certificate(document.results, date))
     if document.original == page:
         return PageDifferences(True)
     foreign = tuple(list_foreign_parts(document.reader, document.original))

@@ -130,7 +130,7 @@ def _check_numbers(results: Results) -> DocumentCheck:
     return judge_details(
         "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
         "The embedded numbers and verdicts contradict each other.",
-        [*find_discrepancies(results.to_dict()), *find_false_version(results)],
+        [*find_discrepancies(results), *find_false_version(results)],
     )
 
 

@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -48,7 +48,9 @@ def open_case_folder(folder: Path) -> CaseSource:
         There is no such folder or no case in it, an id does not begin with `own/`, or a file has a name of the library.
         The error lists all problems.
     """
-    return _open_source(folder, CaseOrigin("folder", folder.resolve().name, "", ""), OUTSIDE_PREFIX)
+    return _open_source(
+        folder, CaseOrigin(kind="folder", name=folder.resolve().name, version="", digest=""), OUTSIDE_PREFIX
+    )
 
 
 def list_case_sources(pattern: str) -> list[CaseSource]:
@@ -81,7 +83,7 @@ def _may_match(pattern: str, prefix: str) -> bool:
 
 @cache
 def _open_package(package: CasePackage, folder: Path) -> CaseSource:
-    origin = CaseOrigin("distribution", package.distribution, package.version, "")
+    origin = CaseOrigin(kind="distribution", name=package.distribution, version=package.version, digest="")
     try:
         return _open_source(folder, origin, id_prefix(package.distribution))
     except InputError as error:
@@ -118,7 +120,7 @@ def _open_source(folder: Path, origin: CaseOrigin, prefix: str) -> CaseSource:
     cases = {tree["id"]: path for path, tree in trees.items() if isinstance(tree.get("id"), str)}
     if not cases:
         raise InputError(where, "holds no case file", f'A case file has the key id, e.g. id = "{prefix}my-line" .')
-    return CaseSource(replace(origin, digest=_folder_digest(folder, files)), cases)
+    return CaseSource(origin.model_copy(update={"digest": _folder_digest(folder, files)}), cases)
 
 
 def _list_files(folder: Path, where: str) -> list[Path]:

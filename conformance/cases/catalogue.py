@@ -114,7 +114,7 @@ def open_catalogue(folders: Sequence[Path | str]) -> Catalogue:
 def _name_file(path: Path) -> CaseEntry:
     """Entry of a case file that is named by its path; a file that cannot be read is refused when the case is read."""
     digest = file_digest(path) if path.is_file() else ""
-    return CaseEntry(path, CaseOrigin("file", path.name, "", digest))
+    return CaseEntry(path, CaseOrigin(kind="file", name=path.name, version="", digest=digest))
 
 
 def _join_sources(sources: Sequence[CaseSource]) -> dict[str, CaseEntry]:

@@ -27,7 +27,7 @@ def write_population(population: Population, out: Path) -> tuple[tuple[str, ...]
         A file cannot be written.
     """
     content = analyse_population(population)
-    document = build_population_document(content.model_dump(mode="json", by_alias=True))
+    document = build_population_document(content)
     write_model(out / "population.json", content)
     pages = write_document(document, out / "population")
     warnings = (f"warning: {text}" for text in content.warnings)

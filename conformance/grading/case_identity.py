@@ -15,7 +15,7 @@ from pantocheck.conformance.quantities.limit_text import format_bounds, name_val
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
 _FINDING_TEXTS = {"section", "sentence", "printed", "tolerance", "sensitivity"}
-_REMARKS: dict[str, Any] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
+_REMARKS: dict[str, bool | set[str]] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
 """Texts of a limit, which do not change its grade."""
 
 

@@ -16,6 +16,7 @@ from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.finding_format import IMPOSED_REASON, count_verdict, grade_finding
+from pantocheck.conformance.results.results_part import select_item
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""
@@ -117,7 +118,7 @@ def grade_requirement(
         components={
             part: item
             for part, width in components.items()
-            if (item := _select_item(width, requirement.item)) is not None
+            if (item := select_item(width, requirement.item)) is not None
         },
         limit_uncertainty=limit_uncertainty,
     )
@@ -199,17 +200,8 @@ def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[st
     values : mapping of int to mapping of str to Value
         Quantities by pantograph (0: the line) and name.
     """
-    value = values.get(requirement.owner, {}).get(requirement.quantity)
-    number = None if value is None else _select_item(value, requirement.item)
+    number = select_item(values.get(requirement.owner, {}).get(requirement.quantity), requirement.item)
     return number if number is not None and math.isfinite(number) else None
-
-
-def _select_item(value: Value, item: int | None) -> float | None:
-    """Item of a value with several items, by default the first; None if there is none."""
-    if not isinstance(value, tuple):
-        return value
-    index = (item or 1) - 1
-    return value[index] if index < len(value) else None
 
 
 def _distance_outside(value: float, requirement: Requirement, unit: str) -> str:

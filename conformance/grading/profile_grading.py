@@ -24,12 +24,12 @@ from pantocheck.conformance.results.extreme_places import find_force_places
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
-    describe_uncertainty,
     key_by_owner,
+    list_components,
     select_finite,
     utc_now,
 )
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts, SystemIdentity
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
 from pantocheck.conformance.results.traces import build_pantograph_traces
 
 
@@ -113,7 +113,9 @@ def grade_record(
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},
-        **describe_uncertainty(subject.uncertainty),
+        uncertainty=key_by_owner(select_finite(subject.uncertainty.combined)),
+        uncertainty_components=list_components(subject.uncertainty),
+        uncertainty_basis=subject.uncertainty.basis,
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,
@@ -177,7 +179,7 @@ def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:
         element_m=run.element_m,
         speed_km_h=subject.header.speed_km_h,
         rate_Hz=None if prepared is None else prepared.rate,
-        filter=FilterFacts(**profile.filter.model_dump()),
+        filter=profile.filter,
         evaluated_m=None if section is None else (section[0], section[1]),
     )
 

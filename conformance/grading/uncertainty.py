@@ -55,6 +55,11 @@ class Uncertainty:
         return tuple(name for name, part in self.components.items() if not part.half_widths)
 
     @property
+    def basis(self) -> dict[ComponentName, str]:
+        """How each component was determined, or why it is not known."""
+        return {name: part.basis for name, part in self.components.items()}
+
+    @property
     def by_quantity(self) -> dict[int, dict[str, dict[ComponentName, Value]]]:
         """Half-widths by pantograph, quantity and component, for all quantities with a component."""
         found: dict[int, dict[str, None]] = {}

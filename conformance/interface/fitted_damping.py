@@ -140,7 +140,7 @@ def write_damping_fit(results: DampingResults, folder: Path) -> tuple[Document, 
 
     block, with_modal, data = (folder / name for name in DATA_FILES)
     text = write_damping_toml(results)
-    document = build_damping_document(results.model_dump(mode="json", by_alias=True), text)
+    document = build_damping_document(results, text)
     write_atomically(block, text.encode("utf-8"))
     write_atomically(with_modal, write_damping_toml(results, results.modal).encode("utf-8"))
     write_model(data, results)

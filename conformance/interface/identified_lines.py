@@ -178,7 +178,7 @@ def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tup
     from pantocheck.conformance.reports.formats.report_writers import write_document
     from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 
-    document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
+    document = build_identification_document(lines)
     write_model(folder / "identification.json", IdentificationFile(lines=lines))
     return document, [folder / "identification.json", *write_document(document, folder / "identification")]
 

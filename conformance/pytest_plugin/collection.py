@@ -251,9 +251,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
         not_passed |= verdict != "pass"
         write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
-        lines.append(
-            f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"
-        )
+        lines.append(f"{path.name}: {results.verdict.upper()}: {build_headline(results)} {prepared.out / shown}")
         lines += (f"{path.name}: {remark}" for remark in remark_missing_formats(prepared.plan.formats))
         lines += (f"{path.name}: {case.id}: {line}" for case in results.cases for line in list_drifts(case))
     return lines, not_passed

@@ -1,6 +1,6 @@
 """Criterion of results.json: a value against its limits, with the components of its uncertainty."""
 
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
@@ -61,16 +61,21 @@ class Criterion(ResultsPart):
         """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
         return self.baseline is not None or self.quantity == BASELINE
 
+    @property
+    def is_close(self) -> bool:
+        """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
+        return bool(self.close) and self.verdict in ("pass", "fail")
+
+    @property
+    def error(self) -> float | None:
+        """Uncertainty of the value or, where it is not known, its discretisation error."""
+        return self.discretisation_error if self.uncertainty is None else self.uncertainty
+
     @model_validator(mode="after")
     def _demand_trust(self) -> Self:
         if self.trust is None and not self.is_drift:
             raise ValueError("a criterion without trust must compare with a baseline")
         return self
-
-
-def is_drift(row: dict[str, Any]) -> bool:
-    """Whether a criterion of results.json compares with a baseline, or states that a comparison is impossible."""
-    return row["baseline"] is not None or row["quantity"] == BASELINE
 
 
 class CaseVerification(ResultsPart):

@@ -15,15 +15,9 @@ FindingOutcome = Literal["imposed", "reproduced", "not_reproduced", "not_evaluat
 IMPOSED_REASON = "imposed: the inputs were chosen to meet this finding, so meeting it does not count"
 
 
-class GradedFinding(ResultsPart):
+class GradedFinding(PublishedFinding):
     """Finding of a publication, and its outcome in this run."""
 
-    section: str
-    sentence: str
-    role: Role
-    printed: str
-    tolerance: str
-    sensitivity: str
     outcome: Annotated[
         FindingOutcome,
         Field(

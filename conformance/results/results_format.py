@@ -6,11 +6,14 @@ The models check the file when it is written and read. Their JSON Schema is expo
 import json
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
+from pantocheck.conformance.cases.case_file import Filter
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (
@@ -24,7 +27,6 @@ from pantocheck.conformance.results.criterion_format import CaseVerification, Co
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
-from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
@@ -77,25 +79,14 @@ class InputGroup(ResultsPart):
     values: StoredValues = {}
 
 
-class FilterFacts(ResultsPart):
-    """Filter of the graded force."""
-
-    kind: str
-    order: int
-    cutoff_Hz: float
-    phase: str
-
-
-class RunFacts(ResultsPart):
+class RunFacts(RunTable):
     """Computation of a case; unknown facts are null."""
 
-    simulated_s: float | None
-    wall_s: float | None
-    dt_s: float | None
-    element_m: float | None
+    model_config = ConfigDict(strict=False)
+
     speed_km_h: float | None
     rate_Hz: float | None
-    filter: FilterFacts
+    filter: Filter
     evaluated_m: tuple[float, float] | None
     law_forces: LawForces = {}
 
@@ -124,6 +115,13 @@ class ScopeStep(ResultsPart):
 def name_case(case_id: str, library: LibraryIdentity) -> str:
     """Name of a case in reports: its id, or `modified copy of` the library case with this id."""
     return f"modified copy of {case_id}" if library == "modified" else case_id
+
+
+Quantities = dict[Owner, dict[str, Number]]
+"""Values by owner and name of the quantity."""
+
+UncertaintyComponents = dict[Owner, dict[str, dict[ComponentName, Number]]]
+"""Half-widths by owner, name of the quantity and component."""
 
 
 class CaseResult(ResultsPart):
@@ -171,7 +169,7 @@ class CaseResult(ResultsPart):
     ] = []
     library: Annotated[LibraryIdentity, Field(description="comparison with the library case or profile of this name")]
     origin: Annotated[
-        OriginFacts | None,
+        CaseOrigin | None,
         Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
     ] = None
     profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
@@ -179,7 +177,7 @@ class CaseResult(ResultsPart):
     superseded_by: Annotated[str | None, Field(description="edition that superseded it")] = None
     steps: Annotated[list[Step], Field(description="steps of the procedure that the case belongs to")] = []
     criteria: list[Criterion]
-    quantities: dict[Owner, dict[str, Number]]
+    quantities: Quantities
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[
         dict[Owner, dict[str, float]],
@@ -190,7 +188,7 @@ class CaseResult(ResultsPart):
         ),
     ]
     uncertainty: Annotated[
-        dict[Owner, dict[str, Number]],
+        Quantities,
         Field(
             default_factory=dict,
             description="half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the "
@@ -198,7 +196,7 @@ class CaseResult(ResultsPart):
         ),
     ]
     uncertainty_components: Annotated[
-        dict[Owner, dict[str, dict[ComponentName, Number]]],
+        UncertaintyComponents,
         Field(
             default_factory=dict, description="half-widths by component, as in `quantities`; unknown ones are missing"
         ),

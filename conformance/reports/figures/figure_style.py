@@ -28,6 +28,9 @@ FULL, HALF = 6.9, 3.4
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
+PlotStyle = dict[str, Any]
+"""Keyword arguments of a drawing function of matplotlib."""
+
 Arguments = ParamSpec("Arguments")
 Content = TypeVar("Content")
 

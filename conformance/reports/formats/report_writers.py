@@ -5,7 +5,7 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.extras import install_line, is_installed
@@ -110,13 +110,11 @@ def write_all(results: "Results", folder: Path, formats: Sequence[str], places: 
     """
     if "json" in formats:
         write_atomically(folder / FILES["json"], results.to_json())
-    write_pages(results.to_dict(), folder, formats, places)
+    write_pages(results, folder, formats, places)
     return [folder / FILES[name] for name in formats]
 
 
-def write_pages(
-    results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES
-) -> None:
+def write_pages(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats.
 
     If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
@@ -150,7 +148,7 @@ def write_pages(
         _write_annotations(results, folder, formats, places)
 
 
-def _write_annotations(results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
+def _write_annotations(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
     from pantocheck.conformance.reports.formats.annotations import list_annotations
     from pantocheck.conformance.reports.formats.code_quality import render_code_quality
     from pantocheck.conformance.reports.formats.workflow_commands import render_workflow_commands

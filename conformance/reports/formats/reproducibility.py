@@ -2,9 +2,9 @@
 
 import os
 from datetime import UTC, datetime
-from typing import Any
 
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.results_format import Results
 
 LATEST = 253402300799
 """End of the year 9999 [s since 1970], the last date that can be written."""
@@ -26,7 +26,7 @@ def read_source_date() -> int | None:
     return int(epoch)
 
 
-def find_date(results: dict[str, Any]) -> int:
+def find_date(results: Results) -> int:
     """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
 
     Raises
@@ -37,7 +37,7 @@ def find_date(results: dict[str, Any]) -> int:
     date = read_source_date()
     if date is not None:
         return date
-    started = results.get("started")
+    started = results.started
     return int(datetime.fromisoformat(started).timestamp()) if started else 0
 
 

@@ -3,7 +3,8 @@
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+
+from pantocheck.conformance.results.results_format import Results
 
 LONGEST_FILE_NAME = 60
 """Longest part of a file name that comes from a name in the results."""
@@ -15,39 +16,39 @@ class PublishedResults:
 
     Parameters
     ----------
-    results : dict of str
-        Content of results.json.
+    results : Results
+        Results of a run.
     discrepancies : tuple of str
         Contradictions between its numbers and verdicts; none if it is consistent.
     folder : str
         Folder of the certificate in the site.
     """
 
-    results: dict[str, Any]
+    results: Results
     discrepancies: tuple[str, ...]
     folder: str
 
     @property
     def system(self) -> str:
         """Name of the system."""
-        return str(self.results["system"]["name"])
+        return self.results.system.name
 
     @property
     def version(self) -> str:
         """Version of the system."""
-        return str(self.results["system"]["version"])
+        return self.results.system.version
 
     @property
     def date(self) -> str:
         """Date and time of the run; empty if the results state none."""
-        return str(self.results["started"] or "")
+        return self.results.started or ""
 
     def verdict(self, stated: str) -> str:
         """Verdict as shown: `error` for results that contradict themselves."""
         return "error" if self.discrepancies else stated
 
 
-def publish_results(contents: Iterable[tuple[dict[str, Any], tuple[str, ...]]]) -> list[PublishedResults]:
+def publish_results(contents: Iterable[tuple[Results, tuple[str, ...]]]) -> list[PublishedResults]:
     """Order results by date and name their folders.
 
     Parameters
@@ -60,9 +61,9 @@ def publish_results(contents: Iterable[tuple[dict[str, Any], tuple[str, ...]]]) 
     list of PublishedResults
         Results from the oldest to the latest; equal dates keep their order.
     """
-    ordered = sorted(contents, key=lambda content: content[0]["started"] or "")
+    ordered = sorted(contents, key=lambda content: content[0].started or "")
     return [
-        PublishedResults(results, discrepancies, f"runs/{number:04d}-{name_file(results['system']['name'])}")
+        PublishedResults(results, discrepancies, f"runs/{number:04d}-{name_file(results.system.name)}")
         for number, (results, discrepancies) in enumerate(ordered, 1)
     ]
 

@@ -18,6 +18,7 @@ from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.figures.overlay_figure import force_difference, spectrum_difference
+from pantocheck.conformance.results.results_format import Results
 
 SPAN = 60.0
 SUPPORTS = np.arange(0.0, 601.0, SPAN)
@@ -87,7 +88,7 @@ def test_runs_without_common_track_have_no_common_curves(run: Run) -> None:
 def test_certificate_shows_both_runs(run: Run) -> None:
     """Overlay, spectra and spans of both pantographs; the results follow from their numbers."""
     results = assess_record(run("simulated"), load_profile("line-test"), "provisional", run("measured", 1.0)).to_dict()
-    assert find_discrepancies(results) == []
+    assert find_discrepancies(Results.model_validate(results)) == []
     (section,) = comparison_blocks(results["cases"][0], 0, "case-1")
     assert isinstance(section, doc.Section)
     values, figures, *spans = section.blocks[1:]
