@@ -6,14 +6,13 @@ The models check the file when it is written and read. Their JSON Schema is expo
 import json
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (
@@ -79,11 +78,13 @@ class InputGroup(ResultsPart):
     values: StoredValues = {}
 
 
-class RunFacts(RunTable):
+class RunFacts(ResultsPart):
     """Computation of a case; unknown facts are null."""
 
-    model_config = ConfigDict(strict=False)
-
+    simulated_s: float | None
+    wall_s: float | None
+    dt_s: float | None
+    element_m: float | None
     speed_km_h: float | None
     rate_Hz: float | None
     filter: Filter
