@@ -18,9 +18,9 @@ from pantocheck.model.catenary import Catenary, Kind, Wire
 
 PARTS = ("droppers", "steady_arms", "messenger_supports", "clamps", "springs", "point_masses")
 """Parts of a catenary at single positions."""
-WIRE_NAMES = ("wire", "upper", "lower")
+WIRE_KEYS = ("wire", "upper", "lower")
 """Names of the wires that a part is attached to."""
-HEIGHTS = ("height", "contact_wire_height")
+HEIGHT_KEYS = ("height", "contact_wire_height")
 """Heights that a part prescribes."""
 
 Rise = Callable[[float], float]
@@ -66,8 +66,8 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
 def _place_part(part: Any, rename: Callable[[str], str], start: float, rise: Rise) -> Any:
     """Part at one position in its place; a height that it prescribes rises."""
     position = start + part.position
-    changes: dict[str, Any] = {key: rename(getattr(part, key)) for key in WIRE_NAMES if hasattr(part, key)}
-    for key in HEIGHTS:
+    changes: dict[str, Any] = {key: rename(getattr(part, key)) for key in WIRE_KEYS if hasattr(part, key)}
+    for key in HEIGHT_KEYS:
         if getattr(part, key, None) is not None:
             changes[key] = getattr(part, key) + rise(position)
     return replace(part, position=position, **changes)
@@ -138,7 +138,7 @@ def select_parts(catenary: Catenary, name: str) -> dict[str, list[int]]:
         parts: [
             index
             for index, part in enumerate(getattr(catenary, parts))
-            if next(getattr(part, key) for key in WIRE_NAMES if hasattr(part, key)).startswith(f"{name} ")
+            if next(getattr(part, key) for key in WIRE_KEYS if hasattr(part, key)).startswith(f"{name} ")
         ]
         for parts in PARTS
     }
