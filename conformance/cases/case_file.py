@@ -19,7 +19,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
 
@@ -83,31 +83,6 @@ CasePantograph = Annotated[
     Discriminator(_name_force),
 ]
 """Pantograph of a run."""
-
-
-class Filter(InputTable):
-    """Filter of the graded contact force."""
-
-    kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
-    order: Annotated[int, Field(ge=1, le=12, description="total order, over both passes of a zero-phase filter")] = 6
-    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
-    phase: Annotated[
-        Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
-    ] = "zero"
-
-    @cross_check
-    def _exists(self) -> Problems:
-        if self.phase == "zero" and self.order % 2:
-            yield validation_problem(
-                "order",
-                f"{self.order} is odd",
-                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
-            )
-
-    @property
-    def low_pass(self) -> LowPass:
-        """Low-pass with these parameters."""
-        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)
 
 
 class Discretisation(InputTable):

@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
@@ -22,6 +21,7 @@ from pantocheck.conformance.input_files.sourced_table import (
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.logger.event_tables import EventKind
 

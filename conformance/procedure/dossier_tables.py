@@ -4,7 +4,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.profile_file import Rule
 from pantocheck.conformance.comparison.comparison_limits import RESPONSES, ComparisonLimit
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
@@ -17,6 +16,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 
 EntryName = Annotated[str, Field(min_length=1, max_length=100)]
 NamedFile = Annotated[str, Field(min_length=1, max_length=500)]

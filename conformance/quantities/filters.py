@@ -4,12 +4,18 @@ A transfer function in polynomial form overflows at high sampling rates and low 
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import scipy  # loads scipy.signal when it is used: its import takes longer than a listing of the cases
+from pydantic import Field
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    validation_problem,
+)
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4
@@ -169,3 +175,28 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
             f"its content up to {low_pass.cutoff_Hz:g} Hz is not known"
         )
     return False
+
+
+class Filter(InputTable):
+    """Filter of the graded contact force."""
+
+    kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
+    order: Annotated[int, Field(ge=1, le=12, description="total order, over both passes of a zero-phase filter")] = 6
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
+    phase: Annotated[
+        Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
+    ] = "zero"
+
+    @cross_check
+    def _exists(self) -> Problems:
+        if self.phase == "zero" and self.order % 2:
+            yield validation_problem(
+                "order",
+                f"{self.order} is odd",
+                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
+            )
+
+    @property
+    def low_pass(self) -> LowPass:
+        """Low-pass with these parameters."""
+        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)

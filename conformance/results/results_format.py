@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (

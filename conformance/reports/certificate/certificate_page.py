@@ -25,8 +25,7 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import (
     list_reasons,
     summarise_case,
 )
-from pantocheck.conformance.reports.formats.embedded_results import digest_results
-from pantocheck.conformance.reports.formats.reproducibility import find_date
+from pantocheck.conformance.reports.formats.embedded_results import digest_results, find_date
 from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.results_format import CaseResult, Results
 

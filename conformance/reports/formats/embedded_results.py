@@ -7,7 +7,9 @@ prints these times, so its data block keeps them.
 
 import hashlib
 import json
+from datetime import datetime
 
+from pantocheck.conformance.reports.formats.reproducibility import read_source_date
 from pantocheck.conformance.results.results_format import Results
 
 NAME = "results.json"
@@ -39,3 +41,18 @@ def digest_results(results: Results) -> str:
 def encode_data_block(results: Results) -> str:
     """Content of the data block of the HTML page: results as JSON text in ASCII without `<`, `>` and `&`."""
     return json.dumps(results.to_dict(), separators=(",", ":"), allow_nan=False).translate(ESCAPES)
+
+
+def find_date(results: Results) -> int:
+    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
+
+    Raises
+    ------
+    InputError
+        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    """
+    date = read_source_date()
+    if date is not None:
+        return date
+    started = results.started
+    return int(datetime.fromisoformat(started).timestamp()) if started else 0

@@ -4,7 +4,6 @@ import os
 from datetime import UTC, datetime
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.results_format import Results
 
 LATEST = 253402300799
 """End of the year 9999 [s since 1970], the last date that can be written."""
@@ -24,21 +23,6 @@ def read_source_date() -> int | None:
     if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
         raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
     return int(epoch)
-
-
-def find_date(results: Results) -> int:
-    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
-
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
-    """
-    date = read_source_date()
-    if date is not None:
-        return date
-    started = results.started
-    return int(datetime.fromisoformat(started).timestamp()) if started else 0
 
 
 def format_date(seconds: int) -> str:

@@ -6,11 +6,12 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 
-from pantocheck.conformance.cases.case_file import Discretisation, Filter
+from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.force_law import PointOfForce
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, is_absent
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.simulation.derived_format import Derived
 
 PROTOCOL: Final = "pantocheck.command/1"
