@@ -18,7 +18,6 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import NO_SOURCE, NonNegative, Positive, validation_problem
 from pantocheck.conformance.records.table_sidecar import NamedTableSidecar
-from pantocheck.conformance.results.comparison_format import HeadPoint, ResponseKind
 
 RESPONSE_SCHEMA = "pantocheck.response/1"
 
@@ -133,3 +132,10 @@ class ResponseSidecar(NamedTableSidecar):
     def is_at_head(self) -> bool:
         """Whether force and motion belong to the centre of the head, the one point of the models."""
         return self.excited_at == self.measured_at == "head_centre"
+
+
+HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
+"""Point of the head: its centre, one of its contact strips, or another one."""
+
+
+ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]

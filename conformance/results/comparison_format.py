@@ -4,6 +4,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from pantocheck.conformance.comparison.response_sidecar import HeadPoint, ResponseKind
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
 from pantocheck.conformance.results.figure_data import Chart
@@ -15,10 +16,6 @@ ComparedValue = Rounded | tuple[Rounded, ...]
 StaticValue = Literal["elasticity", "contact_wire_height"]
 """Value measured along a line."""
 
-HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
-"""Point of the head: its centre, one of its contact strips, or another one."""
-
-ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]
 
 ComparedMotion = Literal["velocity", "acceleration"]
 

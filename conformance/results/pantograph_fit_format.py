@@ -4,12 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
+from pantocheck.conformance.identification.pantograph_fit.fit_intervals import Determination
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
 from pantocheck.conformance.results.comparison_format import ResponseComparison
 from pantocheck.conformance.results.suite_part import Suite
-
-Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
-"""How well the measured band determines a parameter."""
 
 ChainKey = Literal["masses_kg", "stiffness_N_m", "damping_N_s_m"]
 """Lists of a chain, as in a pantograph file."""

@@ -1,13 +1,13 @@
 """Intervals of the parameters of a fitted chain, from the curvature of the sum of squares at its minimum."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy.stats import t
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
-from pantocheck.conformance.results.pantograph_fit_format import Determination
 
 INTERVAL_CONFIDENCE = 0.95
 """Confidence of an interval."""
@@ -82,3 +82,7 @@ def judge_parameters(fit: ChainFit, intervals: FitIntervals) -> list[list[Determ
         ]
         for rows in zip(fit.values, intervals.half_width, fit.problem.free, strict=True)
     ]
+
+
+Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
+"""How well the measured band determines a parameter."""
