@@ -19,6 +19,11 @@ from pantocheck.conformance.input_files.cross_checks import Problems, cross_chec
 from pantocheck.conformance.input_files.sourced_table import NO_SOURCE, NonNegative, Positive, validation_problem
 from pantocheck.conformance.records.table_sidecar import NamedTableSidecar
 
+HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
+"""Point of the head: its centre, one of its contact strips, or another one."""
+
+ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]
+
 RESPONSE_SCHEMA = "pantocheck.response/1"
 
 UNCERTAINTY_COLUMNS = ("modulus_uncertainty_pct", "phase_uncertainty_deg")
@@ -132,10 +137,3 @@ class ResponseSidecar(NamedTableSidecar):
     def is_at_head(self) -> bool:
         """Whether force and motion belong to the centre of the head, the one point of the models."""
         return self.excited_at == self.measured_at == "head_centre"
-
-
-HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
-"""Point of the head: its centre, one of its contact strips, or another one."""
-
-
-ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]

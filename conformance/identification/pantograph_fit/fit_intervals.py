@@ -9,6 +9,9 @@ from scipy.stats import t
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
 
+Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
+"""How well the measured band determines a parameter."""
+
 INTERVAL_CONFIDENCE = 0.95
 """Confidence of an interval."""
 
@@ -82,7 +85,3 @@ def judge_parameters(fit: ChainFit, intervals: FitIntervals) -> list[list[Determ
         ]
         for rows in zip(fit.values, intervals.half_width, fit.problem.free, strict=True)
     ]
-
-
-Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
-"""How well the measured band determines a parameter."""
