@@ -93,7 +93,7 @@ def _difference(runs: Runs, reference: dict[str, Extrapolation], key: str) -> fl
 
 
 def print_table(case: Case, runs: Runs) -> None:
-    """Print the table of a case for docs/second-formulation.md."""
+    """Print the table of a case with every mesh."""
     forces = ", ".join(f"{force:.3f}" for force in runs["uplift_forces"])
     print(f"\n### {case.id}\n" + (f"\nUplift force {forces} N.\n" if forces else ""))
     row = f"library/{case.id}/{{pantograph}}/{{quantity}}"

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
+from site_pages.converged_page import build_converged_page
 from site_pages.format_pages import build_format_page
 from site_pages.interface_pages import build_interface_page
 from site_pages.limitations_page import build_limitations_page
@@ -23,6 +24,7 @@ PAGES = {
     "interface": build_interface_page,
     "contributing": build_contributing_page,
     "known-limitations": build_limitations_page,
+    "converged-values": build_converged_page,
     "all-pages": build_page_list,
 }
 """Builder of each page by its name."""
