@@ -74,7 +74,7 @@ def test_every_marker_is_read() -> None:
 
 def test_documentation_has_numbers_from_the_guide() -> None:
     found = [name for page in PAGES for _, name in list_printed(page.read_text("utf-8"))]
-    assert len(found) > 100
+    assert len(found) > 30
 
 
 @pytest.mark.parametrize(
