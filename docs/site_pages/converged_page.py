@@ -12,8 +12,9 @@ INTRODUCTION = """\
 
 Values of the extrapolated reference simulator and of the [second formulation](../second-formulation.md) for each case.
 
-The half-width contains both results and the discretisation of the reference simulator ([verification](../verification.md)).
-The difference is that of the second formulation; for extremes it is relative to their distance from the mean contact force.
+The half-width contains both results and the discretisation of the reference simulator
+([verification](../verification.md)). The difference is that of the second formulation; for extremes it is relative to
+their distance from the mean contact force.
 """
 HEADINGS = ("pantograph", "quantity", "converged", "half-width", "second formulation", "difference [%]")
 
