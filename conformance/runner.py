@@ -10,12 +10,10 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import build_ungraded, grade_case
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.results.plug_in_format import describe_plug_in
 from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.step_log import report_remote
 from pantocheck.conformance.studies.study_dispatch import run_study
-from pantocheck.conformance.systems.plug_in_system import PlugInSystem
 from pantocheck.conformance.systems.process_control import (
     adopt_orphans,
     interruption_exit_code,
@@ -113,9 +111,8 @@ def run_cases(
 
 
 def identify_system(system: System) -> SystemIdentity:
-    """Identity of a system in results; that of a plug-in names its distribution."""
-    plug_in = describe_plug_in(system.plug_in) if isinstance(system, PlugInSystem) else None
-    return SystemIdentity(name=system.name, version=system.version, kind=system.kind, plug_in=plug_in)
+    """Identity of a system in results."""
+    return SystemIdentity(name=system.name, version=system.version, kind=system.kind)
 
 
 def run_case(case: Case, system: System, trust: Trust) -> CaseResult:

@@ -20,18 +20,12 @@ from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
-from pantocheck.conformance.comparison.drop_limits import DropLimits
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
-from pantocheck.conformance.comparison.response_limits import ResponseLimits
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
-from pantocheck.conformance.comparison.run_comparison_format import RunComparison
-from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
-from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
+from pantocheck.conformance.comparison.static_record import StaticSidecar
 from pantocheck.conformance.identification.damping.damping_format import DampingResults
 from pantocheck.conformance.identification.identification_format import IdentificationFile
 from pantocheck.conformance.identification.mode import ModesFile
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.identification.population_format import PopulationFile
 from pantocheck.conformance.input_files.key_descriptions import DescribedSchema
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar as MassDropSidecar
@@ -41,12 +35,14 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.campaign_format import CampaignResults
-from pantocheck.conformance.results.guide_format import Guide
+from pantocheck.conformance.results.comparison_format import ResponseComparison, RunComparison, StaticComparison
+from pantocheck.conformance.results.drop_comparison_format import DropComparison
+from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.simulation.model_uncertainty import ModelUncertaintyFile
 from pantocheck.conformance.systems.command.protocol_messages import answer_schema, request_schema
 
-READ_FORMATS: dict[str, type[BaseModel]] = {
+USER_FORMATS: dict[str, type[BaseModel]] = {
     "case": CaseFile,
     "line": LineFile,
     "pantograph": PantographFile,
@@ -59,11 +55,15 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     "mass-drop": MassDropSidecar,
     "static": StaticSidecar,
     "response": ResponseSidecar,
-    "drop-limits": DropLimits,
-    "response-limits": ResponseLimits,
+    "comparison-limits": ComparisonLimits,
     "summary": RecordSummary,
     "profile": Profile,
     "administration": Administration,
+}
+"""TOML files that users write; `reference_cases/schema` has their schemas, for editors."""
+
+READ_FORMATS: dict[str, type[BaseModel]] = {
+    **USER_FORMATS,
     "converged": ConvergedFile,
     "model-uncertainty": ModelUncertaintyFile,
 }
@@ -81,7 +81,6 @@ WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "drop-comparison": DropComparison,
     "response-comparison": ResponseComparison,
     "pantograph-fit": PantographFit,
-    "guide": Guide,
 }
 """JSON files that the suite writes."""
 

@@ -22,7 +22,7 @@ version = release = installed_version("pantocheck")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "site_pages"]
+exclude_patterns = ["_build", "generated/tables", "site_pages"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 napoleon_numpy_docstring = False
@@ -55,8 +55,6 @@ def link_repository_files(app: Any, page: str, source: list[str]) -> None:
     """Turn links to files that the site builds as pages, as the repository has them, into links to these pages."""
     source[0] = re.sub(r"\(((?:\.\./)*)\.\./examples/gallery/(\w+)\.py\)", r"(\1gallery/\2.rst)", source[0])
     source[0] = re.sub(r"\(((?:\.\./)*)\.\./CONTRIBUTING\.md", r"(\1generated/contributing.md", source[0])
-    limitations = r"(\1generated/known-limitations.md"
-    source[0] = re.sub(r"\(((?:\.\./)*)\.\./templates/known-limitations\.md", limitations, source[0])
 
 
 def setup(app: Any) -> None:

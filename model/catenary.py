@@ -301,6 +301,29 @@ class PointMass:
 
 
 @dataclass(frozen=True)
+class Spring:
+    """Vertical spring and damper between two wires, without force at rest.
+
+    Parameters
+    ----------
+    position : float
+        Position along the track [m].
+    upper, lower : str
+        Names of the wires.
+    stiffness : float
+        Stiffness [N/m].
+    damping : float
+        Damping [N s/m].
+    """
+
+    position: float
+    upper: str
+    lower: str
+    stiffness: float
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
 class ModalBand:
     """Damping ratio of all modes in a frequency band, in place of their Rayleigh damping.
 
@@ -341,6 +364,8 @@ class Catenary:
         Masses on the wires, each with the damping of its wire.
     curves : tuple of TrackCurve
         Curves of the track.
+    springs : tuple of Spring
+        Springs between two wires.
     """
 
     wires: tuple[Wire, ...]
@@ -352,6 +377,7 @@ class Catenary:
     modal_damping: tuple[ModalBand, ...] = ()
     point_masses: tuple[PointMass, ...] = ()
     curves: tuple[TrackCurve, ...] = ()
+    springs: tuple[Spring, ...] = ()
 
     @property
     def contact_wires(self) -> tuple[Wire, ...]:

@@ -12,8 +12,16 @@ connects two sections.
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from pantocheck.model.catenary import Catenary, Kind, Wire
+
+PARTS = ("droppers", "steady_arms", "messenger_supports", "clamps", "springs", "point_masses")
+"""Parts of a catenary at single positions."""
+WIRE_NAMES = ("wire", "upper", "lower")
+"""Names of the wires that a part is attached to."""
+HEIGHTS = ("height", "contact_wire_height")
+"""Heights that a part prescribes."""
 
 Rise = Callable[[float], float]
 """Rise of the wires of a section above their heights without overlap, by position along the line [m]."""
@@ -44,48 +52,25 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
     def rename(wire: str) -> str:
         return f"{name} {wire}"
 
+    moved: dict[str, Any] = {
+        parts: tuple(_place_part(part, rename, start, rise) for part in getattr(catenary, parts)) for parts in PARTS
+    }
     return replace(
         catenary,
         wires=tuple(_place_wire(catenary, wire, rename(wire.name), start, rise) for wire in catenary.wires),
-        droppers=tuple(
-            replace(
-                dropper,
-                position=start + dropper.position,
-                upper=rename(dropper.upper),
-                lower=rename(dropper.lower),
-                contact_wire_height=None
-                if dropper.contact_wire_height is None
-                else dropper.contact_wire_height + rise(start + dropper.position),
-            )
-            for dropper in catenary.droppers
-        ),
-        steady_arms=tuple(
-            replace(
-                arm,
-                position=start + arm.position,
-                wire=rename(arm.wire),
-                height=arm.height + rise(start + arm.position),
-            )
-            for arm in catenary.steady_arms
-        ),
-        messenger_supports=tuple(
-            replace(
-                support,
-                position=start + support.position,
-                wire=rename(support.wire),
-                height=support.height + rise(start + support.position),
-            )
-            for support in catenary.messenger_supports
-        ),
         curves=tuple(replace(c, start=start + c.start, end=start + c.end) for c in catenary.curves),
-        point_masses=tuple(
-            replace(mass, position=start + mass.position, wire=rename(mass.wire)) for mass in catenary.point_masses
-        ),
-        clamps=tuple(
-            replace(clamp, position=start + clamp.position, upper=rename(clamp.upper), lower=rename(clamp.lower))
-            for clamp in catenary.clamps
-        ),
+        **moved,
     )
+
+
+def _place_part(part: Any, rename: Callable[[str], str], start: float, rise: Rise) -> Any:
+    """Part at one position in its place; a height that it prescribes rises."""
+    position = start + part.position
+    changes: dict[str, Any] = {key: rename(getattr(part, key)) for key in WIRE_NAMES if hasattr(part, key)}
+    for key in HEIGHTS:
+        if getattr(part, key, None) is not None:
+            changes[key] = getattr(part, key) + rise(position)
+    return replace(part, position=position, **changes)
 
 
 def _place_wire(catenary: Catenary, wire: Wire, name: str, start: float, rise: Rise) -> Wire:
@@ -140,13 +125,20 @@ def join_sections(sections: Sequence[Catenary]) -> Catenary:
     names = [wire.name for wire in wires]
     if len(set(names)) < len(names):
         raise ValueError("two wires of the line have the same name; give each section another name")
-    return replace(
-        first,
-        wires=wires,
-        droppers=tuple(dropper for section in sections for dropper in section.droppers),
-        steady_arms=tuple(arm for section in sections for arm in section.steady_arms),
-        messenger_supports=tuple(support for section in sections for support in section.messenger_supports),
-        clamps=tuple(clamp for section in sections for clamp in section.clamps),
-        point_masses=tuple(mass for section in sections for mass in section.point_masses),
-        curves=tuple(dict.fromkeys(curve for section in sections for curve in section.curves)),
-    )
+    joined: dict[str, Any] = {
+        parts: tuple(part for section in sections for part in getattr(section, parts)) for parts in PARTS
+    }
+    curves = tuple(dict.fromkeys(curve for section in sections for curve in section.curves))
+    return replace(first, wires=wires, curves=curves, **joined)
+
+
+def select_parts(catenary: Catenary, name: str) -> dict[str, list[int]]:
+    """Indices of the parts of a section by its name, which begins the names of its wires."""
+    return {
+        parts: [
+            index
+            for index, part in enumerate(getattr(catenary, parts))
+            if next(getattr(part, key) for key in WIRE_NAMES if hasattr(part, key)).startswith(f"{name} ")
+        ]
+        for parts in PARTS
+    }

@@ -9,9 +9,8 @@ from pantocheck.conformance.results.criterion_format import is_drift
 
 
 def list_graded(case: dict[str, Any]) -> list[dict[str, Any]]:
-    """Criteria that `criteria_verdict` counts; in results of older versions, those of drift are among them."""
-    criteria: list[dict[str, Any]] = case["criteria"]
-    return criteria if case.get("baseline") is None else [row for row in criteria if not is_drift(row)]
+    """Criteria that `criteria_verdict` counts: all but those of drift."""
+    return [row for row in case["criteria"] if not is_drift(row)]
 
 
 def check_baseline(case: dict[str, Any]) -> Iterator[str]:
@@ -28,9 +27,10 @@ def check_baseline(case: dict[str, Any]) -> Iterator[str]:
         One line per contradiction.
     """
     comparison = case.get("baseline")
-    if comparison is None:
-        return
     rows = [row for row in case["criteria"] if is_drift(row)]
+    if comparison is None:
+        yield from (f"{row['quantity']}: drift without a comparison with a baseline" for row in rows)
+        return
     for row in rows:
         if row["verdict"] not in ("fail", "skip"):
             yield f"{row['quantity']}: verdict '{row['verdict']}' among the values that drifted"

@@ -12,9 +12,6 @@ from pantocheck.conformance.results.results_format import CaseResult, Results
 REASONS = ("not known", "does not apply")
 """Beginnings of a basis that explains why a component of the uncertainty is missing."""
 
-STATED_BY_EVERY_RUN = ("scope", "renderer", "criteria_verdict")
-STATED_BY_EVERY_CASE = ("criteria_verdict", "limits_digest", "stated_limits_digest", "library")
-
 
 def find_gaps(results: Results) -> list[str]:
     """Missing parts of results, as sentences.
@@ -25,16 +22,15 @@ def find_gaps(results: Results) -> list[str]:
         Results of a document.
     """
     only_verified = bool(results.cases) and all(case.id in results.verification_only for case in results.cases)
-    keys = [key for key in STATED_BY_EVERY_RUN if not (key == "criteria_verdict" and only_verified)]
-    gaps = [f"{key} is missing" for key in keys if _is_absent(getattr(results, key))]
-    if results.suite.digest is None:
-        gaps.append("suite.digest is missing")
+    gaps = [] if results.scope else ["scope is missing"]
+    if results.criteria_verdict is None and not only_verified:
+        gaps.append("criteria_verdict is missing")
     return gaps + [f"{case.id}: {gap}" for case in results.cases for gap in _find_case_gaps(case)]
 
 
 def _find_case_gaps(case: CaseResult) -> Iterator[str]:
-    keys = [key for key in STATED_BY_EVERY_CASE if not (case.profile and key == "criteria_verdict")]
-    yield from (f"{key} is missing" for key in keys if _is_absent(getattr(case, key)))
+    if case.criteria_verdict is None and not case.profile:
+        yield "criteria_verdict is missing"
     yield from _find_record_gap(case)
     yield from _find_start_gap(case)
     if case.quantities:
@@ -90,7 +86,3 @@ def _find_uncertainty_gaps(case: CaseResult) -> Iterator[str]:
         known = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity, {})
         if known and row.value is not None and not row.is_drift and not row.components:
             yield f"{row.quantity} of pantograph {row.pantograph}: the components of its uncertainty are missing"
-
-
-def _is_absent(value: object) -> bool:
-    return value is None or value == []

@@ -1,4 +1,4 @@
-"""Check of cases from outside against the distribution or folder that holds them, and naming of plug-ins."""
+"""Check of cases from outside against the distribution or folder that holds them."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,6 @@ from pantocheck.conformance.authenticity.library_check import compare_with_case
 from pantocheck.conformance.cases.catalogue import CaseEntry, Catalogue
 from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.plug_in_quantity import select_own
 from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -33,28 +32,6 @@ def check_outside_cases(results: Results, catalogue: Catalogue) -> list[Document
         Folders of the user; installed distributions are searched for the ids of the results.
     """
     return [_check(case, case.origin, catalogue) for case in results.cases if case.origin is not None]
-
-
-def name_plug_ins(results: Results) -> list[DocumentCheck]:
-    """Name the plug-ins, whose values no check of a document proves, and quantities whose plug-in is not stated."""
-    stated = [] if results.system.plug_in is None else [results.system.plug_in]
-    stated += [plug_in for case in results.cases for plug_in in case.plug_ins or ()]
-    names = dict.fromkeys(f"{each.kind} '{each.name}' of {each.distribution} {each.version}" for each in stated)
-    text = "Values came from code of other distributions, which is not part of the suite."
-    checks = [DocumentCheck("open", text, tuple(names))] if names else []
-    if missing := [*_list_unnamed(results)]:
-        checks.append(DocumentCheck("contradicted", "Plug-ins that took part are not named.", tuple(missing)))
-    return checks
-
-
-def _list_unnamed(results: Results) -> Iterator[str]:
-    if (results.system.kind == "plugin") != (results.system.plug_in is not None):
-        yield f"system '{results.system.name}' of kind '{results.system.kind}'"
-    for case in results.cases:
-        named = {plug_in.name for plug_in in case.plug_ins or () if plug_in.kind == "quantity"}
-        used = {name for values in case.quantities.values() for name in values}
-        used |= {criterion.quantity for criterion in case.criteria}
-        yield from (f"{case.id}: quantity {name}" for name in select_own(sorted(used)) if name not in named)
 
 
 def _check(result: CaseResult, stated: OriginFacts, catalogue: Catalogue) -> DocumentCheck:

@@ -83,9 +83,7 @@ def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[Docume
 def _rerun(case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float) -> Rerun:
     with_study = add_damping_study(case) if stated.tables else case
     result = run_case(with_study, simulator, results.trust)
-    # Results of older versions have neither derived values nor a drawing.
-    absent = {key for key in ("derived", "line_shape") if not getattr(stated, key)}
-    keys = [key for key in (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS)) if key not in absent]
+    keys = (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS))
     return Rerun(stated.id, compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance))
 
 

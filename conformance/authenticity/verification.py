@@ -10,7 +10,6 @@ from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck
 from pantocheck.conformance.authenticity.certificate_reading import Certificate, read_certificate
 from pantocheck.conformance.authenticity.completeness import find_gaps
 from pantocheck.conformance.authenticity.library_check import check_library
-from pantocheck.conformance.authenticity.outside_check import name_plug_ins
 from pantocheck.conformance.authenticity.page_check import check_pages
 from pantocheck.conformance.authenticity.pdf_updates import check_updates
 from pantocheck.conformance.authenticity.recomputation import find_discrepancies
@@ -112,7 +111,6 @@ def verify_certificate(document: Certificate) -> Verification:
         *updates,
         *check_library(results),
         *_name_reference(results),
-        *name_plug_ins(results),
     )
     return Verification(results, (*_name_versions(document, checks), *checks))
 

@@ -196,8 +196,8 @@ class Case:
     def sourced_tables(self) -> dict[str, SourcedTable]:
         """All tables with a source, of the case, its line and its pantographs, by dotted name."""
         tables: dict[str, object] = {"case": self.file} | _tables("line", self.line)
-        tables |= {f"line.point_mass {i}": mass for i, mass in enumerate(self.line.point_mass, 1)}
-        tables["line.contact_wire.irregularity"] = self.line.contact_wire.irregularity
+        lists = {key: content for key, content in tables.items() if isinstance(content, tuple)}
+        tables |= {f"{key} {i}": part for key, content in lists.items() for i, part in enumerate(content, 1)}
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
             tables |= {f"pantograph {i}": use} | _tables(f"pantograph {i}", model)
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.cases.claimed_names import OUTSIDE_PREFIX, find_claims
+from pantocheck.conformance.cases.installed_cases import CasePackage, list_case_packages
 from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.plug_ins.plug_in import PlugIn, list_plug_ins
 
 MOST_FILES = 10_000
 """Largest number of TOML files in a folder of cases; more are a wrong folder, such as a home folder."""
@@ -64,9 +64,9 @@ def list_case_sources(pattern: str) -> list[CaseSource]:
     InputError
         An entry point names no folder, or its cases are refused as by `open_case_folder`.
     """
-    plug_ins = list_plug_ins("cases")
-    matching = (each for each in plug_ins if _may_match(pattern, id_prefix(each.distribution)))
-    return [_open_plug_in(plug_in, _locate_folder(plug_in)) for plug_in in matching]
+    packages = list_case_packages()
+    matching = (each for each in packages if _may_match(pattern, id_prefix(each.distribution)))
+    return [_open_package(package, _locate_folder(package)) for package in matching]
 
 
 def id_prefix(distribution: str) -> str:
@@ -80,18 +80,18 @@ def _may_match(pattern: str, prefix: str) -> bool:
 
 
 @cache
-def _open_plug_in(plug_in: PlugIn, folder: Path) -> CaseSource:
-    origin = CaseOrigin("distribution", plug_in.distribution, plug_in.version, "")
+def _open_package(package: CasePackage, folder: Path) -> CaseSource:
+    origin = CaseOrigin("distribution", package.distribution, package.version, "")
     try:
-        return _open_source(folder, origin, id_prefix(plug_in.distribution))
+        return _open_source(folder, origin, id_prefix(package.distribution))
     except InputError as error:
-        named = [InputError(f"{plug_in.text}: {each.where}", each.found, each.hint) for each in error.problems]
+        named = [InputError(f"{package.text}: {each.where}", each.found, each.hint) for each in error.problems]
         raise join_errors(named) from None
 
 
-def _locate_folder(plug_in: PlugIn) -> Path:
+def _locate_folder(package: CasePackage) -> Path:
     """Folder of a package, found without importing it: cases are data, and no code of the distribution is run."""
-    first, *further = plug_in.value.split(".")
+    first, *further = package.value.split(".")
     try:
         spec = find_spec(first)
     except (ImportError, ValueError):
@@ -100,8 +100,8 @@ def _locate_folder(plug_in: PlugIn) -> Path:
     folder = next((place for place in places if place.is_dir()), None)
     if folder is None:
         raise InputError(
-            plug_in.text,
-            f"{plug_in.value!r} is not a folder of an installed package",
+            package.text,
+            f"{package.value!r} is not a folder of an installed package",
             'Name the package that holds the case files, e.g. cases = "acme_lines.cases" .',
         )
     return folder

@@ -1,7 +1,6 @@
 """Converged values of a case: quantities on which two formulations of the same equations agree."""
 
 from functools import cache
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -101,11 +100,6 @@ class ConvergedFile(InputTable):
 def find_converged(case_id: str) -> ConvergedFile | None:
     """Converged values of a library case; None if there are none."""
     return _read_library().get(case_id)
-
-
-def converged_path(case_id: str) -> Path:
-    """File of the converged values of a library case."""
-    return library_folder() / FOLDER / f"{case_id}.toml"
 
 
 @cache

@@ -9,6 +9,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable, validation_problem
 from pantocheck.conformance.input_files.trust import LEVELS
 
@@ -16,10 +17,12 @@ from pantocheck.conformance.input_files.trust import LEVELS
 class ComponentDamping(InputTable):
     """Rayleigh damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K."""
 
-    mass_coefficient_1_s: Annotated[float, Field(ge=0, le=100, description="factor of the mass matrix [1/s]")] = 0.0
-    stiffness_coefficient_s: Annotated[float, Field(ge=0, le=10, description="factor of the stiffness matrix [s]")] = (
-        0.0
-    )
+    mass_coefficient_1_s: Annotated[
+        float, Field(ge=0, le=100, description="factor of the mass matrix [1/s]"), Feature("rayleigh_damping")
+    ] = 0.0
+    stiffness_coefficient_s: Annotated[
+        float, Field(ge=0, le=10, description="factor of the stiffness matrix [s]"), Feature("rayleigh_damping")
+    ] = 0.0
 
 
 class ModalDamping(InputTable):
@@ -50,6 +53,7 @@ class Damping(SourcedTable):
     modal: Annotated[
         tuple[ModalDamping, ...],
         Field(strict=False, max_length=1000, description="frequency bands with a damping ratio"),
+        Feature("modal_damping"),
     ] = ()
 
     @cross_check

@@ -10,9 +10,8 @@ from typing import Annotated, Self
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
-from pantocheck.conformance.cases.support_tables import MOST_SPANS, Encumbrance, Height, SupportTable
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature, always
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegative,
@@ -21,9 +20,16 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS
+from pantocheck.conformance.line.support_table import Encumbrance, Height, SupportTable
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]
-Stagger = Annotated[float, Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]")]
+Stagger = Annotated[
+    float,
+    Field(ge=-1, le=1, description="lateral offset at the supports, with alternating sign [m]"),
+    Feature("stagger"),
+]
 ScheduleName = Annotated[str, Field(min_length=1, max_length=100)]
 
 
@@ -123,6 +129,10 @@ class EqualSpans(SpanPositions, SourcedTable):
         """Dropper schedule of every span: the common one of the line."""
         return (common,) * self.spans
 
+    def schedule_key(self, number: int) -> str:
+        """Key of the dropper schedule of a span in the line file."""
+        return "droppers"
+
 
 SpanDroppers = Annotated[
     Annotated[ScheduleName, Tag("name")] | Annotated[DropperSchedule, Tag("DropperSchedule")],
@@ -137,6 +147,7 @@ class Span(InputTable):
     droppers: Annotated[
         SpanDroppers | None,
         Field(description="name of a table in geometry.schedule, or the schedule itself; default: that of [droppers]"),
+        Feature("listed_spans"),
     ] = None
 
 
@@ -167,15 +178,19 @@ class ListedSpans(SpanPositions, SourcedTable):
     span_list: Annotated[
         tuple[Span, ...],
         Field(strict=False, min_length=1, max_length=MOST_SPANS, description="spans in running order"),
+        Feature("listed_spans", always),
     ]
     schedule: Annotated[
         dict[ScheduleName, DropperSchedule],
         Field(default_factory=dict, max_length=MOST_SPANS, description="dropper schedules by name"),
+        Feature("listed_spans"),
     ]
     encumbrance_m: Encumbrance
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
-    contact_wire_height_m: Annotated[Height, Field(exclude_if=lambda height: height == 0.0)] = 0.0
+    contact_wire_height_m: Annotated[Height, Field(exclude_if=lambda height: height == 0.0), Feature("wire_height")] = (
+        0.0
+    )
     support: Annotated[
         tuple[SupportTable, ...],
         Field(
@@ -184,6 +199,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             description="supports and ends of the line with their own values",
             exclude_if=is_absent,
         ),
+        SINGLE_SUPPORTS,
     ] = ()
     gradient: Annotated[
         tuple[GradientTable, ...],
@@ -193,6 +209,7 @@ class ListedSpans(SpanPositions, SourcedTable):
             description="gradients of the contact wire; they add to the heights of the supports",
             exclude_if=is_absent,
         ),
+        Feature("gradients"),
     ] = ()
 
     @property
@@ -234,6 +251,15 @@ class ListedSpans(SpanPositions, SourcedTable):
             else span.droppers
             for span in self.span_list
         )  # fmt: skip
+
+    def schedule_key(self, number: int) -> str:
+        """Key of the dropper schedule of a span in the line file."""
+        droppers = self.span_list[number - 1].droppers
+        if droppers is None:
+            return "droppers"
+        return (
+            f"geometry.schedule.{droppers}" if isinstance(droppers, str) else f"geometry.span_list[{number}].droppers"
+        )
 
     @cross_check
     def _schedules_exist(self) -> Problems:

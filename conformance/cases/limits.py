@@ -7,7 +7,6 @@ from pydantic import AfterValidator, Field
 
 from pantocheck.conformance.cases.finding import PublishedFinding
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
@@ -18,18 +17,13 @@ from pantocheck.conformance.input_files.sourced_table import (
 )
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.quantities.plug_in_quantity import OWN
-from pantocheck.conformance.quantities.registry import QUANTITIES, find_quantity
+from pantocheck.conformance.quantities.registry import QUANTITIES
 
 FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]
 
 
 def _check_quantity(name: str) -> str:
-    try:
-        known = find_quantity(name)
-    except InputError as error:
-        raise validation_problem("", f"{error.where}: {error.found}", error.hint) from None
-    if known is None:
+    if name not in QUANTITIES:
         raise validation_problem("", f"there is no quantity {name[:80]!r}", suggest_names(name[:80], list(QUANTITIES)))
     return name
 
@@ -37,17 +31,14 @@ def _check_quantity(name: str) -> str:
 QuantityName = Annotated[
     str,
     AfterValidator(_check_quantity),
-    Field(
-        description="name of a quantity; that of another distribution begins with own_",
-        json_schema_extra={"anyOf": [{"enum": list(QUANTITIES)}, {"pattern": f"^{OWN}"}]},
-    ),
+    Field(description="name of a quantity", json_schema_extra={"enum": list(QUANTITIES)}),
 ]
-"""Name of a quantity of the suite or of another distribution."""
+"""Name of a quantity."""
 
 
 def is_per_pantograph(name: str) -> bool:
-    """Whether a known quantity has one value for each pantograph."""
-    return name not in QUANTITIES or QUANTITIES[name].scope == "pantograph"
+    """Whether a quantity has one value for each pantograph."""
+    return QUANTITIES[name].scope == "pantograph"
 
 
 class Limit(InputTable):

@@ -12,14 +12,12 @@ from functools import cached_property
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
 from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.cases.support_tables import (
-    MessengerSupportTable,
-    SteadyArmTable,
-    SupportTable,
-    overlay_changes,
-)
+from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.elements.messenger_support import MessengerSupportTable
+from pantocheck.conformance.line.elements.single_support import overlay_changes
+from pantocheck.conformance.line.elements.steady_arm import SteadyArmTable
+from pantocheck.conformance.line.support_table import SupportTable
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.force_law import AppliedForceLaw, ForceLaw
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
 from pantocheck.conformance.input_files.sourced_table import (
     InputTable,
     NonNegativeList,
@@ -31,13 +32,16 @@ class ChainTable(SourcedTable):
     names: Annotated[
         tuple[str, ...] | None,
         Field(strict=False, description="names of the masses, base to head, e.g. frame and head"),
+        NO_FEATURE,
     ] = None
     masses_kg: Annotated[PositiveList, Field(max_length=20, description="lumped masses, base to head [kg]")]
     stiffness_N_m: Annotated[NonNegativeList, Field(max_length=20, description="springs, base to head [N/m]")]
     damping_N_s_m: Annotated[NonNegativeList, Field(max_length=20, description="dampers, base to head [N s/m]")]
 
     uplift_force_on: Annotated[
-        int | str, Field(description="mass on which the uplift force acts: number from the base, from 1, or name")
+        int | str,
+        Field(description="mass on which the uplift force acts: number from the base, from 1, or name"),
+        Feature("chain"),
     ] = 1
     base_spring_unstretched: Annotated[
         Literal["working_height", "wire_height"],
@@ -46,6 +50,7 @@ class ChainTable(SourcedTable):
             "springs are without force; working_height: static height of the head under the uplift force; "
             "wire_height: nominal height of the contact wire"
         ),
+        Feature("base_spring_at_wire_height"),
     ] = "working_height"
 
     @cross_check
@@ -95,6 +100,7 @@ class MatricesTable(SourcedTable):
             "[1, 0, 0] for the lowest mass of a chain; default: the head, so that the static contact force at the "
             "working height equals the uplift force",
         ),
+        Feature("matrices"),
     ] = None
 
     @cross_check
@@ -141,6 +147,7 @@ class ModesTable(SourcedTable):
             description="displacement of the point of the uplift force in each mode [kg^-1/2]; default: the head, as "
             "for matrices",
         ),
+        Feature("modes"),
     ] = None
 
     @cross_check
@@ -156,9 +163,9 @@ class PantographFile(InputTable):
     """Content of a pantograph file: contact, one of the tables chain, matrices and modes, and its force law."""
 
     title: Annotated[str, Field(description="title in reports", max_length=200)]
-    chain: ChainTable | None = None
-    matrices: MatricesTable | None = None
-    modes: ModesTable | None = None
+    chain: Annotated[ChainTable | None, Feature("chain")] = None
+    matrices: Annotated[MatricesTable | None, Feature("matrices")] = None
+    modes: Annotated[ModesTable | None, Feature("modes")] = None
     contact: ContactTable
     force_law: Annotated[
         ForceLaw | None,
@@ -167,6 +174,7 @@ class PantographFile(InputTable):
             description="mean contact force or applied forces as a function of speed, for cases with "
             "force_from = 'law'; default: every case states a force",
         ),
+        NO_FEATURE,  # a program receives the forces of the law at the speed of the case
     ] = None
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
 

@@ -120,7 +120,7 @@ class ExclusionRule(InputTable):
 class Profile(InputTable):
     """Rules for the assessment of a record."""
 
-    schema_: Annotated[Literal["pantocheck.profile/2"], Field(alias="schema", description="version of the format")]
+    schema_: Annotated[Literal["pantocheck.profile/1"], Field(alias="schema", description="version of the format")]
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100, description="name of the profile")]
     title: Annotated[str, Field(max_length=200, description="title in reports")]
     note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None

@@ -23,13 +23,13 @@ from pantocheck.conformance.comparison.compared_run import (
     simulate_run,
 )
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.comparison.run_comparison_format import RunComparison
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.compared_runs import write_comparison
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
 from pantocheck.conformance.reports.words import name_pantograph
+from pantocheck.conformance.results.comparison_format import RunComparison
 from pantocheck.conformance.systems.system_choice import choose_system
 
 SYSTEMS = ("builtin", "record:", "command:")
@@ -117,10 +117,7 @@ def _list_tables(comparison: RunComparison) -> Iterator[RenderableType]:
             title = ", ".join(filter(None, (case.id, name_pantograph(owner.number))))
             table = build_table("quantity", *names, title=title, unbroken=("quantity",), right=names)
             for row in rows:
-                values = row.model_dump(mode="json")
-                table.add_row(
-                    escape_text(row.name), *(escape_text(format_compared(values, i)) for i in range(len(names)))
-                )
+                table.add_row(escape_text(row.name), *(escape_text(format_compared(row, i)) for i in range(len(names))))
             yield table
             for agreement in owner.agreements:
                 yield escape_text(

@@ -13,33 +13,20 @@ from pantocheck.conformance.cases.damping_file import DampingFile
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.case_completion import complete_case
 from pantocheck.conformance.command_line.command_output import CommandOutput
-from pantocheck.conformance.command_line.console import (
-    build_table,
-    escape_text,
-    format_number,
-    indent_text,
-    style_verdict,
-)
+from pantocheck.conformance.command_line.comparison_output import build_comparison_output, write_comparison_files
+from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
 from pantocheck.conformance.command_line.options import read_line
 from pantocheck.conformance.command_line.progress_display import follow_steps
-from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.comparison.comparison_limits import DROPS, read_comparison_limits
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison
-from pantocheck.conformance.comparison.drop_limits import read_drop_limits
 from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND
-from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
-from pantocheck.conformance.reports.comparison.drop_comparison_page import (
-    DROP_HEADLINES,
-    build_drop_comparison,
-    name_criterion,
-)
-from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
+from pantocheck.conformance.results.drop_comparison_format import DropComparison
 from pantocheck.conformance.step_log import StepSequence
 
 _LOGGER = logging.getLogger(__name__)
@@ -95,7 +82,7 @@ def drop_compare_command(
         element=element,
         time_step=time_step,
         release_duration=release_duration,
-        limits=None if limits is None else read_drop_limits(limits),
+        limits=read_comparison_limits(limits, DROPS),
     )
     drop = _choose_run(record, run)
     check_writable(out)
@@ -103,15 +90,8 @@ def drop_compare_command(
         steps = StepSequence(_LOGGER, drop.name, {"simulation": 0.95, "report": 0.05})
         comparison = compare_drop(drop, task, steps.begin("simulation"))
         steps.begin("report")
-        files = _write(comparison, out)
-    return CommandOutput(
-        style_verdict(comparison.verdict) + escape_text(f" {DROP_HEADLINES[comparison.verdict]}"),
-        comparison,
-        [*_describe_agreement(comparison)],
-        files=files,
-        remarks=remark_missing_formats(),
-        exit_code=EXIT_CODES[comparison.verdict],
-    )
+        files = write_comparison_files(comparison, out / "drop_comparison")
+    return build_comparison_output(comparison, _describe_agreement(comparison), files)
 
 
 def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
@@ -168,19 +148,12 @@ def _choose_run(path: Path, number: int) -> DropRecord:
     return records[number - 1]
 
 
-def _write(comparison: DropComparison, folder: Path) -> list[Path]:
-    """Write all files of a comparison; return their paths."""
-    files = [folder / "drop_comparison.json"]
-    write_model(files[0], comparison)
-    document = build_drop_comparison(comparison.model_dump(mode="json", by_alias=True))
-    files += write_document(document, folder / "drop_comparison")
-    return files
-
-
 def _describe_agreement(comparison: DropComparison) -> Iterator[RenderableType]:
-    """Agreement of velocity and acceleration below 20 Hz, criteria and warnings."""
+    """Drop, and agreement of velocity and acceleration below 20 Hz."""
     drop = comparison.drop
-    yield escape_text(f"{comparison.record}: {drop.mass_kg:g} kg on {drop.wire}, released at {drop.release_s:.4f} s")
+    yield escape_text(
+        f"{comparison.record.name}: {drop.mass_kg:g} kg on {drop.wire}, released at {drop.release_s:.4f} s"
+    )
     numbers = ("RMS ratio", "correlation")
     table = build_table("motion", "window", "place", "model", *numbers, title=f"{GRAPHIC_BAND.text}", right=numbers)
     for row in comparison.statistics:
@@ -196,15 +169,3 @@ def _describe_agreement(comparison: DropComparison) -> Iterator[RenderableType]:
                     format_number(model.correlation),
                 )
     yield table
-    if comparison.criteria:
-        criteria = build_table("criterion", "value", "limits", "verdict", right=("value",))
-        for item in comparison.criteria:
-            bounds = f"{format_number(item.lower)} to {format_number(item.upper)}"
-            name = name_criterion(item.model_dump(mode="json"))
-            criteria.add_row(name, format_number(item.value), bounds, style_verdict(item.verdict))
-        yield criteria
-    for item in comparison.criteria:
-        for remark in filter(None, (item.reason, *item.close)):
-            yield indent_text(f"{name_criterion(item.model_dump(mode='json'))}: {remark}")
-    for warning in comparison.warnings:
-        yield indent_text(warning, "warning: ")

@@ -11,11 +11,8 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Literal
 
-from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
-from pantocheck.conformance.plug_ins.plug_in import GROUPS, PlugIn, PlugInKind, list_plug_ins
-from pantocheck.conformance.quantities.plug_in_quantity import OWN
+from pantocheck.conformance.cases.installed_cases import list_case_packages
 from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
-from pantocheck.conformance.systems.system_choice import SYSTEM_KINDS
 from pantocheck.model.kernel_cache import find_kernel_cache
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -85,25 +82,8 @@ def _list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     yield "temporary folder", f"{folder}, {shutil.disk_usage(folder).free / 1e9:.1f} GB free"
     yield "text encoding", f"{sys.stdout.encoding}, files {sys.getfilesystemencoding()}"
     yield "browser for tests", next(filter(None, map(shutil.which, BROWSERS)), "none: tests of the pages are skipped")
-    yield from _list_plug_ins()
+    yield from ((package.text, package.value) for package in list_case_packages())
     yield "fonts", "those of matplotlib and Typst; fonts of the machine are not used"
-
-
-def _list_plug_ins() -> Iterator[tuple[str, str]]:
-    """Extensions of other distributions, with the reason why one is never used; no code of them is run."""
-    for kind in GROUPS:
-        for plug_in in list_plug_ins(kind):
-            fault = _find_fault(plug_in)
-            yield f"plug-in {plug_in.text}", f"{plug_in.value}{'; never used: ' + fault if fault else ''}"
-
-
-def _find_fault(plug_in: PlugIn) -> str:
-    """Reason why a plug-in is never used: its name is one of the suite."""
-    suffixes = {suffix[1:] for table_format in TABLE_FORMATS for suffix in table_format.suffixes}
-    reserved: dict[PlugInKind, set[str]] = {"reader": suffixes | {"toml", "json"}, "system": {*SYSTEM_KINDS}}
-    if plug_in.kind == "quantity" and not plug_in.name.startswith(OWN):
-        return f"its name does not begin with {OWN}"
-    return "the suite has this name" if plug_in.name in reserved.get(plug_in.kind, ()) else ""
 
 
 _THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

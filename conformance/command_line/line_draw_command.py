@@ -21,7 +21,7 @@ from pantocheck.conformance.input_files.atomic_writing import check_writable, wr
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drawing_marks import list_marks, list_point_masses
+from pantocheck.conformance.simulation.drawing_marks import list_labelled_marks, list_marks
 from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
 from pantocheck.model import discretise
 
@@ -65,7 +65,7 @@ def _build_line(name: str) -> LineDrawing:
     """Drawing of a line without a case, with the default mesh of cases."""
     file = read_model(Path(name), LineFile, "line")
     line = discretise(build_catenary(file), Discretisation().element_m)
-    return LineDrawing(line, file.title, file.geometry, list_point_masses(line.catenary), file.section_places)
+    return LineDrawing(line, file.title, file.geometry, list_labelled_marks(line.catenary), file.section_places)
 
 
 def _build_case(name: str, folders: list[Path] | None) -> LineDrawing:

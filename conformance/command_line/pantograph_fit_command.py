@@ -19,13 +19,13 @@ from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import MASS_COUNTS, FitTask, fit_chains
 from pantocheck.conformance.identification.pantograph_fit.fit_description import CHAIN_KEYS, name_parameter
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import PantographFit
 from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.interface.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats
+from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 
 def pantograph_fit_command(

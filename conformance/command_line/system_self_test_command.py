@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -16,13 +15,10 @@ from pantocheck.conformance.command_line.command_output import CommandOutput
 from pantocheck.conformance.command_line.console import build_table, escape_text, style_verdict
 from pantocheck.conformance.command_line.fitted_table import FittedTable
 from pantocheck.conformance.command_line.progress_display import follow_steps
-from pantocheck.conformance.input_files.atomic_writing import check_writable
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.formats.report_writers import write_report
 from pantocheck.conformance.self_test.bench import MutantResult, SelfTest, run_self_test
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
 from pantocheck.conformance.self_test.numerical_faults import FAULTS, NumericalResult, run_numerical_faults
-from pantocheck.conformance.self_test.self_test_page import build_self_test_page
 
 DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
 NUMERICAL_CASES = ("en50318-2018/ac-simple/320-twin",)
@@ -37,34 +33,28 @@ def system_self_test_command(
             autocompletion=complete_case,
         ),
     ] = None,
-    markdown: Annotated[Path | None, typer.Option(help="Markdown file to write the tables to.")] = None,
 ) -> CommandOutput:
     """Test the suite with faulty systems.
 
     The reference simulator itself must pass. A fault (mutant) is detected if the check that it should violate fails.
 
-    Example: pantocheck system self-test --markdown self-test.md
+    Example: pantocheck system self-test en50318-2002/250
     """
     cases = [selected for selected in select_cases(case or DEFAULT_CASES) if not selected.is_static]
     if not cases:
         raise InputError("case", "no case with a train is selected", "Select cases such as en50318-2002/250.")
-    if markdown is not None:
-        check_writable(markdown.parent)
     further = () if case else select_cases(NUMERICAL_CASES)
     with follow_steps("self-test", len((*FAULTS, *MUTANTS, *MILD, *cases))) as progress:
         numerical = run_numerical_faults(
             [*cases, *(extra for extra in further if not extra.is_static)], progress.begin_task
         )
         self_test = replace(run_self_test(cases, progress.begin_task), numerical=numerical)
-    if markdown is not None:
-        write_report(build_self_test_page(self_test), markdown)
     detected = sum(result.detected for result in self_test.severe)
     text = f" {detected} of {len(self_test.severe)} mutants detected by the expected check"
     return CommandOutput(
         style_verdict("pass" if self_test.passed else "fail") + Text(text),
         _list_detections(self_test),
         [*_describe(self_test)],
-        files=[] if markdown is None else [markdown],
         exit_code=0 if self_test.passed else 1,
     )
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from pantocheck.conformance.command_line.console import build_table, escape_text, format_number
 from pantocheck.conformance.command_line.fitted_table import FittedTable
-from pantocheck.conformance.quantities.registry import find_quantity
+from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.incomplete_uncertainty import mark_half_width
 
 MAIN_VALUES = (
@@ -40,19 +40,13 @@ def build_quantities_table(
             if isinstance(value, float):
                 text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
                 errors = [format_width(width if isinstance(width, float) else None, missing)] if uncertainty else []
-                table.add_row(escape_text(text), format_number(value), *errors, _find_unit(name))
+                table.add_row(escape_text(text), format_number(value), *errors, unit_of(name))
     return table
 
 
 def format_width(width: float | None, missing: Sequence[str]) -> str:
     """Half-width with two digits, marked if a component is missing; a dash for None."""
     return "-" if width is None else mark_half_width(width, format_number(width, 2), missing)
-
-
-def _find_unit(name: str) -> str:
-    """Unit of a quantity of the suite or of a plug-in; empty for a quantity that is not known here."""
-    quantity = find_quantity(name)
-    return "" if quantity is None else quantity.unit
 
 
 def list_names(values: NamedValues) -> tuple[str, ...]:

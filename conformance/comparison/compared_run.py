@@ -28,58 +28,41 @@ RESULTS_FILE = "results.json"
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """One run of a case or one record.
-
-    Parameters
-    ----------
-    kind : {'record', 'results', 'system'}
-        Origin: files of a record, results.json, or a run of a system.
-    name : str
-        Name of the record or of the system.
-    source : str
-        Kind and origin in words.
-    digest : str
-        SHA-256 of the files; empty for a simulation.
-    case : str
-        Id of the case; empty if a record states none.
-    speed_km_h : float or None
-        Speed of the train [km/h]; None if it is not known.
-    values, uncertainty : mapping of int to mapping of str to Value
-        Quantities and half-widths of their 95 % intervals, by pantograph (0: the line) and name.
-    signals : mapping of int to PantographSignals
-        Signals of the pantographs; empty for results.
-    traces : mapping of int to Traces
-        Thinned curves; empty unless the run was read from results.
-    supports : tuple of float
-        Positions of the supports [m]; empty if they are not known.
-    unknown_components : tuple of str
-        Components of the uncertainty that are not part of the half-widths.
-    reason : str
-        Reason why no pantograph has a quantity; empty if one has.
-    """
+    """One run of a case or one record."""
 
     kind: Literal["record", "results", "system"]
+    """Origin: files of a record, results.json, or a run of a system."""
     name: str
+    """Name of the record or of the system."""
     source: str
+    """Kind and origin in words."""
     digest: str
+    """SHA-256 of the files; empty for a simulation."""
     case: str
+    """Id of the case; empty if a record states none."""
     speed_km_h: float | None
+    """Speed of the train [km/h]; None if it is not known."""
     values: ValuesByOwner
+    """Quantities by pantograph (0: the line) and name."""
     uncertainty: ValuesByOwner
+    """Half-widths of their 95 % intervals."""
     signals: Mapping[int, PantographSignals] = field(default_factory=dict)
+    """Signals of the pantographs; empty for results."""
     traces: Mapping[int, Traces] = field(default_factory=dict)
+    """Thinned curves; empty unless the run was read from results."""
     supports: tuple[float, ...] = ()
+    """Positions of the supports [m]; empty if they are not known."""
     unknown_components: tuple[str, ...] = ()
+    """Components of the uncertainty that are not part of the half-widths."""
     reason: str = ""
+    """Reason why no pantograph has a quantity; empty if one has."""
 
 
 def read_record_run(path: Path) -> ComparedRun:
     """Read a record with its quantities.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read or is invalid.
+    Raises:
+        InputError: The record cannot be read or is invalid.
     """
     record = load_assessed_record(path, load_profile(RECORD_PROFILE), LineTable())
     prepared, header = record.prepared, record.header
@@ -102,10 +85,8 @@ def read_record_run(path: Path) -> ComparedRun:
 def read_results_runs(path: Path) -> list[ComparedRun]:
     """Read the cases of a results.json that have quantities; the path may be that of its folder.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or none of its cases has quantities.
+    Raises:
+        InputError: The file cannot be read, or none of its cases has quantities.
     """
     path = path / RESULTS_FILE if path.is_dir() else path
     results = read_results(path)
@@ -123,10 +104,8 @@ def simulate_run(case: Case, system: System) -> ComparedRun:
 def deliver_case(case: Case, system: System) -> Delivered:
     """Run a case on a system that must deliver data.
 
-    Raises
-    ------
-    InputError
-        The system does not run the case, or fails.
+    Raises:
+        InputError: The system does not run the case, or fails.
     """
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
@@ -137,10 +116,8 @@ def deliver_case(case: Case, system: System) -> Delivered:
 def describe_delivery(case: Case, system: System, delivered: Delivered) -> ComparedRun:
     """Quantities, uncertainty and signals of a delivery.
 
-    Raises
-    ------
-    InputError
-        The delivery does not belong to the case.
+    Raises:
+        InputError: The delivery does not belong to the case.
     """
     evaluation = CaseEvaluation(case, delivered)
     if evaluation.mismatch is not None:

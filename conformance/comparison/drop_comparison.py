@@ -2,22 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.comparison.drop_comparison_format import (
-    ComparedDrop,
-    ComparedModel,
-    ComparedPlace,
-    DropComparison,
-    DropCriterion,
-    WindowStatistics,
-)
-from pantocheck.conformance.comparison.drop_criteria import grade_limits
-from pantocheck.conformance.comparison.drop_limits import DropLimits, TimeWindow
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow
+from pantocheck.conformance.comparison.drop_criteria import grade_drop
 from pantocheck.conformance.comparison.drop_motion import DropMotion, DropSimulation, simulate_models
 from pantocheck.conformance.comparison.drop_statistics import compute_energies, compute_statistics, sample_curves
 from pantocheck.conformance.comparison.motion_bands import MOTION_BANDS, MotionBand
@@ -29,8 +20,15 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.clipping import find_clipping
 from pantocheck.conformance.mass_drops.drop_record import DropRecord
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
-from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
-from pantocheck.conformance.results.suite_part import Suite
+from pantocheck.conformance.results.comparison_format import ComparedSource, ComparisonCriterion
+from pantocheck.conformance.results.drop_comparison_format import (
+    ComparedDrop,
+    ComparedModel,
+    ComparedPlace,
+    DropComparison,
+    WindowStatistics,
+)
+from pantocheck.conformance.results.results_building import build_suite
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.step_log import ShareCallback, follow_part, ignore_progress
 from pantocheck.model import Catenary
@@ -44,54 +42,39 @@ MASS = "mass"
 
 @dataclass(frozen=True)
 class DampingChoice:
-    """Damping model of a comparison.
-
-    Parameters
-    ----------
-    source : str
-        Name of its file, or of the line.
-    damping : Damping
-        Damping; its tables replace those of the line.
-    """
+    """Damping model of a comparison."""
 
     source: str
+    """Name of its file, or of the line."""
     damping: Damping
+    """Damping; its tables replace those of the line."""
 
 
 @dataclass(frozen=True)
 class DropTask:
-    """Task of a comparison.
-
-    Parameters
-    ----------
-    line : LineFile
-        Line of the record.
-    models : mapping of str to DampingChoice
-        Damping models by name; the first one is graded.
-    windows : tuple of TimeWindow
-        Compared windows after the release [s].
-    element, time_step : float
-        Largest element length [m] and time step [s].
-    release_duration : float
-        Time in which the weight decreases linearly to zero [s].
-    limits : DropLimits or None
-        Limits of the user; None: the differences are shown and not graded.
-    """
+    """Task of a comparison."""
 
     line: LineFile
+    """Line of the record."""
     models: Mapping[str, DampingChoice]
+    """Damping models by name; the first one is graded."""
     windows: tuple[TimeWindow, ...]
+    """Compared windows after the release [s]."""
     element: float
+    """Largest element length [m]."""
     time_step: float
+    """Largest time step [s]."""
     release_duration: float
-    limits: DropLimits | None
+    """Time in which the weight decreases linearly to zero [s]."""
+    limits: tuple[ComparisonLimit, ...] = ()
+    """Limits of the user; without any, the differences are shown and not graded."""
 
     @property
     def settings(self) -> DropSimulation:
         """Settings of the simulations."""
         last = max(end for _, end in self.windows)
         # Sensors without a limit must not move the release: leaving one out could improve the verdict.
-        graded = self.limits.sensors if self.limits is not None else ()
+        graded = tuple(dict.fromkeys(sensor for limit in self.limits for sensor in limit.sensors or ()))
         return DropSimulation(self.element, self.time_step, self.release_duration, last, graded)
 
     def build_models(self) -> dict[str, Catenary]:
@@ -107,32 +90,23 @@ class DropTask:
 def compare_drop(record: DropRecord, task: DropTask, progress: ShareCallback = ignore_progress) -> DropComparison:
     """Compare a recorded drop with its simulation under each damping model.
 
-    Parameters
-    ----------
-    record : DropRecord
-        Record of one drop.
-    task : DropTask
-        Line, damping models, windows and limits.
-    progress : callable
-        Called from time to time with the completed share of the simulations, 0 to 1.
+    Args:
+        record: Record of one drop.
+        task: Line, damping models, windows and limits.
+        progress: Called from time to time with the completed share of the simulations, 0 to 1.
 
-    Returns
-    -------
-    DropComparison
+    Returns:
         Content of drop_comparison.json.
 
-    Raises
-    ------
-    InputError
-        The record is not one of a drop on this line, or ends before the first window does.
-    NoInitialState, NoEquilibrium, DidNotConverge
-        A simulation has no solution.
+    Raises:
+        InputError: The record is not one of a drop on this line, or ends before the first window does.
+        NoInitialState, NoEquilibrium, DidNotConverge: A simulation has no solution.
     """
     catenaries = task.build_models()
     drop = locate_drop(record, next(iter(catenaries.values())))
     _check_sensor_numbers(drop, task)
     # The refined simulation has twice the elements and twice the time steps: it takes as long as about four others.
-    share = 1.0 if task.limits is None else len(catenaries) / (len(catenaries) + 4)
+    share = 1.0 if not task.limits else len(catenaries) / (len(catenaries) + 4)
     motion = simulate_models(drop, catenaries, task.settings, follow_part(progress, 0.0, share))
     windows, bands = _find_windows(motion, record, task), _find_bands(motion, record)
     places = _list_places(drop)
@@ -141,12 +115,13 @@ def compare_drop(record: DropRecord, task: DropTask, progress: ShareCallback = i
     criteria = _grade(drop, task, motion, statistics, follow_part(progress, share, 1.0))
     verdict = worst_verdict(criterion.verdict for criterion in criteria)
     return DropComparison(
-        suite=Suite(version=version("pantocheck"), commit=find_suite_commit(), digest=suite_digest()),
-        line=task.line.title,
-        line_digest=json_digest(task.line.model_dump(mode="json")),
-        record=record.name,
-        record_source=record.source,
-        record_digest=f"sha256:{file_digest(Path(record.file))}" if record.file else None,
+        suite=build_suite(),
+        model=ComparedSource(name=task.line.title, digest=json_digest(task.line.model_dump(mode="json"))),
+        record=ComparedSource(
+            name=record.name,
+            source=record.source,
+            digest=f"sha256:{file_digest(Path(record.file))}" if record.file else None,
+        ),
         line_comparison=drop.line,
         verdict=_demote(verdict, drop),
         drop=_describe_drop(drop, task, motion),
@@ -195,15 +170,15 @@ def _find_bands(motion: DropMotion, record: DropRecord) -> tuple[MotionBand, ...
 
 def _check_sensor_numbers(drop: RecordedDrop, task: DropTask) -> None:
     """Refuse limits whose windows are not compared, and sensors with several vertical channels."""
-    if task.limits is None:
+    if not task.limits:
         return
-    if (unknown := task.limits.find_unknown_window(task.windows)) is not None:
-        number, window = unknown
-        raise InputError(
-            f"limits, key limit[{number}].window_s",
-            f"{list(window)} is not a compared window",
-            f"Add --window {window[0]:g}:{window[1]:g}.",
-        )
+    for number, limit in enumerate(task.limits, 1):
+        if (window := limit.window_s) is not None and window not in task.windows:
+            raise InputError(
+                f"limits, key limit[{number}].window_s",
+                f"{list(window)} is not a compared window",
+                f"Add --window {window[0]:g}:{window[1]:g}.",
+            )
     numbers = [channel.sensor for channel in drop.channels]
     repeated = [number for number in numbers if numbers.count(number) > 1]
     if repeated:
@@ -242,9 +217,9 @@ def _grade(
     motion: DropMotion,
     statistics: tuple[WindowStatistics, ...],
     progress: ShareCallback,
-) -> tuple[DropCriterion, ...]:
+) -> tuple[ComparisonCriterion, ...]:
     """Criteria of the limits; a refined simulation of the first model gives the error of the mesh and time step."""
-    if task.limits is None:
+    if not task.limits:
         return ()
     name, choice = next(iter(task.models.items()))
     fine_task = replace(task, models={name: choice}, element=task.element / 2, time_step=task.time_step / 2)
@@ -261,7 +236,7 @@ def _grade(
         }
         for rows in (statistics, compute_statistics(fine, places, windows, bands))
     )
-    return grade_limits(task.limits, computed, refined, _find_clipped(drop, motion, task.windows))
+    return grade_drop(task.limits, computed, refined, _find_clipped(drop, motion, task.windows))
 
 
 def _find_clipped(

@@ -1,15 +1,14 @@
 """Criteria of a drop comparison: agreement of the first model with the record, against the limits of the user."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from pantocheck.conformance.comparison.drop_comparison_format import DropCriterion, WindowStatistics
-from pantocheck.conformance.comparison.drop_limits import ComparedMotion, DropLimit, DropLimits, TimeWindow
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow, build_comparison_criterion
 from pantocheck.conformance.comparison.drop_statistics import is_buried
 from pantocheck.conformance.comparison.motion_bands import MotionBand
-from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
-from pantocheck.conformance.grading.verdicts import judge, margin
-from pantocheck.conformance.results.criterion_format import ComponentName
+from pantocheck.conformance.input_files.sourced_table import NO_SOURCE
+from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparisonCriterion, CriterionPlace
+from pantocheck.conformance.results.drop_comparison_format import WindowStatistics
 
 StatisticsKey = tuple[int, ComparedMotion, TimeWindow, MotionBand]
 """Sensor, motion, window and band of statistics."""
@@ -17,62 +16,49 @@ StatisticsKey = tuple[int, ComparedMotion, TimeWindow, MotionBand]
 GradedStatistics = Mapping[StatisticsKey, WindowStatistics]
 
 
-def grade_limits(
-    limits: DropLimits, computed: GradedStatistics, fine: GradedStatistics, clipped: frozenset[tuple[int, TimeWindow]]
-) -> tuple[DropCriterion, ...]:
+def grade_drop(
+    limits: Sequence[ComparisonLimit],
+    computed: GradedStatistics,
+    fine: GradedStatistics,
+    clipped: frozenset[tuple[int, TimeWindow]],
+) -> tuple[ComparisonCriterion, ...]:
     """Grade the first model at every sensor of every limit.
 
-    Parameters
-    ----------
-    limits : DropLimits
-        Limits of the user.
-    computed, fine : mapping
-        Statistics by sensor, motion, window and band; those with half the element length and time step.
-    clipped : frozenset of (int, TimeWindow)
-        Sensors and windows with clipped samples.
+    Args:
+        limits: Limits of the user.
+        computed: Statistics by sensor, motion, window and band.
+        fine: The same with half the element length and time step.
+        clipped: Sensors and windows with clipped samples.
 
-    Returns
-    -------
-    tuple of DropCriterion
+    Returns:
         One criterion per limit and sensor. It is skipped if the record does not have what it needs.
     """
-    return tuple(
-        _grade(limit, sensor, computed, fine, (sensor, limit.window_s) in clipped)
-        for limit in limits.limit
-        for sensor in limit.sensors
-    )
+    return tuple(_grade(limit, sensor, computed, fine, clipped) for limit in limits for sensor in limit.sensors or ())
 
 
 def _grade(
-    limit: DropLimit, sensor: int, computed: GradedStatistics, fine: GradedStatistics, clipped: bool
-) -> DropCriterion:
-    key = (sensor, limit.motion, limit.window_s, limit.band)
+    limit: ComparisonLimit,
+    sensor: int,
+    computed: GradedStatistics,
+    fine: GradedStatistics,
+    clipped: frozenset[tuple[int, TimeWindow]],
+) -> ComparisonCriterion:
+    window, band = limit.window_s or (0.0, 0.0), MotionBand(*limit.band_Hz or (0.0, 0.0))
+    key = (sensor, limit.motion or "acceleration", window, band)
     value, fine_value = (_read_value(limit, statistics.get(key)) for statistics in (computed, fine))
-    missing = _find_missing(key, computed, clipped)
-    verdict = "skip" if missing is not None or value is None else judge(value, limit.lower, limit.upper)
-    discretisation = None if value is None or fine_value is None else abs(value - fine_value)
-    measurement = 0.0 if missing is not None else _noise_error(computed[key])
-    components: dict[ComponentName, float] = {} if discretisation is None else {"discretisation": discretisation}
-    errors = ValueErrors(components=components, limit_uncertainty=measurement)
-    return DropCriterion(
-        quantity=limit.quantity,
-        motion=limit.motion,
-        sensor=sensor,
-        window_s=limit.window_s,
-        band_Hz=limit.band,
-        value=value,
-        lower=limit.lower,
-        upper=limit.upper,
-        verdict=verdict,
-        reason=missing if value is None or verdict != "fail" else _describe_distance(value, limit),
-        margin=None if value is None else margin(value, limit.lower, limit.upper),
-        discretisation=discretisation,
-        measurement=measurement,
-        close=tuple(near_limit_remarks(value, (limit.lower, limit.upper), "", errors)),
+    missing = next(_list_missing(key, computed, (sensor, window) in clipped), None)
+    return build_comparison_criterion(
+        limit,
+        CriterionPlace(sensor=sensor, motion=key[1], window_s=window, band_Hz=band),
+        value,
+        missing=missing,
+        discretisation=None if value is None or fine_value is None else abs(value - fine_value),
+        measurement=0.0 if missing is not None else _noise_error(computed[key]),
+        source=None if limit.source == NO_SOURCE else limit.source,
     )
 
 
-def _read_value(limit: DropLimit, statistics: WindowStatistics | None) -> float | None:
+def _read_value(limit: ComparisonLimit, statistics: WindowStatistics | None) -> float | None:
     """Quantity of the first model; None if the record does not have it."""
     if statistics is None:
         return None
@@ -91,16 +77,6 @@ def _noise_error(statistics: WindowStatistics) -> float:
         return 0.0
     (low, high), (start, end) = statistics.band_Hz, statistics.window_s
     return 2 * noise / clean / math.sqrt(2 * (high - low) * (end - start))
-
-
-def _describe_distance(value: float, limit: DropLimit) -> str:
-    distance = min(abs(value - bound) for bound in (limit.lower, limit.upper) if bound is not None)
-    return f"{distance:.3g} beyond the limit"
-
-
-def _find_missing(key: StatisticsKey, computed: GradedStatistics, clipped: bool) -> str | None:
-    """Data that a criterion needs and the record does not have; None if it is complete."""
-    return next(_list_missing(key, computed, clipped), None)
 
 
 def _list_missing(key: StatisticsKey, computed: GradedStatistics, clipped: bool) -> Iterator[str]:

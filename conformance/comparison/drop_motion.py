@@ -1,15 +1,15 @@
-"""Motion of a recorded drop and of its simulations on one time grid that begins before the release."""
+"""Motion of a recorded drop and of its simulations on one time grid, aligned by the best fit after the release."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
+from scipy.signal import resample_poly
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, TAPER_S, MotionBand, filter_motion, noise_rms
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop
-from pantocheck.conformance.comparison.release_alignment import ALIGNED_S, SEARCH_S, align_release, find_arrival
 from pantocheck.conformance.identification.release import MIN_REST, Release, find_release
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.drop_simulation import ORDER, decimate
@@ -27,73 +27,61 @@ LEAD_S = 2.0
 MARGIN_S = 1.0
 """Simulated time between the last window and the fade at the end [s]."""
 
+ALIGNED_S = 2.0
+"""Length of the motion after the release that is aligned [s]: damping and errors of frequency have no effect yet."""
+
+ARRIVAL = 0.01
+"""Motion over its largest value at which the first wave has arrived at a sensor [-]."""
+
+SEARCH_S = 1.0
+"""Largest distance between the estimated and the aligned release [s]: filters of slow records ring before it."""
+
+UPSAMPLING = 16
+"""Samples of the search per sample of the record; at 200 samples per second, a step is 0.3 ms."""
+
 
 @dataclass(frozen=True)
 class DropSimulation:
-    """Settings of the simulations of a recorded drop.
-
-    Parameters
-    ----------
-    element : float
-        Largest element length [m].
-    time_step : float
-        Largest time step [s]; the used one divides the sampling interval.
-    release_duration : float
-        Time in which the weight decreases linearly to zero [s].
-    last : float
-        End of the last compared window after the release [s].
-    aligned : tuple of int
-        Numbers of the sensors that find the release; empty: all sensors.
-    """
+    """Settings of the simulations of a recorded drop."""
 
     element: float
+    """Largest element length [m]."""
     time_step: float
+    """Largest time step [s]; the used one divides the sampling interval."""
     release_duration: float
+    """Time in which the weight decreases linearly to zero [s]."""
     last: float
+    """End of the last compared window after the release [s]."""
     aligned: tuple[int, ...] = ()
+    """Numbers of the sensors that find the release; empty: all sensors."""
 
 
 @dataclass(frozen=True)
 class DropMotion:
-    """Motion of a record and of models at the sensors, and of models at the mass; n samples, c sensors.
-
-    Parameters
-    ----------
-    rate : float
-        Sampling rate [Hz].
-    lead : int
-        Number of samples before the release.
-    quantity : str
-        Quantity of the samples: displacement, velocity or acceleration.
-    record : (n, c) ndarray
-        Record, from `lead` samples before the sample that precedes the release.
-    advance : float
-        Time from this sample to the release [s].
-    rest : (r, c) ndarray
-        Record at rest; empty if it is too short for an estimate of the noise.
-    models : mapping of str to (n, c + 1) ndarray
-        Simulated motion by model; the last column is that of the mass.
-    last_slack : mapping of str to float or None
-        Last time with a slack dropper by model [s].
-    release : Release
-        First motion of the record and its warnings.
-    release_time : float
-        Release in the time of the record [s].
-    correlation : float
-        Correlation of the record and the first model at this release [-].
-    """
+    """Motion of a record and of models at the sensors, and of models at the mass; n samples, c sensors."""
 
     rate: float
+    """Sampling rate [Hz]."""
     lead: int
+    """Number of samples before the release."""
     quantity: str
+    """Quantity of the samples: displacement, velocity or acceleration."""
     record: RealArray
+    """Record, from `lead` samples before the sample that precedes the release, (n, c)."""
     advance: float
+    """Time from this sample to the release [s]."""
     rest: RealArray
+    """Record at rest, (r, c); empty if it is too short for an estimate of the noise."""
     models: Mapping[str, RealArray]
+    """Simulated motion by model, (n, c + 1); the last column is that of the mass."""
     last_slack: Mapping[str, float | None]
+    """Last time with a slack dropper by model [s]."""
     release: Release
+    """First motion of the record and its warnings."""
     release_time: float
+    """Release in the time of the record [s]."""
     correlation: float
+    """Correlation of the record and the first model at this release [-]."""
 
     @property
     def time(self) -> RealArray:
@@ -129,28 +117,18 @@ def simulate_models(
 ) -> DropMotion:
     """Simulate a recorded drop under several models, and align the record with the first one.
 
-    Parameters
-    ----------
-    drop : RecordedDrop
-        The drop.
-    models : mapping of str to Catenary
-        Line with the damping of each model; the first one finds the release.
-    settings : DropSimulation
-        Settings of the simulations.
-    progress : callable
-        Called from time to time with the completed share of all simulations, 0 to 1.
+    Args:
+        drop: The drop.
+        models: Line with the damping of each model; the first one finds the release.
+        settings: Settings of the simulations.
+        progress: Called from time to time with the completed share of all simulations, 0 to 1.
 
-    Returns
-    -------
-    DropMotion
+    Returns:
         Motion on one time grid.
 
-    Raises
-    ------
-    InputError
-        The record has no release, or ends too early.
-    NoInitialState, NoEquilibrium, DidNotConverge
-        A simulation has no solution.
+    Raises:
+        InputError: The record has no release, or ends too early.
+        NoInitialState, NoEquilibrium, DidNotConverge: A simulation has no solution.
     """
     record = drop.record
     every = max(1, int(record.rate / WORKING_RATE_HZ))
@@ -229,3 +207,45 @@ def _simulate(
     )
     motion = decay.motion[:, :, ORDER[drop.record.quantity]].T
     return decimate(motion - motion[0], steps), decay.last_slack
+
+
+def find_arrival(simulated: RealArray, rate: float) -> float:
+    """Time from the release to the first motion of a sensor [s].
+
+    Args:
+        simulated: Simulated motion of c sensors from the release on, (m, c).
+        rate: Sampling rate [Hz].
+    """
+    model = simulated[: round(ALIGNED_S * rate)]
+    moving = np.any(np.abs(model) > ARRIVAL * np.abs(model).max(axis=0), axis=1)
+    return float(np.argmax(moving)) / rate
+
+
+def align_release(record: RealArray, simulated: RealArray, rate: float, estimate: float) -> tuple[float, float]:
+    """Find the release by the correlation of record and simulation at all sensors together.
+
+    Args:
+        record: Recorded motion of c sensors, low-pass filtered, (n, c).
+        simulated: Simulated motion from the release on, with the same filter, (m, c).
+        rate: Sampling rate of both [Hz].
+        estimate: Estimate of the release in the time of the record [s].
+
+    Returns:
+        Release in the time of the record [s], and correlation over `ALIGNED_S` from this release [-].
+    """
+    model = simulated[: round(ALIGNED_S * rate)]
+    fine = resample_poly(record, UPSAMPLING, 1, axis=0)
+    middle, reach = round(estimate * rate * UPSAMPLING), round(SEARCH_S * rate * UPSAMPLING)
+    last = fine.shape[0] - UPSAMPLING * (model.shape[0] - 1) - 1
+    starts = np.arange(max(middle - reach, 0), min(max(middle, 0) + reach, last) + 1)
+    values = np.array([_correlation(fine[s : s + UPSAMPLING * model.shape[0] : UPSAMPLING], model) for s in starts])
+    k = int(np.clip(np.argmax(values), 1, starts.size - 2))
+    below, middle_value, above = values[k - 1 : k + 2]
+    curvature = below - 2 * middle_value + above
+    offset = float(np.clip(0.5 * (below - above) / curvature, -1, 1)) if curvature < 0 else 0.0
+    return max(float(starts[k] + offset) / (rate * UPSAMPLING), 0.0), float(values[k])
+
+
+def _correlation(a: RealArray, b: RealArray) -> float:
+    norm = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
+    return float(np.sum(a * b)) / norm if norm > 0 else 0.0

@@ -5,16 +5,17 @@ from typing import get_args
 import numpy as np
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
-from pantocheck.conformance.comparison.drop_comparison_format import (
+from pantocheck.conformance.comparison.comparison_limits import TimeWindow
+from pantocheck.conformance.comparison.drop_motion import DropMotion
+from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand
+from pantocheck.conformance.identification.repeatability import round_curve
+from pantocheck.conformance.results.comparison_format import ComparedMotion
+from pantocheck.conformance.results.drop_comparison_format import (
     EnergyCurve,
     ModelAgreement,
     MotionCurve,
     WindowStatistics,
 )
-from pantocheck.conformance.comparison.drop_limits import ComparedMotion, TimeWindow
-from pantocheck.conformance.comparison.drop_motion import DropMotion
-from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand
-from pantocheck.conformance.identification.repeatability import round_curve
 
 LARGEST_NOISE = 0.3
 """Largest RMS of the noise over that of the record for which ratio and correlation are stated [-]."""
@@ -33,16 +34,14 @@ def compute_statistics(
 ) -> tuple[WindowStatistics, ...]:
     """Compute RMS, ratio and correlation of every place, motion, window and band.
 
-    Parameters
-    ----------
-    motion : DropMotion
-        Motion of record and models.
-    places : tuple of str
-        Names of the columns of the models; those of the record come first.
-    windows : tuple of TimeWindow
-        Windows after the release that the record contains [s].
-    bands : tuple of MotionBand
-        Frequency bands.
+    Args:
+        motion: Motion of record and models.
+        places: Names of the columns of the models; those of the record come first.
+        windows: Windows after the release that the record contains [s].
+        bands: Frequency bands.
+
+    Returns:
+        One row per place, motion, window and band.
     """
     rows = []
     for kind in COMPARED_MOTIONS:

@@ -22,16 +22,14 @@ def build_force_charts(
 ) -> tuple[Chart, ...]:
     """Charts of one pantograph.
 
-    Parameters
-    ----------
-    runs : mapping of str to ComparedRun
-        Runs by the name of their subject.
-    pairs : mapping of str to PairedForces
-        Forces of the subjects that were compared with the first one.
-    owner : int
-        Number of the pantograph.
-    supports : sequence of float
-        Positions of the supports [m].
+    Args:
+        runs: Runs by the name of their subject.
+        pairs: Forces of the subjects that were compared with the first one.
+        owner: Number of the pantograph.
+        supports: Positions of the supports [m].
+
+    Returns:
+        Charts that have a curve.
     """
     forces = [series for name, run in runs.items() if (series := _draw_force(name, run, owner)) is not None]
     spectra = [series for name, run in runs.items() if (series := _draw_spectrum(name, run, owner)) is not None]
@@ -71,7 +69,12 @@ def _build_span_charts(pairs: Mapping[str, PairedForces], supports: Sequence[flo
             "RMS of the difference in each span.",
             ("start of the span [m]", "RMS difference [N]"),
             [
-                Series(label=name, style="points", x=[span.start for span in found], y=[span.rms for span in found])
+                Series(
+                    label=name,
+                    style="points",
+                    x=[span.start_m for span in found],
+                    y=[span.rms_difference_N for span in found],
+                )
                 for name, found in spans.items()
                 if found
             ],

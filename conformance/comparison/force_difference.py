@@ -11,6 +11,7 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.paired_forces import PairedForces
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.results.comparison_format import BandAgreement, SpanAgreement
 
 SEGMENT_S = 1.0
 """Longest segment of the coherence [s]; it resolves 1 Hz."""
@@ -23,33 +24,15 @@ PARTS_OF_SPAN = 24
 
 
 @dataclass(frozen=True)
-class BandDifference:
-    """RMS values [N] of two forces and of their difference in the band ]low, high] [Hz]."""
-
-    low: float
-    high: float
-    first: float
-    second: float
-    difference: float
-
-
-@dataclass(frozen=True)
 class Coherence:
-    """Magnitude-squared coherence of two forces.
-
-    Parameters
-    ----------
-    frequency : (n,) ndarray
-        Frequencies [Hz].
-    value : (n,) ndarray
-        Coherence, 0 to 1.
-    segments : int
-        Number of segments without overlap.
-    """
+    """Magnitude-squared coherence of two forces."""
 
     frequency: RealArray
+    """Frequencies, (n,) [Hz]."""
     value: RealArray
+    """Coherence, 0 to 1, (n,)."""
     segments: int
+    """Number of segments without overlap."""
 
     @property
     def chance_level(self) -> float:
@@ -63,18 +46,6 @@ class Coherence:
 
 
 @dataclass(frozen=True)
-class SpanDifference:
-    """Mean and RMS of the difference, and standard deviations of both forces [N], in the span from start to end [m]."""
-
-    start: float
-    end: float
-    mean: float
-    rms: float
-    first_std: float
-    second_std: float
-
-
-@dataclass(frozen=True)
 class SpanProfile:
     """Difference over the place in the span, 0 to 1: mean and RMS over all spans [N]."""
 
@@ -83,20 +54,20 @@ class SpanProfile:
     rms: RealArray
 
 
-def compare_force_bands(forces: PairedForces) -> list[BandDifference]:
+def compare_force_bands(forces: PairedForces) -> tuple[BandAgreement, ...]:
     """RMS values of the bands that both forces contain; the bands of `band_rms`."""
     compared = []
     for low, high, _ in BANDS:
         if high > forces.highest_Hz:
             continue
         try:
-            values = [
+            first, other, difference = (
                 band_rms(force, forces.rate, low, high) for force in (forces.first, forces.second, forces.difference)
-            ]
+            )
         except QuantityUnavailable:
             continue
-        compared.append(BandDifference(low, high, *values))
-    return compared
+        compared.append(BandAgreement(low_Hz=low, high_Hz=high, first_N=first, other_N=other, difference_N=difference))
+    return tuple(compared)
 
 
 def coherence(forces: PairedForces) -> Coherence:
@@ -116,23 +87,23 @@ def correlation(forces: PairedForces) -> float:
     return float(deviations[0] @ deviations[1] / np.prod(norms)) if min(norms) > 0 else 0.0
 
 
-def compare_spans(forces: PairedForces, supports: Sequence[float]) -> list[SpanDifference]:
+def compare_spans(forces: PairedForces, supports: Sequence[float]) -> tuple[SpanAgreement, ...]:
     """Differences in each span between two supports [m] inside the compared stretch."""
     compared = []
     for start, end in _find_spans(forces, supports):
         inside = slice(*np.searchsorted(forces.position, [start, end]))
         difference = forces.difference[inside]
         compared.append(
-            SpanDifference(
-                start=start,
-                end=end,
-                mean=float(difference.mean()),
-                rms=float(np.sqrt(np.mean(difference**2))),
-                first_std=float(forces.first[inside].std()),
-                second_std=float(forces.second[inside].std()),
+            SpanAgreement(
+                start_m=start,
+                end_m=end,
+                mean_difference_N=float(difference.mean()),
+                rms_difference_N=float(np.sqrt(np.mean(difference**2))),
+                first_std_N=float(forces.first[inside].std()),
+                other_std_N=float(forces.second[inside].std()),
             )
         )
-    return compared
+    return tuple(compared)
 
 
 def span_profile(forces: PairedForces, supports: Sequence[float]) -> SpanProfile | None:

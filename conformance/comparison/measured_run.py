@@ -33,16 +33,12 @@ def compare_measured_run(
 ) -> MeasuredRun | None:
     """Lay a measured run over a simulated one.
 
-    Parameters
-    ----------
-    simulated, measured : AssessedRecord
-        Records of the same passage.
-    supports : sequence of float
-        Positions of the supports [m], for the statistics span by span.
+    Args:
+        simulated: Record of the simulated passage.
+        measured: Record of the same passage.
+        supports: Positions of the supports, for the statistics span by span [m].
 
-    Returns
-    -------
-    MeasuredRun or None
+    Returns:
         The measured run; None if one of the records is a summary.
     """
     if simulated.prepared is None or measured.prepared is None:

@@ -54,23 +54,15 @@ def filter_motion(
 ) -> RealArray:
     """Part of a motion in a frequency band, differentiated or integrated in time.
 
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Motion of c places, at rest at its start.
-    rate : float
-        Sampling rate [Hz].
-    derivatives : int
-        Number of derivatives in time; negative: integrals.
-    band : MotionBand
-        Frequency band.
-    advance : float
-        Time by which the motion is advanced, also a part of a sample [s].
+    Args:
+        samples: Motion of c places, at rest at its start, (n, c).
+        rate: Sampling rate [Hz].
+        derivatives: Number of derivatives in time; negative: integrals.
+        band: Frequency band.
+        advance: Time by which the motion is advanced, also a part of a sample [s].
 
-    Returns
-    -------
-    (n, c) ndarray
-        Motion in the band; the last `TAPER_S` is faded.
+    Returns:
+        Motion in the band, (n, c); the last `TAPER_S` is faded.
     """
     n = samples.shape[0]
     fade = min(round(TAPER_S * rate), n)
@@ -88,21 +80,14 @@ def filter_motion(
 def noise_rms(rest: RealArray, rate: float, derivatives: int, band: MotionBand) -> RealArray:
     """RMS of a motion at rest in a frequency band, by its spectral density.
 
-    Parameters
-    ----------
-    rest : (n, c) ndarray
-        Samples of c places at rest.
-    rate : float
-        Sampling rate [Hz].
-    derivatives : int
-        Number of derivatives in time; negative: integrals.
-    band : MotionBand
-        Frequency band.
+    Args:
+        rest: Samples of c places at rest, (n, c).
+        rate: Sampling rate [Hz].
+        derivatives: Number of derivatives in time; negative: integrals.
+        band: Frequency band.
 
-    Returns
-    -------
-    (c,) ndarray
-        RMS in the band.
+    Returns:
+        RMS in the band, (c,).
     """
     frequency, density = periodogram(rest, rate, "hann", detrend="linear", axis=0)
     inside = frequency > 0

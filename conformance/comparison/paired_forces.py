@@ -21,25 +21,17 @@ FEWEST_PAIRED_SAMPLES = 32
 
 @dataclass(frozen=True)
 class PairedForces:
-    """Contact forces of two runs, low-pass filtered alike, at the same positions.
-
-    Parameters
-    ----------
-    position : (n,) ndarray
-        Positions along the track [m].
-    first, second : (n,) ndarray
-        Contact forces [N].
-    rate : float
-        Sampling rate of the run whose samples are used [Hz].
-    highest_Hz : float
-        Frequency up to which both forces are known [Hz].
-    """
+    """Contact forces of two runs, low-pass filtered alike, at the same positions; n values each."""
 
     position: RealArray
+    """Positions along the track [m]."""
     first: RealArray
     second: RealArray
+    """Contact forces [N]."""
     rate: float
+    """Sampling rate of the run whose samples are used [Hz]."""
     highest_Hz: float
+    """Frequency up to which both forces are known [Hz]."""
 
     @property
     def difference(self) -> RealArray:
@@ -52,22 +44,16 @@ def pair_forces(
 ) -> PairedForces:
     """Interpolate the force with the lower sampling rate at the positions of the other.
 
-    Parameters
-    ----------
-    first, second : PantographSignals
-        Signals of the same pantograph in two runs.
-    cutoff_Hz : float
-        Highest cut-off of the filter of both forces [Hz].
+    Args:
+        first: Signals of a pantograph in one run.
+        second: Signals of the same pantograph in the other run.
+        cutoff_Hz: Highest cut-off of the filter of both forces [Hz].
 
-    Returns
-    -------
-    PairedForces
+    Returns:
         Forces over the stretch that belongs to both analysis sections.
 
-    Raises
-    ------
-    SectionNotCovered
-        The analysis sections have no common stretch of sufficient length.
+    Raises:
+        SectionNotCovered: The analysis sections have no common stretch of sufficient length.
     """
     highest = min(first.highest_frequency, second.highest_frequency, cutoff_Hz)
     finer, coarser = (first, second) if first.force.rate >= second.force.rate else (second, first)

@@ -13,33 +13,21 @@ from pantocheck.model import Catenary
 
 @dataclass(frozen=True)
 class RecordedDrop:
-    """Record of a drop whose line is that of a model.
-
-    Parameters
-    ----------
-    record : DropRecord
-        The record.
-    columns : tuple of int
-        Indices of the vertical channels.
-    mass : float
-        Dropped mass [kg].
-    wire : str
-        Wire with the mass, as in the record.
-    position : float
-        Position of the mass [m].
-    line : LineComparison
-        Line of the record beside the line of the model.
-    places : tuple of (str, float)
-        Wire of the model and position of each vertical channel, then of the mass [-, m].
-    """
+    """Record of a drop whose line is that of a model."""
 
     record: DropRecord
     columns: tuple[int, ...]
+    """Indices of the vertical channels."""
     mass: float
+    """Dropped mass [kg]."""
     wire: str
+    """Wire with the mass, as in the record."""
     position: float
+    """Position of the mass [m]."""
     line: LineComparison
+    """Line of the record beside the line of the model."""
     places: tuple[tuple[str, float], ...]
+    """Wire of the model and position of each vertical channel, then of the mass [-, m]."""
 
     @property
     def channels(self) -> tuple[DropChannel, ...]:
@@ -50,23 +38,16 @@ class RecordedDrop:
 def locate_drop(record: DropRecord, catenary: Catenary) -> RecordedDrop:
     """Find mass and sensors of a record on a line.
 
-    Parameters
-    ----------
-    record : DropRecord
-        The record.
-    catenary : Catenary
-        Line of the model.
+    Args:
+        record: The record.
+        catenary: Line of the model.
 
-    Returns
-    -------
-    RecordedDrop
+    Returns:
         Drop on this line.
 
-    Raises
-    ------
-    InputError
-        Mass, wire or position is missing or not on the line, no channel is vertical, or the line of the record is
-        another one.
+    Raises:
+        InputError: Mass, wire or position is missing or not on the line, no channel is vertical, or the line of the
+            record is another one.
     """
     where, drop = f"record '{record.source}'", record.drop
     columns = record.along("z")

@@ -8,28 +8,28 @@ import numpy as np
 from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.comparison.response_comparison_format import (
-    BandDeviation,
-    ComparedResponse,
-    HeadResponse,
-    ResponseComparison,
-    ResponseCriterion,
-)
-from pantocheck.conformance.comparison.response_criteria import grade_response_limits
+from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_deviation import (
-    RESPONSE_BANDS,
     BandStatistics,
     ResponseBand,
+    grade_responses,
     response_deviation,
     summarise_band,
 )
-from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS, ResponseForm
-from pantocheck.conformance.comparison.response_limits import ResponseLimits
 from pantocheck.conformance.comparison.response_record import ResponseRecord
+from pantocheck.conformance.comparison.response_sidecar import RESPONSE_FORMS, ResponseForm
 from pantocheck.conformance.consistency.receptance import head_receptance
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.verdicts import worst_verdict
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.comparison_format import (
+    BandDeviation,
+    ComparedResponse,
+    ComparedSource,
+    ComparisonCriterion,
+    HeadResponse,
+    ResponseComparison,
+)
 from pantocheck.conformance.results.results_building import build_suite
 
 LARGEST_MODULUS_RATIO = 5.0
@@ -43,28 +43,20 @@ MODEL_CURVE_POINTS = 400
 
 
 def compare_responses(
-    records: Sequence[ResponseRecord], pantograph: PantographFile, limits: ResponseLimits | None
+    records: Sequence[ResponseRecord], pantograph: PantographFile, limits: Sequence[ComparisonLimit] = ()
 ) -> ResponseComparison:
     """Compare a pantograph with measured responses.
 
-    Parameters
-    ----------
-    records : sequence of ResponseRecord
-        Measured responses, from `read_response`; at least one.
-    pantograph : PantographFile
-        Content of the pantograph file.
-    limits : ResponseLimits or None
-        Limits of the user; None: the deviations are not graded.
+    Args:
+        records: Measured responses, from `read_response`; at least one.
+        pantograph: Content of the pantograph file.
+        limits: Limits of the user; without any, the deviations are not graded.
 
-    Returns
-    -------
-    ResponseComparison
+    Returns:
         Content of response_comparison.json.
 
-    Raises
-    ------
-    InputError
-        A record occurs twice, or is evidently in another unit.
+    Raises:
+        InputError: A record occurs twice, or is evidently in another unit.
     """
     _refuse_repeated_records(records)
     deviations = [_deviate(record, pantograph) for record in records]
@@ -72,15 +64,14 @@ def compare_responses(
         {band: summarise_band(record, deviation, band) for band in RESPONSE_BANDS}
         for record, deviation in zip(records, deviations, strict=True)
     ]
-    criteria = () if limits is None else grade_response_limits(limits, list(zip(records, bands, strict=True)))
+    criteria = grade_responses(limits, list(zip(records, bands, strict=True)))
     responses = tuple(
         _describe_response(record, deviation, statistics, pantograph)
         for record, deviation, statistics in zip(records, deviations, bands, strict=True)
     )
     return ResponseComparison(
         suite=build_suite(),
-        pantograph=pantograph.title,
-        pantograph_digest=json_digest(pantograph.model_dump(mode="json")),
+        model=ComparedSource(name=pantograph.title, digest=json_digest(pantograph.model_dump(mode="json"))),
         verdict=worst_verdict(criterion.verdict for criterion in criteria),
         responses=responses,
         criteria=criteria,
@@ -189,9 +180,9 @@ def _describe_band(band: ResponseBand, statistics: BandStatistics) -> BandDeviat
     )
 
 
-def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[ResponseCriterion]) -> Iterator[str]:
+def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[ComparisonCriterion]) -> Iterator[str]:
     """Caveats: informative responses, missing uncertainty and rows, responses without a limit."""
-    graded = {criterion.response for criterion in criteria}
+    graded = {criterion.where.record for criterion in criteria}
     for response in responses:
         if not response.is_graded:
             yield (

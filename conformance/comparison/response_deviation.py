@@ -1,4 +1,4 @@
-"""Deviation of a modelled frequency response from a measured one, by frequency band.
+"""Deviation of a modelled frequency response from a measured one, by frequency band, and its criteria.
 
 The deviation at a frequency is e = ln(D_model / D_measured), with the dynamic stiffness D. Its real part is the
 relative deviation of the modulus, its imaginary part that of the phase in radians; |e| joins both. The logarithm gives
@@ -7,63 +7,44 @@ mean over a band weighs each frequency by its share of the logarithmic frequency
 has no effect.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, RealArray
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, build_comparison_criterion
 from pantocheck.conformance.comparison.response_record import ResponseRecord, ResponseUncertainty
 from pantocheck.conformance.input_files.table_rows import name_rows
+from pantocheck.conformance.results.comparison_format import ComparisonCriterion, CriterionPlace, ResponseQuantity
 
 ResponseBand = tuple[float, float]
-
-RESPONSE_BANDS: tuple[ResponseBand, ...] = ((0.5, 5.0), (5.0, 20.0), (20.0, 50.0))
-"""Frequency bands [Hz]: the frame on its springs, the head, and the bending of the head and its strips."""
 
 LARGEST_FREQUENCY_RATIO = 1.2
 """Largest ratio of neighbouring frequencies in a complete band: the half-power width of a mode with a damping ratio of
 0.1, which would be missed with fewer rows."""
 
-ResponseQuantity = Literal[
-    "modulus_deviation_pct",
-    "phase_deviation_deg",
-    "complex_deviation_pct",
-    "largest_modulus_deviation_pct",
-    "largest_phase_deviation_deg",
-]
-"""RMS deviation over a band, or the largest one."""
-
-RESPONSE_QUANTITIES: tuple[ResponseQuantity, ...] = get_args(ResponseQuantity)
-
 
 @dataclass(frozen=True)
 class BandStatistics:
-    """Deviations in one band.
-
-    Parameters
-    ----------
-    rows : int
-        Number of measured values in the band.
-    values : mapping of ResponseQuantity to float
-        Deviations; empty without a measured value.
-    uncertainty : mapping of ResponseQuantity to float
-        Half-widths of their 95 % intervals by the measurement; empty if it states none.
-    largest_at : tuple of float or None
-        Frequencies of the largest deviation of modulus and phase [Hz].
-    beyond_uncertainty : float or None
-        Share of deviations larger than the uncertainty of the measurement [-]; 0.05 with noise alone.
-    missing : str or None
-        Data that a complete band needs and the record does not have.
-    """
+    """Deviations in one band."""
 
     rows: int
+    """Number of measured values in the band."""
     values: Mapping[ResponseQuantity, float]
+    """Deviations; empty without a measured value."""
     uncertainty: Mapping[ResponseQuantity, float]
+    """Half-widths of their 95 % intervals by the measurement; empty if it states none."""
     largest_at: tuple[float, float] | None
+    """Frequencies of the largest deviation of modulus and phase [Hz]."""
     beyond_uncertainty: float | None
+    """Share of deviations larger than the uncertainty of the measurement [-]; 0.05 with noise alone."""
     missing: str | None
+    """Data that a complete band needs and the record does not have."""
+
+
+GradedResponse = tuple[ResponseRecord, Mapping[ResponseBand, BandStatistics]]
+"""Record, and its deviations by band."""
 
 
 def response_deviation(model: ComplexArray, measured: ComplexArray) -> ComplexArray:
@@ -77,18 +58,12 @@ def response_deviation(model: ComplexArray, measured: ComplexArray) -> ComplexAr
 def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: ResponseBand) -> BandStatistics:
     """Summarise the deviations in a band.
 
-    Parameters
-    ----------
-    record : ResponseRecord
-        Measured response.
-    deviation : (n,) ndarray
-        Deviation of each row, from `response_deviation`; NaN: no measured value.
-    band : ResponseBand
-        Edges of the band [Hz], both included.
+    Args:
+        record: Measured response.
+        deviation: Deviation of each row, from `response_deviation`, (n,); NaN: no measured value.
+        band: Edges of the band, both included [Hz].
 
-    Returns
-    -------
-    BandStatistics
+    Returns:
         Deviations, their uncertainty, and missing data.
     """
     inside = (record.frequency >= band[0]) & (record.frequency <= band[1])
@@ -153,3 +128,48 @@ def _find_missing_data(
             f"{LARGEST_FREQUENCY_RATIO:g}"
         )
     return None
+
+
+def grade_responses(
+    limits: Sequence[ComparisonLimit], responses: Sequence[GradedResponse]
+) -> tuple[ComparisonCriterion, ...]:
+    """Grade the responses at the centre of the head by every limit.
+
+    Args:
+        limits: Limits of the user.
+        responses: Records with their deviations.
+
+    Returns:
+        One criterion per limit and response; one that is skipped for each load level or height without a response.
+    """
+    at_head = [response for response in responses if response[0].sidecar.is_at_head]
+    return tuple(criterion for limit in limits for criterion in _grade_limit(limit, at_head))
+
+
+def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) -> Iterator[ComparisonCriterion]:
+    band = limit.band_Hz or (0.0, 0.0)
+    for force in limit.static_forces_N or ():
+        loaded = [response for response in responses if response[0].sidecar.static_force_N == force]
+        for height in limit.heights_m or (None,):
+            found = [item for item in loaded if height is None or item[0].sidecar.height_m == height]
+            if not found:
+                place = "" if height is None else f" at {height:g} m"
+                yield build_comparison_criterion(
+                    limit,
+                    CriterionPlace(static_force_N=force, height_m=height, band_Hz=band),
+                    None,
+                    missing=f"no response at the centre of the head under {force:g} N{place}",
+                    source=limit.source,
+                )
+            for record, bands in found:
+                statistics, measured_at = bands[band], record.sidecar.height_m
+                yield build_comparison_criterion(
+                    limit,
+                    CriterionPlace(record=record.source, static_force_N=force, height_m=measured_at, band_Hz=band),
+                    next((value for name, value in statistics.values.items() if name == limit.quantity), None),
+                    missing=statistics.missing,
+                    measurement=next(
+                        (width for name, width in statistics.uncertainty.items() if name == limit.quantity), None
+                    ),
+                    source=limit.source,
+                )

@@ -7,13 +7,20 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealArray
-from pantocheck.conformance.comparison.response_columns import ResponseColumns, read_response_columns
-from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS
-from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
+from pantocheck.conformance.comparison.response_sidecar import (
+    RESPONSE_FORMS,
+    UNCERTAINTY_COLUMNS,
+    ResponseSidecar,
+    list_response_columns,
+)
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 from pantocheck.conformance.input_files.table_rows import name_rows
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.records.record_reading import locate_table, record_digest
+from pantocheck.conformance.records.table_sidecar import read_named_columns
+
+LARGEST_RESPONSE_TABLE = 200_000
+"""Largest number of values in a table: 50 Hz in steps of 2 mHz with seven columns."""
 
 LEAST_PHASE_SINE = -0.02
 """Mean sine of the phase of the dynamic stiffness below which the signs are refused: a phase error of one degree."""
@@ -21,15 +28,7 @@ LEAST_PHASE_SINE = -0.02
 
 @dataclass(frozen=True)
 class ResponseUncertainty:
-    """Half-widths of the 95 % intervals of a response, row by row.
-
-    Parameters
-    ----------
-    modulus : (n,) ndarray
-        Relative half-width of the modulus [-].
-    phase : (n,) ndarray
-        Half-width of the phase [rad].
-    """
+    """Half-widths of the 95 % intervals of a response, row by row: relative modulus [-], phase [rad]; (n,) each."""
 
     modulus: RealArray
     phase: RealArray
@@ -37,70 +36,55 @@ class ResponseUncertainty:
 
 @dataclass(frozen=True)
 class ResponseRecord:
-    """Frequency response of a head, by increasing frequency; NaN marks a missing value.
-
-    Parameters
-    ----------
-    source : str
-        Name of the table.
-    digest : str
-        SHA-256 of sidecar and table.
-    sidecar : ResponseSidecar
-        Sidecar of the table.
-    row : (n,) ndarray of int
-        Number of each row below the head line, from 1.
-    frequency : (n,) ndarray
-        Frequencies [Hz].
-    stiffness : (n,) ndarray
-        Dynamic stiffness, converted from the measured kind [N/m].
-    uncertainty : ResponseUncertainty or None
-        Its uncertainty, the same for every kind; None: not stated.
-    """
+    """Frequency response of a head, by increasing frequency; NaN marks a missing value."""
 
     source: str
+    """Name of the table."""
     digest: str
+    """SHA-256 of sidecar and table."""
     sidecar: ResponseSidecar
     row: IntegerArray
+    """Number of each row below the head line, from 1, (n,)."""
     frequency: RealArray
+    """Frequencies, (n,) [Hz]."""
     stiffness: ComplexArray
+    """Dynamic stiffness, converted from the measured kind, (n,) [N/m]."""
     uncertainty: ResponseUncertainty | None
+    """Its uncertainty, the same for every kind; None: not stated."""
 
 
 def read_response(path: Path) -> ResponseRecord:
     """Read a response record.
 
-    Parameters
-    ----------
-    path : Path
-        Table, or its sidecar; both have the same stem.
+    Args:
+        path: Table, or its sidecar; both have the same stem.
 
-    Returns
-    -------
-    ResponseRecord
+    Returns:
         The record.
 
-    Raises
-    ------
-    InputError
-        A file is missing or damaged; a column is unknown, missing or repeated; the number of rows is not the stated
-        one; a frequency is missing, repeated or not positive, a modulus is not positive, or a value is infinite; force
-        and motion evidently have other signs.
+    Raises:
+        InputError: A file is missing or damaged; a column is unknown, missing or repeated; the number of rows is not
+            the stated one; a frequency is missing, repeated or not positive, a modulus is not positive, or a value is
+            infinite; force and motion evidently have other signs.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, ResponseSidecar, "sidecar")
     table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
-    columns = read_response_columns(table, sidecar)
     where = f"record '{table.name}'"
+    columns = _read_columns(table, sidecar)
+    if "frequency_Hz" not in columns:
+        raise InputError(where, "has no column frequency_Hz", "Store frequency_Hz beside the response.")
+    unsorted, response = columns["frequency_Hz"], _join_complex(columns, RESPONSE_FORMS[sidecar.kind].unit, where)
     if problems := [
-        *_find_row_count_problem(where, columns, sidecar),
-        *_find_frequency_problems(where, columns.frequency),
-        *_find_value_problems(where, columns),
+        *_find_row_count_problem(where, unsorted.size, sidecar),
+        *_find_frequency_problems(where, unsorted),
+        *_find_value_problems(where, response, columns),
     ]:
         raise join_errors(problems)
-    order = np.argsort(columns.frequency, kind="stable")
-    frequency = columns.frequency[order]
+    order = np.argsort(unsorted, kind="stable")
+    frequency = unsorted[order]
     sign = 1.0 if sidecar.force_and_motion == "same_direction" else -1.0
-    stiffness = RESPONSE_FORMS[sidecar.kind].to_stiffness(sign * columns.response[order], frequency)
+    stiffness = RESPONSE_FORMS[sidecar.kind].to_stiffness(sign * (sidecar.scale * response)[order], frequency)
     _refuse_other_signs(where, stiffness)
     return ResponseRecord(
         table.name,
@@ -113,15 +97,46 @@ def read_response(path: Path) -> ResponseRecord:
     )
 
 
+def _read_columns(table: Path, sidecar: ResponseSidecar) -> dict[str, RealArray]:
+    """Finite or missing values of the columns, by their name in SI units."""
+    known = list_response_columns(sidecar.kind)
+    columns = read_named_columns(table, sidecar, known, known, LARGEST_RESPONSE_TABLE)
+    for values, place in columns.values():
+        if (infinite := np.flatnonzero(np.isinf(values))).size:
+            raise InputError(f"{place}, {name_rows(infinite + 1)}", "the value is infinite", "Write nan for no value.")
+    return {name: column.values for name, column in columns.items()}
+
+
+def _join_complex(columns: dict[str, RealArray], unit: str, where: str) -> ComplexArray:
+    """Response from modulus and phase, or from real and imaginary part."""
+    polar, cartesian = {f"modulus_{unit}", "phase_deg"}, {f"real_{unit}", f"imaginary_{unit}"}
+    given = columns.keys() & (polar | cartesian)
+    if given not in (polar, cartesian):
+        raise InputError(
+            where,
+            f"has {' and '.join(sorted(given)) or 'no response'}",
+            f"Give modulus_{unit} and phase_deg, or real_{unit} and imaginary_{unit}.",
+        )
+    if given == cartesian:
+        return np.asarray(columns[f"real_{unit}"] + 1j * columns[f"imaginary_{unit}"])
+    modulus = columns[f"modulus_{unit}"]
+    if (negative := np.flatnonzero(modulus < 0)).size:
+        raise InputError(
+            where,
+            f"the modulus is negative in row {negative[0] + 1}",
+            "Give a modulus above 0; the phase has the sign.",
+        )
+    return np.asarray(modulus * np.exp(1j * np.radians(columns["phase_deg"])))
+
+
 def _choose_uncertainty(
-    columns: ResponseColumns, sidecar: ResponseSidecar, order: IntegerArray
+    columns: dict[str, RealArray], sidecar: ResponseSidecar, order: IntegerArray
 ) -> ResponseUncertainty | None:
     """Uncertainty of the rows of the table, else that of the sidecar."""
     modulus, phase = (
-        values[order] if values is not None else None if stated is None else np.full(order.size, stated)
-        for values, stated in (
-            (columns.modulus_uncertainty_pct, sidecar.modulus_uncertainty_pct),
-            (columns.phase_uncertainty_deg, sidecar.phase_uncertainty_deg),
+        columns[name][order] if name in columns else None if stated is None else np.full(order.size, stated)
+        for name, stated in zip(
+            UNCERTAINTY_COLUMNS, (sidecar.modulus_uncertainty_pct, sidecar.phase_uncertainty_deg), strict=True
         )
     )
     if modulus is None or phase is None:
@@ -129,8 +144,8 @@ def _choose_uncertainty(
     return ResponseUncertainty(modulus / 100, np.radians(phase))
 
 
-def _find_row_count_problem(where: str, columns: ResponseColumns, sidecar: ResponseSidecar) -> Iterator[InputError]:
-    if (rows := columns.frequency.size) != sidecar.rows:
+def _find_row_count_problem(where: str, rows: int, sidecar: ResponseSidecar) -> Iterator[InputError]:
+    if rows != sidecar.rows:
         yield InputError(
             where,
             f"has {rows} rows, the sidecar states {sidecar.rows}",
@@ -155,20 +170,18 @@ def _find_frequency_problems(where: str, frequency: RealArray) -> Iterator[Input
         )
 
 
-def _find_value_problems(where: str, columns: ResponseColumns) -> Iterator[InputError]:
+def _find_value_problems(where: str, response: ComplexArray, columns: dict[str, RealArray]) -> Iterator[InputError]:
     """Responses that are zero, no response at all, and missing uncertainties."""
-    if np.isnan(columns.response).all():
+    if np.isnan(response).all():
         yield InputError(where, "holds no measured value", "Export the record again.")
-    if (wrong := np.flatnonzero(columns.response == 0)).size:
+    if (wrong := np.flatnonzero(response == 0)).size:
         yield InputError(f"{where}, {name_rows(wrong + 1)}", "the response is 0", "Write nan for no value.")
-    for uncertainty, name in (
-        (columns.modulus_uncertainty_pct, "modulus"),
-        (columns.phase_uncertainty_deg, "phase"),
-    ):
-        if uncertainty is not None and (wrong := np.flatnonzero(~(np.isfinite(uncertainty) & (uncertainty > 0)))).size:
+    for name in UNCERTAINTY_COLUMNS:
+        width = columns.get(name, np.ones(1))
+        if (wrong := np.flatnonzero(~(np.isfinite(width) & (width > 0)))).size:
             yield InputError(
                 f"{where}, {name_rows(wrong + 1)}",
-                f"the uncertainty of the {name} is missing or not positive",
+                f"the uncertainty of the {name.split('_', 1)[0]} is missing or not positive",
                 "Give the half-width of the 95 % interval of each row.",
             )
 

@@ -1,37 +1,87 @@
-"""Sidecar of a response record: the TOML file beside a table of a frequency response measured at a pantograph head."""
+"""Sidecar of a frequency response measured at a pantograph head; kinds of responses and their dynamic stiffness.
 
+The dynamic stiffness D is force over displacement in the same direction, for motions in exp(i omega t). Every kind is
+D^p (i omega)^q:
+
+    dynamic stiffness  D                     receptance   1 / D
+    impedance          D / (i omega)         mobility     i omega / D
+    apparent mass      D / (i omega)^2       accelerance  (i omega)^2 / D
+"""
+
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.comparison.response_kinds import ResponseKind
+from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import (
-    NO_SOURCE,
-    InputTable,
-    NonNegative,
-    Positive,
-    validation_problem,
-)
-from pantocheck.conformance.records.sidecar_tables import TableDigest, TableName, find_table_name_problems
+from pantocheck.conformance.input_files.sourced_table import NO_SOURCE, NonNegative, Positive, validation_problem
+from pantocheck.conformance.records.table_sidecar import NamedTableSidecar
+from pantocheck.conformance.results.comparison_format import HeadPoint, ResponseKind
 
 RESPONSE_SCHEMA = "pantocheck.response/1"
 
-HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
-"""Point of the head: its centre, one of its contact strips, or another one."""
-
-ResponseColumn = Annotated[str, Field(min_length=1, max_length=200)]
+UNCERTAINTY_COLUMNS = ("modulus_uncertainty_pct", "phase_uncertainty_deg")
 
 
-class ResponseSidecar(InputTable):
+@dataclass(frozen=True)
+class ResponseForm:
+    """Form of a kind of response, D^stiffness_power (i omega)^omega_power."""
+
+    unit: str
+    """SI unit, as at the end of a key."""
+    symbol: str
+    """SI unit in reports."""
+    stiffness_power: Literal[1, -1]
+    """1: force over motion; -1: motion over force."""
+    omega_power: int
+    """Power of i omega."""
+
+    def to_stiffness(self, response: ComplexArray, frequency: RealArray) -> ComplexArray:
+        """Dynamic stiffness [N/m] of a response in SI units at frequencies [Hz]."""
+        scaled = response * _omega_factor(frequency, -self.omega_power)
+        return np.asarray(scaled**self.stiffness_power, dtype=np.complex128)
+
+    def from_stiffness(self, stiffness: ComplexArray, frequency: RealArray) -> ComplexArray:
+        """Response in SI units of a dynamic stiffness [N/m] at frequencies [Hz]."""
+        return np.asarray(stiffness**self.stiffness_power * _omega_factor(frequency, self.omega_power))
+
+    def shift_phase(self, phase: RealArray) -> RealArray:
+        """Phase of the response [rad] from that of the dynamic stiffness, without jumps of 360 degrees."""
+        return self.stiffness_power * phase + self.omega_power * np.pi / 2
+
+
+RESPONSE_FORMS: dict[ResponseKind, ResponseForm] = {
+    "apparent_mass": ResponseForm("kg", "kg", 1, -2),
+    "impedance": ResponseForm("N_s_m", "N s/m", 1, -1),
+    "dynamic_stiffness": ResponseForm("N_m", "N/m", 1, 0),
+    "receptance": ResponseForm("m_N", "m/N", -1, 0),
+    "mobility": ResponseForm("m_s_N", "m/s/N", -1, 1),
+    "accelerance": ResponseForm("m_s2_N", "m/s²/N", -1, 2),
+}
+"""Form of each kind."""
+
+
+def _omega_factor(frequency: RealArray, power: int) -> ComplexArray:
+    """Power of i omega, with the exact power of i."""
+    return np.asarray(1j**power * (2 * np.pi * frequency) ** power, dtype=np.complex128)
+
+
+def list_response_columns(kind: ResponseKind) -> list[str]:
+    """Names of the columns of a kind of response, in its SI unit."""
+    unit = RESPONSE_FORMS[kind].unit
+    values = (f"modulus_{unit}", "phase_deg", f"real_{unit}", f"imaginary_{unit}")
+    return ["frequency_Hz", *values, *UNCERTAINTY_COLUMNS]
+
+
+class ResponseSidecar(NamedTableSidecar):
     """Sidecar of a table of frequency, modulus and phase."""
 
     schema_: Annotated[
         Literal["pantocheck.response/1"],
         Field(alias="schema", description='version of the format: "pantocheck.response/1"'),
     ]
-    file: TableName
-    sha256: TableDigest = None
     kind: Annotated[
         ResponseKind,
         Field(
@@ -61,15 +111,6 @@ class ResponseSidecar(InputTable):
     scale: Annotated[
         Positive, Field(le=1e12, description="factor from the table to the unit in the name of its columns")
     ] = 1.0
-    columns: Annotated[
-        dict[str, ResponseColumn],
-        Field(
-            default_factory=dict,
-            max_length=10,
-            description="names of the columns in the table, where they are others: the name of this suite, with its "
-            "unit, then that of the table; further columns are ignored then",
-        ),
-    ]
     modulus_uncertainty_pct: Annotated[
         Positive | None, Field(le=100, description="half-width of the 95 % interval of the modulus [%]")
     ] = None
@@ -79,11 +120,6 @@ class ResponseSidecar(InputTable):
     source: Annotated[str, Field(min_length=1, max_length=500, description="test report, test rig and date")] = (
         NO_SOURCE
     )
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
-
-    @cross_check
-    def _check_file(self) -> Problems:
-        yield from find_table_name_problems(self.file)
 
     @cross_check
     def _check_uncertainty(self) -> Problems:

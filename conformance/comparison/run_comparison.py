@@ -2,24 +2,25 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from pantocheck.conformance.comparison.compared_run import ComparedRun
 from pantocheck.conformance.comparison.force_charts import build_force_charts
 from pantocheck.conformance.comparison.force_difference import compare_force_bands, compare_spans, correlation
 from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
-from pantocheck.conformance.comparison.quantity_difference import compare_quantities
-from pantocheck.conformance.comparison.run_comparison_format import (
-    BandAgreement,
-    ComparedCase,
-    ComparedOwner,
-    ComparedSubject,
-    ForceAgreement,
-    RunComparison,
-    SpanAgreement,
-)
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
+from pantocheck.conformance.results.comparison_format import (
+    ComparedCase,
+    ComparedOwner,
+    ComparedQuantity,
+    ComparedSource,
+    ForceAgreement,
+    RunComparison,
+)
 from pantocheck.conformance.results.results_building import build_suite
 
 THINNED = "{name}: results hold thinned curves. Give the record for differences of the force."
@@ -28,17 +29,15 @@ THINNED = "{name}: results hold thinned curves. Give the record for differences 
 def compare_subjects(subjects: Sequence[Sequence[ComparedRun]], case: str | None) -> RunComparison:
     """Compare the runs of several subjects case by case.
 
-    Parameters
-    ----------
-    subjects : sequence of sequence of ComparedRun
-        Runs of each subject, at most one per case; the others are compared with the first subject.
-    case : str or None
-        Id of the only compared case; None: all cases that the subjects have in common.
+    Args:
+        subjects: Runs of each subject, at most one per case; the others are compared with the first subject.
+        case: Id of the only compared case; None: all cases that the subjects have in common.
 
-    Raises
-    ------
-    InputError
-        The subjects have no common case, or it is not clear to which case a record belongs.
+    Returns:
+        Content of comparison.json.
+
+    Raises:
+        InputError: The subjects have no common case, or it is not clear to which case a record belongs.
     """
     names = _name_subjects([runs[0] for runs in subjects])
     groups = {
@@ -48,7 +47,7 @@ def compare_subjects(subjects: Sequence[Sequence[ComparedRun]], case: str | None
     return RunComparison(
         suite=build_suite(),
         subjects=tuple(
-            ComparedSubject(name=name, source=runs[0].source, digest=runs[0].digest)
+            ComparedSource(name=name, source=runs[0].source, digest=runs[0].digest or None)
             for name, runs in zip(names, subjects, strict=True)
         ),
         cases=tuple(_compare_case(key, runs) for key, runs in groups.items()),
@@ -104,7 +103,7 @@ def _compare_case(case: str, runs: Mapping[str, ComparedRun]) -> ComparedCase:
 
 
 def _compare_owner(owner: int, runs: Mapping[str, ComparedRun]) -> ComparedOwner:
-    quantities = compare_quantities(list(runs.values()), owner)
+    quantities = _compare_quantities(list(runs.values()), owner)
     if owner == LINE:
         return ComparedOwner(number=owner, quantities=quantities)
     first, *others = runs
@@ -136,25 +135,38 @@ def _describe_agreement(name: str, pair: PairedForces, supports: Sequence[float]
         correlation=correlation(pair),
         mean_difference_N=float(difference.mean()),
         rms_difference_N=float((difference**2).mean() ** 0.5),
-        bands=tuple(
-            BandAgreement(
-                low_Hz=band.low,
-                high_Hz=band.high,
-                first_N=band.first,
-                other_N=band.second,
-                difference_N=band.difference,
-            )
-            for band in compare_force_bands(pair)
-        ),
-        spans=tuple(
-            SpanAgreement(
-                start_m=span.start,
-                end_m=span.end,
-                mean_difference_N=span.mean,
-                rms_difference_N=span.rms,
-                first_std_N=span.first_std,
-                other_std_N=span.second_std,
-            )
-            for span in compare_spans(pair, supports)
-        ),
+        bands=compare_force_bands(pair),
+        spans=compare_spans(pair, supports),
     )
+
+
+def _compare_quantities(runs: Sequence[ComparedRun], owner: int) -> tuple[ComparedQuantity, ...]:
+    """Every quantity that a run has, in the order of reports; the first run is the reference of the differences."""
+    known = {name for run in runs for name in run.values.get(owner, {})}
+    return tuple(_compare_quantity(name, runs, owner) for name in QUANTITIES if name in known)
+
+
+def _compare_quantity(name: str, runs: Sequence[ComparedRun], owner: int) -> ComparedQuantity:
+    values = [run.values.get(owner, {}).get(name) for run in runs]
+    widths = [run.uncertainty.get(owner, {}).get(name) for run in runs]
+    pairs = [_compare_value(values[0], value, widths[0], width) for value, width in zip(values, widths, strict=True)]
+    return ComparedQuantity(
+        name=name,
+        values=tuple(values),
+        uncertainty=tuple(widths),
+        difference=tuple(difference for difference, _ in pairs),
+        beyond_uncertainty=tuple(beyond for _, beyond in pairs),
+    )
+
+
+def _compare_value(
+    first: Value | None, other: Value | None, first_width: Value | None, other_width: Value | None
+) -> tuple[float | None, bool | None]:
+    """Largest difference of two values, and whether it exceeds the root of the sum of squares of their half-widths."""
+    if first is None or other is None or np.shape(first) != np.shape(other):
+        return None, None
+    differences = np.atleast_1d(np.subtract(other, first))
+    largest = float(differences[np.argmax(np.abs(differences))]) if differences.size else None
+    if first_width is None or other_width is None:
+        return largest, None
+    return largest, bool(np.any(np.abs(differences) > np.hypot(first_width, other_width)))

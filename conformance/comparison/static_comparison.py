@@ -1,6 +1,6 @@
 """Comparison of a static record with the model of its line."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,25 +9,34 @@ from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.geometry import Geometry
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.comparison.static_comparison_format import (
-    ComparedValues,
-    SpanDifferences,
-    StaticComparison,
-)
-from pantocheck.conformance.comparison.static_criteria import grade_tolerance
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.static_differences import (
+    CRITERIA,
+    ValuePair,
     find_static_outliers,
+    grade_tolerance,
     refuse_other_unit,
     select_section,
 )
-from pantocheck.conformance.comparison.static_record import StaticRecord, StaticValue
-from pantocheck.conformance.comparison.value_pair import ValuePair
+from pantocheck.conformance.comparison.static_record import StaticRecord
 from pantocheck.conformance.grading.verdicts import worst_verdict
+from pantocheck.conformance.input_files.table_rows import name_rows
+from pantocheck.conformance.results.comparison_format import (
+    ComparedSource,
+    ComparedValues,
+    SpanDifferences,
+    StaticComparison,
+    StaticQuantity,
+    StaticValue,
+)
 from pantocheck.conformance.results.results_building import build_suite
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import rest_height, static_uplift
+
+LISTED_ROWS = 20
+"""Largest number of rows that a caveat names."""
 
 MILLI = 1e3
 """Millimetres in a metre: elasticities are reported in mm/N, heights in mm."""
@@ -50,30 +59,21 @@ class _LineModel:
 
 
 def compare_statics(
-    record: StaticRecord, line: LineFile, element: float, tolerances: Mapping[str, float]
+    record: StaticRecord, line: LineFile, element: float, limits: Sequence[ComparisonLimit]
 ) -> StaticComparison:
     """Compare a static record with the model of its line.
 
-    Parameters
-    ----------
-    record : StaticRecord
-        Measured values.
-    line : LineFile
-        Content of the line file.
-    element : float
-        Largest element length [m].
-    tolerances : mapping of str to float
-        Largest accepted differences by name of the criterion, from `static_criteria.CRITERIA`.
+    Args:
+        record: Measured values.
+        line: Content of the line file.
+        element: Largest element length [m].
+        limits: Largest accepted differences, from `build_tolerances`.
 
-    Returns
-    -------
-    StaticComparison
+    Returns:
         Content of static_comparison.json.
 
-    Raises
-    ------
-    InputError
-        A column is evidently in another unit, or counts heights from another datum.
+    Raises:
+        InputError: A column is evidently in another unit, or counts heights from another datum.
     """
     catenary, sidecar = build_catenary(line), record.sidecar
     model, fine_model = (
@@ -82,25 +82,52 @@ def compare_statics(
     spans = sidecar.evaluated_spans or (1, line.geometry.spans)
     section = line.geometry.section(*spans)
     pairs = {name: _pair_values(record, name, model, fine_model) for name in record.values}
-    criteria = tuple(
-        grade_tolerance(quantity, tolerance, pairs, sidecar, section) for quantity, tolerance in tolerances.items()
-    )
+    criteria = tuple(grade_tolerance(limit, pairs, sidecar, section) for limit in limits)
+    values = tuple(_describe(name, pair, line.geometry, section, model) for name, pair in pairs.items())
     return StaticComparison(
         suite=build_suite(),
-        line=line.title,
-        line_digest=json_digest(line.model_dump(mode="json")),
-        record=record.source,
-        record_digest=record.digest,
+        model=ComparedSource(name=line.title, digest=json_digest(line.model_dump(mode="json"))),
+        record=ComparedSource(name=record.source, digest=record.digest),
         verdict=worst_verdict(criterion.verdict for criterion in criteria),
         element_m=element,
         force_N=sidecar.force_N or (),
         evaluated_spans=spans,
         evaluated_m=section,
         largest_distance_m=sidecar.largest_distance_m,
-        values=tuple(_describe(name, pair, line.geometry, section, model) for name, pair in pairs.items()),
+        values=values,
         criteria=criteria,
+        warnings=tuple(_list_warnings(values, limits)),
         note=sidecar.note,
     ).rounded()
+
+
+def build_tolerances(stated: Mapping[StaticQuantity, float | None]) -> tuple[ComparisonLimit, ...]:
+    """Limits of the differences for which the user states a tolerance."""
+    return tuple(
+        ComparisonLimit(quantity=quantity, upper=tolerance)
+        for quantity, tolerance in stated.items()
+        if tolerance is not None
+    )
+
+
+def _list_warnings(values: Sequence[ComparedValues], limits: Sequence[ComparisonLimit]) -> Iterator[str]:
+    """Caveats: values without tolerance, missing or far from the others."""
+    graded = {value for quantity, value in CRITERIA.items() for limit in limits if limit.quantity == quantity}
+    for part in values:
+        name = part.name.replace("_", " ")
+        if graded and part.name not in graded:
+            yield f"{name}: no tolerance was given, so that the differences are not graded"
+        if part.missing_rows:
+            yield f"{name}: no value in {_name_rows(part.missing_rows)}"
+        if part.outlier_rows:
+            yield (
+                f"{name}: the differences of {_name_rows(part.outlier_rows)} are outliers among those of the record; "
+                "they count"
+            )
+
+
+def _name_rows(rows: tuple[int, ...]) -> str:
+    return name_rows(np.array(rows), LISTED_ROWS)
 
 
 def _pair_values(record: StaticRecord, name: StaticValue, model: _LineModel, fine_model: _LineModel) -> ValuePair:

@@ -1,26 +1,25 @@
-"""Static record: contact wire heights and elasticities measured along a line."""
+"""Static record: contact wire heights and elasticities measured along a line, with their sidecar."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
+from pydantic import Field
 
 from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.measured_table import MeasuredTable
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.table_formats import CSV, HDF5, read_tables
+from pantocheck.conformance.input_files.sourced_table import Positive, PositiveList, validation_problem
 from pantocheck.conformance.input_files.table_rows import MOST_NAMED_ROWS, name_rows
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.units import convert_key, suggest_key
 from pantocheck.conformance.records.record_reading import locate_table, record_digest
+from pantocheck.conformance.records.table_sidecar import NamedTableSidecar, read_named_columns
+from pantocheck.conformance.results.comparison_format import StaticValue
 
-StaticValue = Literal["elasticity", "contact_wire_height"]
-"""Value measured along a line."""
+STATIC_SCHEMA = "pantocheck.static/1"
 
 STATIC_VALUES: tuple[StaticValue, ...] = get_args(StaticValue)
 
@@ -33,58 +32,99 @@ LARGEST_TABLE = 300_000
 """Largest number of values in a table: a position every 0.5 m along 40 km, with both values."""
 
 
+class StaticSidecar(NamedTableSidecar):
+    """Sidecar of a table of contact wire heights and elasticities."""
+
+    schema_: Annotated[
+        Literal["pantocheck.static/1"],
+        Field(alias="schema", description='version of the format: "pantocheck.static/1"'),
+    ]
+    force_N: Annotated[
+        PositiveList | None,
+        Field(
+            max_length=2,
+            description="static force of the elasticity [N]: one force, for the uplift from rest over the force; or "
+            "two, for the difference of the uplifts over the difference of the forces",
+        ),
+    ] = None
+    line_start_m: Annotated[
+        float, Field(ge=-1e7, le=1e7, description="position of the start of the line, as the table counts [m]")
+    ] = 0.0
+    positions: Annotated[
+        Literal["increasing", "decreasing"],
+        Field(description="direction in which the table counts positions, from the start of the line to its end"),
+    ] = "increasing"
+    datum_m: Annotated[
+        float, Field(ge=-100, le=100, description="height of the datum of the line, as the table counts [m]")
+    ] = 0.0
+    evaluated_spans: Annotated[
+        tuple[int, int] | None,
+        Field(strict=False, description="first and last span of the evaluated section, from 1; default: all spans"),
+    ] = None
+    largest_distance_m: Annotated[
+        Positive | None,
+        Field(description="largest distance between neighbouring measured positions of a complete record [m]"),
+    ] = None
+    elasticity_uncertainty_mm_N: Annotated[
+        Positive | None, Field(description="half-width of the 95 % interval of a measured elasticity [mm/N]")
+    ] = None
+    height_uncertainty_mm: Annotated[
+        Positive | None, Field(description="half-width of the 95 % interval of a measured contact wire height [mm]")
+    ] = None
+
+    @cross_check
+    def _check_consistency(self) -> Problems:
+        if self.force_N is not None and len(self.force_N) == 2 and self.force_N[0] >= self.force_N[1]:
+            yield validation_problem(
+                "force_N", "the second force is not greater than the first", "Give the smaller force first."
+            )
+        if self.evaluated_spans is not None and not 1 <= self.evaluated_spans[0] <= self.evaluated_spans[1]:
+            yield validation_problem(
+                "evaluated_spans",
+                f"{list(self.evaluated_spans)} are not a first and a last span",
+                "Give the first and the last span, numbered from 1, e.g. [2, 9].",
+            )
+
+
 @dataclass(frozen=True)
 class StaticRecord:
-    """Values measured along a line, by increasing position; NaN marks a missing value.
-
-    Parameters
-    ----------
-    source : str
-        Name of the table.
-    digest : str
-        SHA-256 of sidecar and table.
-    sidecar : StaticSidecar
-        Sidecar of the table.
-    row : (n,) ndarray of int
-        Number of each row below the head line, from 1.
-    position : (n,) ndarray
-        Positions, from the start of the line [m].
-    values : dict of StaticValue to (n,) ndarray
-        Elasticities [m/N]; contact wire heights above the datum of the line [m].
-    """
+    """Values measured along a line, by increasing position; NaN marks a missing value."""
 
     source: str
+    """Name of the table."""
     digest: str
+    """SHA-256 of sidecar and table."""
     sidecar: StaticSidecar
     row: IntegerArray
+    """Number of each row below the head line, from 1, (n,)."""
     position: RealArray
+    """Positions from the start of the line, (n,) [m]."""
     values: dict[StaticValue, RealArray]
+    """Elasticities [m/N]; contact wire heights above the datum of the line [m]; (n,) each."""
 
 
 def read_static_table(path: Path) -> StaticRecord:
     """Read a static record without regard to its line.
 
-    Parameters
-    ----------
-    path : Path
-        Table, or its sidecar; both have the same stem.
+    Args:
+        path: Table, or its sidecar; both have the same stem.
 
-    Returns
-    -------
-    StaticRecord
+    Returns:
         The record.
 
-    Raises
-    ------
-    InputError
-        A file is missing or damaged; a column is unknown, missing, repeated or empty; a value is infinite, a position
-        is missing, or an elasticity is not positive; the sidecar lacks the force of the elasticities.
+    Raises:
+        InputError: A file is missing or damaged; a column is unknown, missing, repeated or empty; a value is infinite,
+            a position is missing, or an elasticity is not positive; the sidecar lacks the force of the elasticities.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, StaticSidecar, "sidecar")
     table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
-    columns = _read_columns(read_tables(table, (), LARGEST_TABLE, (CSV, HDF5)))
     where = f"record '{table.name}'"
+    known = [f"{stem}_{unit}" for stem, unit in COLUMN_UNITS.items()]
+    named = read_named_columns(table, sidecar, known, USUAL_COLUMNS, LARGEST_TABLE)
+    columns = {stem: named[name].values for stem, name in zip(COLUMN_UNITS, known, strict=True) if name in named}
+    if "position" not in columns:
+        raise InputError(where, "has no positions", f"Store {USUAL_COLUMNS[0]}, from the start of the line.")
     direction = 1.0 if sidecar.positions == "increasing" else -1.0
     position = direction * (columns["position"] - sidecar.line_start_m)
     values: dict[StaticValue, RealArray] = {name: columns[name] for name in STATIC_VALUES if name in columns}
@@ -109,57 +149,21 @@ def read_static_table(path: Path) -> StaticRecord:
 def read_static_record(path: Path, geometry: Geometry) -> StaticRecord:
     """Read a static record of a line.
 
-    Parameters
-    ----------
-    path : Path
-        Table, or its sidecar; both have the same stem.
-    geometry : Geometry
-        Spans of the line.
+    Args:
+        path: Table, or its sidecar; both have the same stem.
+        geometry: Spans of the line.
 
-    Returns
-    -------
-    StaticRecord
+    Returns:
         The record.
 
-    Raises
-    ------
-    InputError
-        The record is invalid (`read_static_table`), has a position outside the line, or names other spans than the
-        line has.
+    Raises:
+        InputError: The record is invalid (`read_static_table`), has a position outside the line, or names other spans
+            than the line has.
     """
     record = read_static_table(path)
     if problems := list(_find_line_problems(path.with_suffix(".toml"), record, geometry)):
         raise join_errors(problems)
     return record
-
-
-def _read_columns(tables: list[MeasuredTable]) -> dict[str, RealArray]:
-    """Columns in SI units, by name without unit."""
-    where = tables[0].where
-    if len(tables) > 1:
-        raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
-    columns: dict[str, RealArray] = {}
-    for column, values in zip(tables[0].columns, tables[0].values.T, strict=True):
-        if column.name is None:
-            raise InputError(where, "has no head line", "Write the names of the columns in the first line.")
-        place = f"{where}, column {column.name[:80]!r}"
-        stem, factor = _find_column(column.name, place)
-        if stem in columns:
-            raise InputError(place, f"repeats {stem}", "Store each value once.")
-        columns[stem] = factor * values
-    if "position" not in columns:
-        raise InputError(where, "has no positions", f"Store {USUAL_COLUMNS[0]}, from the start of the line.")
-    return columns
-
-
-def _find_column(name: str, place: str) -> tuple[str, float]:
-    """Name of a column without its unit, and the factor to its SI unit."""
-    stems = {f"{stem}_{unit}": stem for stem, unit in COLUMN_UNITS.items()}
-    if (converted := convert_key(name, list(stems))) is not None:
-        return stems[converted[0]], converted[1]
-    raise InputError(
-        place, "unknown column", suggest_key(name, None, USUAL_COLUMNS) or suggest_names(name, USUAL_COLUMNS)
-    )
 
 
 def _find_row_problems(where: str, position: RealArray, values: dict[StaticValue, RealArray]) -> Iterator[InputError]:

@@ -4,10 +4,9 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.line_irregularity import irregularity_at
 from pantocheck.conformance.cases.line_layout import SpanLayout, SupportLayout
-from pantocheck.conformance.cases.section_rises import SectionRise, section_rise
 from pantocheck.conformance.input_files.units import STANDARD_GRAVITY
+from pantocheck.conformance.line.elements.tension_section import SectionRise
 
 
 def rest_heights(case: Case, supports: RealArray) -> RealArray:
@@ -26,9 +25,9 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
         Positions of supports [m].
     """
     line, layout = case.line, case.line.layout
-    tolerance = line.variation is not None and line.variation.droppers is not None
+    tolerance = line.has_varied_droppers
     sag = STANDARD_GRAVITY * line.contact_wire.mass_kg_m / (2 * line.contact_wire.tension_N)
-    rises = [(place, section_rise(line, place)) for place in line.section_places]
+    rises = [(place, line.section_rise(place)) for place in line.section_places]
     heights = [
         min(
             np.nan if tolerance and not _is_level(support) else _rest_height(support, before, after, sag, rise)
@@ -39,7 +38,7 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
     ]
     places = np.array([support.limit.position for support in layout.supports])
     rest = np.array(heights)[np.abs(places[:, None] - supports).argmin(axis=0)]
-    return np.asarray(rest + irregularity_at(line, supports))
+    return np.asarray(rest + line.irregularity_at(supports))
 
 
 def _rest_height(support: SupportLayout, before: SpanLayout, after: SpanLayout, sag: float, rise: SectionRise) -> float:

@@ -15,7 +15,6 @@ from pantocheck.conformance.input_files.bounded_file import file_digest
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, skip_record
 from pantocheck.conformance.quantities.filters import is_same_cutoff
-from pantocheck.conformance.quantities.plug_in_quantity import select_own
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.measured.line_supports import list_line_supports
 from pantocheck.conformance.records.measured.record_preparation import PreparedRecord, prepare_record
@@ -134,12 +133,11 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
     prepared = replace(prepared, line=replace(prepared.line, line_supports=supports))
     excluded, events, exclusion_warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
-    own = select_own(rule.quantity for rule in profile.rule)
     prepared = replace(
         prepared,
         excluded=excluded,
         pantographs={
-            number: replace(signals, shortest_loss_s=profile.shortest_contact_loss_s, own_quantities=own)
+            number: replace(signals, shortest_loss_s=profile.shortest_contact_loss_s)
             for number, signals in prepared.pantographs.items()
         },
     )

@@ -121,7 +121,7 @@ def _list_changes(case: CaseResult, earlier: CaseResult) -> list[str]:
 
 
 def _name_inputs(case: CaseResult, earlier: CaseResult) -> str:
-    """Keys of the inputs that differ, in brackets; empty if results state none, such as those of older versions."""
+    """Keys of the inputs that differ, in brackets; empty if results state none."""
     groups, earlier_groups = ({group.group: group.values for group in each.inputs} for each in (case, earlier))
     keys = []
     for group in dict.fromkeys([*groups, *earlier_groups]):

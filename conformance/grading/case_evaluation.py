@@ -17,7 +17,6 @@ from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
 from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
-from pantocheck.conformance.quantities.plug_in_quantity import select_own
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -154,8 +153,7 @@ class CaseEvaluation:
 
     def _signals(self, record: Record) -> RecordSignals:
         line = self.case.line
-        own = select_own(limit.quantity for limit in self.case.limits)
-        return RecordSignals(record, self.case.file.filter.low_pass, line.geometry.supports, line.overlaps, own)
+        return RecordSignals(record, self.case.file.filter.low_pass, line.geometry.supports, line.overlaps)
 
 
 def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:

@@ -22,7 +22,6 @@ from pantocheck.conformance.results.input_values import list_input_values
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
 from pantocheck.conformance.results.origin_format import describe_case_origin
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.results.plug_in_format import list_used_plug_ins
 from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
 from pantocheck.conformance.results.results_format import (
     CaseResult,
@@ -149,7 +148,6 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "limit_changes": list_limit_changes(case),
             "library": library,
             "origin": None if library == "identical" else describe_case_origin(case),
-            "plug_ins": list_used_plug_ins(delivered.table, (limit.quantity for limit in case.limits)),
             "edition": file.edition,
             "superseded_by": file.superseded_by,
             "steps": _list_steps(case, library),

@@ -19,10 +19,8 @@ from pantocheck.conformance.grading.extended_band import find_unvalidated
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.results.contact_loss_list import build_contact_losses
 from pantocheck.conformance.results.extreme_places import find_force_places
-from pantocheck.conformance.results.plug_in_format import list_used_plug_ins
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
@@ -99,6 +97,7 @@ def grade_record(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
         verdict=judge_case((criterion.verdict for criterion in criteria), record),
+        criteria_verdict=None,
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
         warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],
@@ -109,10 +108,6 @@ def grade_record(
         limit_changes=grading.list_limit_changes(profile, limits),
         library=compare_profile_with_library(profile),
         profile=profile.name,
-        plug_ins=list_used_plug_ins(
-            subject.header.file if isinstance(subject.header, RecordSidecar) else None,
-            [*(rule.quantity for rule in profile.rule), *(limit.quantity for limit in limits)],
-        ),
         steps=["line_test"] if profile.compares else [],
         criteria=criteria,
         quantities=key_by_owner(select_finite(subject.values.values)),

@@ -202,7 +202,7 @@ class IdentifiedLine(RoundedModel):
     records: tuple[IdentifiedRecord, ...]
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]
-    half_power: Annotated[HalfPowerLines | None, Field(description="spectral lines in the half-power band")] = None
+    half_power: Annotated[HalfPowerLines, Field(description="spectral lines in the half-power band")]
     repeatability: Annotated[tuple[Repeatability, ...], Field(description="repeatability of each repeated drop")]
     overlays: Annotated[
         tuple[Overlay, ...], Field(description="signals of each repeated drop; of the first drop if none is repeated")

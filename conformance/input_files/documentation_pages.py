@@ -11,7 +11,6 @@ class DocumentationPage(Enum):
     """Page of the documentation; its value is the title up to a colon, its text is ready for a sentence."""
 
     COMPARE_DROP = "A recorded mass drop beside its simulation"
-    EXTENDING = "Extending the suite"
     IDENTIFICATION = "Identification of damping from mass drops"
     LINE_TABLES = "Line tables"
     LOGGER_FILES = "Files of data loggers"

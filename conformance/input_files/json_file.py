@@ -8,7 +8,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
 from pantocheck.conformance.input_files.bounded_file import read_bytes
-from pantocheck.conformance.input_files.format_versions import update_content
+from pantocheck.conformance.input_files.format_versions import check_version
 from pantocheck.conformance.input_files.input_error import InputError, join_errors
 
 T = TypeVar("T")
@@ -41,7 +41,7 @@ def read_json(path: Path, kind: str, largest: int) -> Any:
 
 
 def parse_json(content: bytes, where: str, largest: int) -> Any:
-    """Parse JSON from bytes, in the current version of its format; parameters and errors as in `read_json`."""
+    """Parse JSON from bytes; parameters and errors as in `read_json`."""
     if len(content) > largest:
         raise InputError(where, f"has {len(content)} bytes", f"At most {largest} bytes are accepted.")
     try:
@@ -52,7 +52,8 @@ def parse_json(content: bytes, where: str, largest: int) -> Any:
             f"is not valid JSON ({_clean(str(error))})",
             "Write the file again with the same command of the suite.",
         ) from None
-    return update_content(parsed, where)
+    check_version(parsed, where)
+    return parsed
 
 
 def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:

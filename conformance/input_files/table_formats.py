@@ -9,9 +9,7 @@ from pantocheck.conformance.input_files.bounded_file import MAX_FILE_BYTES, open
 from pantocheck.conformance.input_files.extras import refuse_missing_package, require_package
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import ChannelNames, MeasuredTable
-from pantocheck.conformance.input_files.plug_in_reader import PlugInFormat
 from pantocheck.conformance.input_files.text_settings import TextSettings
-from pantocheck.conformance.plug_ins.plug_in import PlugIn, find_plug_in
 
 Reader = Callable[[Path, ChannelNames, int], list[MeasuredTable]]
 """Reader of a format. Its arguments are the path, the names of the channels in the sidecar (empty for a file that
@@ -103,13 +101,6 @@ def find_table_format(path: Path, formats: tuple[TableFormat, ...]) -> TableForm
     raise InputError(where, f"has the unknown suffix '{suffix}'", known)
 
 
-def find_plug_in_reader(path: Path) -> PlugIn | None:
-    """Plug-in that reads a file; None for a suffix of the suite, which no plug-in reads, and for an unknown one."""
-    suffix = path.suffix.lower()
-    known = any(suffix in table_format.suffixes for table_format in TABLE_FORMATS)
-    return None if known or suffix in ("", ".toml", ".json") else find_plug_in("reader", suffix[1:])
-
-
 def read_tables(
     path: Path,
     names: ChannelNames,
@@ -142,15 +133,14 @@ def read_tables(
     InputError
         The file cannot be read, is damaged, too large or of another format.
     """
-    reader = find_plug_in_reader(path) if formats is TABLE_FORMATS else None
-    table_format = find_table_format(path, formats) if reader is None else PlugInFormat(reader)
+    table_format = find_table_format(path, formats)
     where = f"record '{path.name}'"
     with open_file(path, where, MAX_FILE_BYTES) as file:
         if not file.read(1):
             raise InputError(where, "is empty", "Export the record again.")
     if layout is None or not layout.is_stated:
         return table_format.read(path, names, largest)
-    if not isinstance(table_format, TableFormat) or table_format is not CSV:
+    if table_format is not CSV:
         raise InputError(
             f"sidecar of {where}, key table",
             f"states the layout of a text table, but {path.suffix} is no text table",

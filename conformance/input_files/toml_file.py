@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pantocheck.conformance.input_files.bounded_file import read_text
-from pantocheck.conformance.input_files.format_versions import update_content
+from pantocheck.conformance.input_files.format_versions import check_version
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_syntax import explain_syntax_error
 from pantocheck.conformance.input_files.validation_messages import build_input_error
@@ -79,14 +79,15 @@ def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
 
 
 def read_toml(path: Path, kind: str) -> dict[str, Any]:
-    """Read a TOML file without validation, in the current version of its format; see `read_model`."""
+    """Read a TOML file without validation of its keys; see `read_model`."""
     where = f"{kind} '{path.name}'"
-    tree: dict[str, Any] = update_content(parse_toml(read_text(path, where, MAX_TOML_BYTES), where), where)
+    tree = parse_toml(read_text(path, where, MAX_TOML_BYTES), where)
+    check_version(tree, where)
     return tree
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Parse the text of a TOML file, in its own version.
+    """Parse the text of a TOML file.
 
     Parameters
     ----------

@@ -7,7 +7,8 @@ from typing import Literal
 
 from pantocheck.conformance.input_files.input_error import InputError
 
-STANDARD_GRAVITY = 9.80665  # [m/s2]
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity [m/s2]."""
 
 MotionQuantity = Literal["acceleration", "velocity", "displacement"]
 

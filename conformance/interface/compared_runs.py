@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.comparison.run_comparison import compare_subjects
-from pantocheck.conformance.comparison.run_comparison_format import ComparedOwner, ForceAgreement, RunComparison
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.one_line import describe_in_one_line
 from pantocheck.conformance.interface.opened_run import OpenedRun, open_run
+from pantocheck.conformance.results.comparison_format import ComparedOwner, ForceAgreement, RunComparison
 
 COMPARED_COLUMNS = (
     "case",
@@ -31,18 +31,12 @@ COMPARED_COLUMNS = (
 
 @dataclass(frozen=True)
 class ComparedRuns:
-    """Runs beside the first of them.
-
-    Parameters
-    ----------
-    comparison : RunComparison
-        Content of comparison.json.
-    runs : tuple of OpenedRun
-        Compared runs, in the order of `subjects`.
-    """
+    """Runs beside the first of them."""
 
     comparison: RunComparison
+    """Content of comparison.json."""
     runs: tuple[OpenedRun, ...]
+    """Compared runs, in the order of `subjects`."""
 
     def __repr__(self) -> str:
         """Names of the runs in one line."""
@@ -64,22 +58,15 @@ class ComparedRuns:
     def agreement(self, pantograph: int = 1, subject: int = 2) -> ForceAgreement:
         """Agreement of the force of a run with that of the first run.
 
-        Parameters
-        ----------
-        pantograph : int
-            Number of the pantograph, from 1.
-        subject : int
-            Number of the run, from 2.
+        Args:
+            pantograph: Number of the pantograph, from 1.
+            subject: Number of the run, from 2.
 
-        Returns
-        -------
-        ForceAgreement
-            With `correlation`, `rms_difference_N`, `bands` and `spans`.
+        Returns:
+            Agreement with `correlation`, `rms_difference_N`, `bands` and `spans`.
 
-        Raises
-        ------
-        KeyError
-            The forces were not compared; the message gives the reason.
+        Raises:
+            KeyError: The forces were not compared; the message gives the reason.
         """
         owner = self._find_owner(pantograph)
         found = {agreement.subject: agreement for agreement in owner.agreements}
@@ -91,12 +78,9 @@ class ComparedRuns:
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the graded forces of all runs over the position; returns matplotlib axes.
 
-        Parameters
-        ----------
-        pantograph : int
-            Number of the pantograph, from 1 in running order.
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+            axes: Axes to draw in; None: those of a new figure.
         """
         axes = provide_axes(axes)
         for name, opened, style in zip(self.subjects, self.runs, ("-", "--", ":", "-.") * len(self.runs), strict=False):
@@ -109,15 +93,11 @@ class ComparedRuns:
     def write(self, folder: str | Path) -> list[Path]:
         """Write comparison.json, .html, .pdf and .csv; returns their paths.
 
-        Parameters
-        ----------
-        folder : str or Path
-            Folder of the files.
+        Args:
+            folder: Folder of the files.
 
-        Raises
-        ------
-        InputError
-            A file cannot be written.
+        Raises:
+            InputError: A file cannot be written.
         """
         return write_comparison(self.comparison, Path(folder))
 
@@ -139,15 +119,11 @@ class ComparedRuns:
 def compare_runs(*runs: OpenedRun | str | Path) -> ComparedRuns:
     """Compare runs with the first of them, as `pantocheck compare` does.
 
-    Parameters
-    ----------
-    *runs : OpenedRun, str or Path
-        Two or more runs: simulated ones, or paths of records.
+    Args:
+        *runs: Two or more runs: simulated ones, or paths of records.
 
-    Raises
-    ------
-    InputError
-        A record cannot be read, or the runs have no common case.
+    Raises:
+        InputError: A record cannot be read, or the runs have no common case.
     """
     opened = tuple(run if isinstance(run, OpenedRun) else open_run(run) for run in runs)
     return ComparedRuns(compare_subjects([[each.run] for each in opened], None), opened)
@@ -156,18 +132,15 @@ def compare_runs(*runs: OpenedRun | str | Path) -> ComparedRuns:
 def write_comparison(comparison: RunComparison, folder: Path) -> list[Path]:
     """Write all files of a comparison; return their paths.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     from pantocheck.conformance.reports.comparison.run_comparison_page import build_run_comparison
     from pantocheck.conformance.reports.formats.report_writers import write_document
 
     data, values = folder / "comparison.json", folder / "comparison.csv"
     write_model(data, comparison)
-    document = build_run_comparison(comparison.model_dump(mode="json", by_alias=True))
-    pages = write_document(document, folder / "comparison")
+    pages = write_document(build_run_comparison(comparison), folder / "comparison")
     write_atomically(values, _list_values(comparison).encode())
     return [data, *pages, values]
 

@@ -18,7 +18,6 @@ from pantocheck.conformance.identification.pantograph_fit.fit_description import
     build_pantograph_fit,
     describe_pantograph,
 )
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import ChainParameter, PantographFit
 from pantocheck.conformance.identification.rounded_model import write_model
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
@@ -26,6 +25,7 @@ from pantocheck.conformance.input_files.toml_file import validate_model
 from pantocheck.conformance.interface.column_table import tabulate_rows
 from pantocheck.conformance.interface.drawn_axes import label_logarithms, provide_axes
 from pantocheck.conformance.interface.one_line import describe_in_one_line
+from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 
 LONGEST_SOURCE = 500
 """Largest number of characters of a source in a pantograph file."""
@@ -137,7 +137,7 @@ class FittedPantograph:
         write_atomically(out, tomli_w.dumps(self.tables).encode())
         data = out.with_name(f"{out.stem}-fit.json")
         write_model(data, self.report)
-        document = build_pantograph_fit_document(self.report.model_dump(mode="json", by_alias=True))
+        document = build_pantograph_fit_document(self.report)
         return [out, data, *write_document(document, data.with_suffix(""))]
 
 
@@ -197,5 +197,5 @@ def build_fitted_pantograph(
     texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
     tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)
     pantograph = validate_model(tables, PantographFile, "fitted pantograph")
-    comparison = compare_responses(records, pantograph, None)
+    comparison = compare_responses(records, pantograph)
     return FittedPantograph(tables, build_pantograph_fit(selection, masses, title, comparison), records)

@@ -16,7 +16,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.interface.column_table import tabulate_columns
 from pantocheck.conformance.interface.drawn_axes import provide_axes
 from pantocheck.conformance.interface.one_line import describe_in_one_line
-from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
+from pantocheck.conformance.simulation.drawn_points import find_deflection, list_element_marks
 from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, static_uplift
 from pantocheck.model.one_thread import use_one_thread
@@ -154,12 +154,11 @@ class OpenedLine:
         axes = provide_axes(axes)
         for x, heights, style in self._list_curves(start, end):
             axes.plot(x, heights, **style)
-        for symbol, wire, place in list_fixed_points(self.catenary):
-            if start <= place <= end:
-                height = find_deflection(self.discretised, wire, "z", place)
-                axes.plot(
-                    place, height, FIXED_POINT_MARKERS[symbol], color="0.1", markerfacecolor="white", markersize=5
-                )
+        for mark in list_element_marks(self.catenary):
+            if start <= mark.position <= end and not mark.text:
+                height = find_deflection(self.discretised, mark.wire, "z", mark.position)
+                style = {"color": "0.1", "markerfacecolor": "white", "markersize": 5}
+                axes.plot(mark.position, height, FIXED_POINT_MARKERS[mark.symbol], **style)
         axes.set(xlabel="position along the track [m]", ylabel="height [m]", title=self.file.title)
         return axes
 

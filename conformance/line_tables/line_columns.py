@@ -1,12 +1,15 @@
 """Columns of the tables of supports and droppers: the keys of a line file, those of inner tables behind their name."""
 
-from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
-from pantocheck.conformance.cases.support_tables import MessengerSupportChanges, SteadyArmChanges, SupportTable
-from pantocheck.conformance.input_files.sourced_table import InputTable
+from pydantic import BaseModel
 
-INNER_TABLES: dict[str, type[InputTable]] = {
-    "steady_arm": SteadyArmChanges,
-    "messenger_support": MessengerSupportChanges,
+from pantocheck.conformance.input_files.table_models import find_model
+from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.support_table import SupportTable
+
+INNER_TABLES: dict[str, type[BaseModel]] = {
+    key: model
+    for key, field in SupportTable.model_fields.items()
+    if (model := find_model(field.annotation, set())[0]) is not None
 }
 """Tables inside the table of a support."""
 

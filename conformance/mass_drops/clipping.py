@@ -4,7 +4,8 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 
-SAME_EXTREMES = 4  # consecutive samples with exactly the extreme value that make a flat top
+SAME_EXTREMES = 4
+"""Number of consecutive samples with exactly the extreme value that make a flat top."""
 
 
 def find_clipping(signal: RealArray) -> list[tuple[int, int]]:

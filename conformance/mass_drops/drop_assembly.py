@@ -14,7 +14,9 @@ from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.mass_drops.sampling_rate import find_sampling_rate
 
 LEAST_SAMPLES = 16
-LARGEST_ACCELERATION = 500.0  # [m/s2]; a wire released from 40 kg stays an order of magnitude below
+"""Smallest number of samples of a record."""
+LARGEST_ACCELERATION = 500.0
+"""Largest acceleration [m/s2]; a wire released from 40 kg stays an order of magnitude below."""
 
 
 def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> DropRecord:

@@ -7,8 +7,10 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.measured_table import MeasuredTable
 from pantocheck.conformance.mass_drops.drop_sidecar import DropSidecar
 
-LOWEST_RATE, HIGHEST_RATE = 0.1, 1e6  # [Hz]
-RATE_TOLERANCE = 1e-3  # relative
+LOWEST_RATE, HIGHEST_RATE = 0.1, 1e6
+"""Range of sampling rates [Hz]."""
+RATE_TOLERANCE = 1e-3
+"""Relative difference up to which two rates are the same."""
 
 
 def find_sampling_rate(table: MeasuredTable, sidecar: DropSidecar | None) -> float:

@@ -13,8 +13,7 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.comparison.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
-from pantocheck.conformance.comparison.static_record import read_static_table
-from pantocheck.conformance.comparison.static_sidecar import STATIC_SCHEMA
+from pantocheck.conformance.comparison.static_record import STATIC_SCHEMA, read_static_table
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
@@ -22,7 +21,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.json_file import read_json, validate_json
 from pantocheck.conformance.input_files.sourced_table import NO_SOURCE
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.table_formats import CSV, TABLE_FORMATS, find_plug_in_reader
+from pantocheck.conformance.input_files.table_formats import CSV, TABLE_FORMATS
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
 from pantocheck.conformance.line_tables.line_table_check import check_line_table, read_line_table
 from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
@@ -75,7 +74,7 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
             "Give a folder with TOML files, or with tables of supports and droppers.",
         )
     suffix = path.suffix.lower()
-    if suffix in TABLE_SUFFIXES or find_plug_in_reader(path) is not None:
+    if suffix in TABLE_SUFFIXES:
         return _check_table(path)
     if suffix == ".json":
         return _check_json(path)

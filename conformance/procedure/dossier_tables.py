@@ -6,7 +6,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.profile_file import Rule
-from pantocheck.conformance.comparison.response_limits import ResponseLimit
+from pantocheck.conformance.comparison.comparison_limits import RESPONSES, ComparisonLimit
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import (
     NO_SOURCE,
@@ -66,13 +66,19 @@ class PantographEntry(InputTable):
         Field(strict=False, max_length=50, description="measured frequency responses: sidecars or tables"),
     ] = ()
     limit: Annotated[
-        tuple[ResponseLimit, ...], Field(strict=False, max_length=100, description="limits of their deviations")
+        tuple[ComparisonLimit, ...], Field(strict=False, max_length=100, description="limits of their deviations")
     ] = ()
     trust: Annotated[Trust, Field(description="trust in these limits")] = NO_TRUST
 
     @cross_check
     def _check_sources(self) -> Problems:
         for i, limit in enumerate(self.limit, 1):
+            if limit.kind is not RESPONSES:
+                yield validation_problem(
+                    f"limit[{i}].quantity",
+                    f"{limit.quantity!r} does not belong to a response",
+                    f"Give one of {', '.join(RESPONSES.quantities)}.",
+                )
             if self.trust != NO_TRUST and limit.source == NO_SOURCE:
                 yield validation_problem(
                     f"limit[{i}].source", f"missing, although the trust is {self.trust!r}", "Name the source."

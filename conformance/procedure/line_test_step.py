@@ -55,7 +55,7 @@ def build_line_test_profile(table: LineTestTable) -> Profile:
     """
     return Profile.model_validate(
         {
-            "schema": "pantocheck.profile/2",
+            "schema": "pantocheck.profile/1",
             "name": "dossier",
             "title": "Line test",
             "speed_tolerance_pct": table.speed_tolerance_pct,

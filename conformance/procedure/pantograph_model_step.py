@@ -3,18 +3,18 @@
 from collections.abc import Iterator
 
 from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS
 from pantocheck.conformance.comparison.response_comparison import compare_responses
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison, ResponseCriterion
-from pantocheck.conformance.comparison.response_deviation import RESPONSE_BANDS
-from pantocheck.conformance.comparison.response_limits import ResponseLimits
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.grading.near_limit import ValueErrors
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.input_files.sourced_table import NO_SOURCE
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.procedure.dossier import Dossier
 from pantocheck.conformance.procedure.dossier_tables import PantographEntry
 from pantocheck.conformance.procedure.step_result import StepResult
+from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison
 from pantocheck.conformance.results.criterion_format import Criterion
 
 NEEDED_BY_PANTOGRAPHS = "needed by the comparison of pantographs of this suite"
@@ -55,25 +55,21 @@ def check_pantographs(dossier: Dossier) -> StepResult:
 
 def _compare(dossier: Dossier, entry: PantographEntry) -> ResponseComparison:
     records = [read_response(dossier.locate(name)) for name in entry.responses]
-    limits = (
-        ResponseLimits.model_validate({"schema": "pantocheck.response-limits/1", "limit": entry.limit})
-        if entry.limit
-        else None
-    )
-    return compare_responses(records, dossier.pantographs[entry.name], limits)
+    return compare_responses(records, dossier.pantographs[entry.name], entry.limit)
 
 
-def _convert(row: ResponseCriterion, entry: PantographEntry, number: int, trust: Trust) -> Criterion:
-    low, high = row.band_Hz
-    height = "" if row.height_m is None else f", {row.height_m:g} m"
+def _convert(row: ComparisonCriterion, entry: PantographEntry, number: int, trust: Trust) -> Criterion:
+    where = row.where
+    low, high = where.band_Hz or (0.0, 0.0)
+    height = "" if where.height_m is None else f", {where.height_m:g} m"
     requirement = Requirement(
-        f"{row.quantity}, {low:g} to {high:g} Hz, {row.static_force_N:g} N{height}",
+        f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
         number,
         None,
         None,
         row.upper,
         entry.trust,
-        source_text(row.source),
+        source_text(row.source or NO_SOURCE),
         unit=row.unit,
     )
     if row.verdict == "skip":

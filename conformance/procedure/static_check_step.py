@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from pantocheck.conformance.cases.library import source_text
-from pantocheck.conformance.comparison.static_comparison import compare_statics
-from pantocheck.conformance.comparison.static_comparison_format import StaticComparison, StaticCriterion
-from pantocheck.conformance.comparison.static_criteria import CRITERIA
+from pantocheck.conformance.comparison.comparison_limits import unit_of_difference
+from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
+from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.grading.near_limit import ValueErrors
@@ -15,6 +15,7 @@ from pantocheck.conformance.procedure.dossier import Dossier
 from pantocheck.conformance.procedure.dossier_tables import LineEntry, StaticTolerance
 from pantocheck.conformance.procedure.step_result import StepResult
 from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.results.comparison_format import ComparisonCriterion, StaticComparison, StaticQuantity
 from pantocheck.conformance.results.criterion_format import Criterion
 
 NEEDED_BY_STATIC_CHECK = "needed by the static check of this suite"
@@ -55,12 +56,12 @@ def check_statics(dossier: Dossier) -> StepResult:
 def _compare(dossier: Dossier, entry: LineEntry, name: str) -> StaticComparison:
     line = dossier.lines[entry.name]
     record = read_static_record(dossier.locate(name), line.geometry)
-    return compare_statics(record, line, entry.element_m, _list_tolerances(entry.tolerance))
+    return compare_statics(record, line, entry.element_m, build_tolerances(_list_tolerances(entry.tolerance)))
 
 
-def _list_tolerances(tolerance: StaticTolerance) -> dict[str, float]:
+def _list_tolerances(tolerance: StaticTolerance) -> dict[StaticQuantity, float]:
     """Stated tolerances by the name of their criterion."""
-    stated = {
+    stated: dict[StaticQuantity, float | None] = {
         "elasticity_difference_mm_N": tolerance.elasticity_mm_N,
         "elasticity_difference_pct": tolerance.elasticity_pct,
         "contact_wire_height_difference_mm": tolerance.height_mm,
@@ -68,26 +69,26 @@ def _list_tolerances(tolerance: StaticTolerance) -> dict[str, float]:
     return {name: value for name, value in stated.items() if value is not None}
 
 
-def _convert(row: StaticCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
+def _convert(row: ComparisonCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
     """Criterion of the procedure; a value of an incomplete record is left out, because it must not be graded."""
     requirement = Requirement(
-        row.quantity, LINE, item, None, row.tolerance, tolerance.trust, source_text(tolerance.source), unit=row.unit
+        row.quantity, LINE, item, None, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
     )
     if row.verdict == "skip":
         return build_criterion(requirement, None, row.reason, trust)
     errors = ValueErrors(
         components={} if row.discretisation is None else {"discretisation": row.discretisation},
-        limit_uncertainty=row.measurement,
+        limit_uncertainty=row.measurement or 0.0,
     )
     return build_criterion(requirement, row.value, None, trust, errors)
 
 
 def _skip_ungraded(tolerance: StaticTolerance, item: int | None, trust: Trust) -> Iterator[Criterion]:
     """Skipped criteria of the values for which the dossier states no tolerance."""
-    graded = {CRITERIA[name].name for name in _list_tolerances(tolerance)}
+    graded = {CRITERIA[name] for name in _list_tolerances(tolerance)}
     for value in STATIC_VALUES:
         if value not in graded:
-            quantity = next(name for name, kind in CRITERIA.items() if kind.name == value)
+            quantity = next(name for name, kind in CRITERIA.items() if kind == value)
             yield _skip(quantity, item, trust, "the dossier states no tolerance")
 
 
@@ -97,7 +98,7 @@ def _skip_missing(tolerance: StaticTolerance, item: int | None, trust: Trust, re
         yield _skip(quantity, item, trust, reason)
 
 
-def _skip(quantity: str, item: int | None, trust: Trust, reason: str) -> Criterion:
-    unit = CRITERIA[quantity].unit
+def _skip(quantity: StaticQuantity, item: int | None, trust: Trust, reason: str) -> Criterion:
+    unit = unit_of_difference(quantity)
     requirement = Requirement(quantity, LINE, item, None, None, "primary", NEEDED_BY_STATIC_CHECK, unit=unit)
     return build_criterion(requirement, None, reason, trust)

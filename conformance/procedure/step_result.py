@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
-from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.procedure_format import (
     DeclaredParameter,

@@ -24,6 +24,8 @@ from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult, VerdictName
 from pantocheck.conformance.runner import run_case
 from pantocheck.conformance.systems.case_record import read_case_record
+from pantocheck.conformance.systems.listed_system import ListedSystem
+from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_system
 
@@ -144,7 +146,8 @@ def run_and_grade(
     case : str
         Id, or path of a case file.
     system : str or System
-        Value as for `--system`, or an object with `name`, `version`, `kind` and `run(case)`.
+        Value as for `--system`, or an object with `name`, `version`, `kind`, `run(case)`, and the names of the
+        `features` that it simulates; a case that uses another one is skipped, and without `features` every case.
     trust : Trust
         Lowest trust of limits that count.
     verdicts : {"criteria", "verification", "both"}, optional
@@ -166,6 +169,8 @@ def run_and_grade(
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
     selected = _select_case(case, case_folders)
+    if not isinstance(system, str | ReferenceSimulator):
+        tested = ListedSystem(tested)
     return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind, [selected.id]))
 
 

@@ -66,7 +66,7 @@ def _extremes(signals: ForceSignals, sampling: Sampling) -> tuple[RealArray, Rea
 
 
 BAND_PASS_CHANGE = {"rms_0_5_N": 1.2, "rms_5_20_N": 1.5, "rms_20_50_N": 6.8}
-"""Largest change of a band by a band-pass on the EN 50318:2002 cases [%], from benchmarks/filter_and_band.py."""
+"""Largest change of a band by a band-pass on the EN 50318:2002 cases [%] (verification/tables/filter_and_band.py)."""
 
 
 def _causal(change: float) -> str:

@@ -51,10 +51,6 @@ class ForceSignals(Protocol):
     def shortest_loss_s(self) -> float | None:
         """Shortest duration of a long contact loss [s]; None if it is not stated."""
 
-    @property
-    def own_quantities(self) -> tuple[str, ...]:
-        """Names of the requested quantities of other distributions."""
-
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz [N]."""
 

@@ -41,8 +41,6 @@ class PantographSignals:
         Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
     shortest_loss_s : float or None
         Shortest duration of a long contact loss [s]; None if it is not stated.
-    own_quantities : tuple of str
-        Names of the requested quantities of other distributions.
     """
 
     position: RealArray
@@ -51,7 +49,6 @@ class PantographSignals:
     contact_height: RealArray | None = None
     arc_channels: RealArray | None = None
     shortest_loss_s: float | None = None
-    own_quantities: tuple[str, ...] = ()
 
     @property
     def rate(self) -> float:

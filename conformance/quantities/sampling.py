@@ -1,5 +1,7 @@
 """Sampling: elementary statistics of a series, over the whole record or for each replicate of a bootstrap."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,10 @@ class Sampling:
     def std(self, series: RealArray) -> RealArray:
         """Standard deviation."""
         return np.asarray(series.std())
+
+    def apply(self, statistic: Callable[[RealArray], float], series: RealArray) -> RealArray:
+        """Any other statistic of the samples, such as `np.median`."""
+        return np.asarray(statistic(series))
 
     def largest(self, series: RealArray) -> RealArray:
         """Largest value."""

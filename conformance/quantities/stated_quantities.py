@@ -12,7 +12,6 @@ from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.quantities.contact_losses import loss_durations
 from pantocheck.conformance.quantities.force_quantities import FORCE_50
 from pantocheck.conformance.quantities.force_signals import ForceSignals
-from pantocheck.conformance.quantities.plug_in_quantity import list_own_quantities
 from pantocheck.conformance.quantities.quantity import Need, PantographQuantity
 from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.statistics import check_unfiltered
@@ -80,9 +79,8 @@ STATED_QUANTITIES: tuple[PantographQuantity, ...] = (LONG_LOSS, ARC_SHARE)
 
 
 def list_stated(signals: ForceSignals) -> Iterator[PantographQuantity]:
-    """Quantities of `STATED_QUANTITIES` for which the signals state the facts, and requested ones from outside."""
+    """Quantities of `STATED_QUANTITIES` for which the signals state the facts."""
     if signals.shortest_loss_s is not None:
         yield LONG_LOSS
     if signals.has_arcs:
         yield ARC_SHARE
-    yield from list_own_quantities(signals.own_quantities)

@@ -98,11 +98,6 @@ class SignalsOutside:
         return self.whole.shortest_loss_s
 
     @property
-    def own_quantities(self) -> tuple[str, ...]:
-        """Names of the requested quantities of other distributions."""
-        return self.whole.own_quantities
-
-    @property
     def filter_applied_Hz(self) -> float | None:
         """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
         return self.whole.filter_applied_Hz

@@ -7,9 +7,8 @@ from pydantic import Field
 
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, NumberList, PositiveList, validation_problem
+from pantocheck.conformance.input_files.sourced_table import NumberList, PositiveList, validation_problem
 from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.text_settings import TextSettings
 from pantocheck.conformance.input_files.units import suggest_key
 from pantocheck.conformance.records.logger.arc_tables import ArcTable
 from pantocheck.conformance.records.logger.column_tables import ColumnSource, SensorSum
@@ -24,16 +23,14 @@ from pantocheck.conformance.records.sidecar_tables import (
     Speed,
     StartTable,
     SystemTable,
-    TableDigest,
-    TableName,
     find_section_problems,
-    find_table_name_problems,
 )
+from pantocheck.conformance.records.table_sidecar import TableSidecar
 
 RECORD_SCHEMA = "pantocheck.record/1"
 
 
-class RecordSidecar(InputTable):
+class RecordSidecar(TableSidecar):
     """Sidecar of a table of samples."""
 
     schema_: Annotated[
@@ -46,11 +43,6 @@ class RecordSidecar(InputTable):
         tuple[str, ...],
         Field(strict=False, max_length=100, description="inputs of the case that were changed with --set"),
     ] = ()
-    file: TableName
-    sha256: TableDigest = None
-    table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
-        TextSettings()
-    )
     columns: Annotated[
         dict[str, ColumnSource] | None,
         Field(
@@ -120,7 +112,6 @@ class RecordSidecar(InputTable):
                 'Write filter_applied_Hz = "none" for an unfiltered force.',
             )
         yield from find_section_problems(self.evaluated_m)
-        yield from find_table_name_problems(self.file)
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
             yield validation_problem(
                 "spacing_m",

@@ -27,15 +27,12 @@ class RecordSignals:
         Positions of all supports of the line [m]; None if they are not known.
     overlaps : sequence of Stretch
         Overlaps of the tension sections of the line.
-    own_quantities : tuple of str
-        Names of the requested quantities of other distributions.
     """
 
     record: Record
     low_pass: LowPass
     line_supports: tuple[float, ...] | None = None
     overlaps: Sequence[Stretch] = ()
-    own_quantities: tuple[str, ...] = ()
 
     @cached_property
     def pantographs(self) -> dict[int, PantographSignals]:
@@ -47,7 +44,6 @@ class RecordSignals:
                 force=ForceChannel(record.force[row], record.rate, self.low_pass, record.filter_applied_Hz),
                 section=record.evaluated,
                 contact_height=None if record.contact_height is None else record.contact_height[row],
-                own_quantities=self.own_quantities,
             )
             for row in range(record.pantographs)
         }

@@ -24,8 +24,6 @@ from pantocheck.conformance.records.sidecar_tables import (
     find_section_problems,
 )
 
-SUMMARY_SCHEMA = "pantocheck.summary/1"
-
 SummaryValue = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER)]
 SummaryValues = Annotated[dict[str, SummaryValue], Field(max_length=100)]
 

@@ -239,7 +239,7 @@ def to_plain(value: Any) -> Any:
     return value
 
 
-def make_grid(caption: str, records: Iterable[dict[str, Any]], cells: dict[str, Callable[[Any], str]]) -> Table:
+def make_grid(caption: str, records: Iterable[Any], cells: dict[str, Callable[[Any], str]]) -> Table:
     """A dense table of values: one row per record, one column per heading; the last takes the remaining width."""
     *headings, last = cells
     columns = (*map(Column, headings), Column(last, share=1))

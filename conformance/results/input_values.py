@@ -26,7 +26,7 @@ def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict
         Name of the group of the table.
     """
     excluded = {key for key in type(table).model_fields if f"{group}.{key}" in groups}
-    excluded |= PROVENANCE | NAME_KEYS | (OTHER_PARTS if group == "case" else {"point_mass"})
+    excluded |= PROVENANCE | NAME_KEYS | (OTHER_PARTS if group == "case" else frozenset())
     tree = table.model_dump(mode="json", exclude=excluded, exclude_unset=True, exclude_none=True)
     columns: dict[str, list[object]] = {}
     for key, value in tree.items():

@@ -58,8 +58,6 @@ class Delivered:
         SHA-256 of the files of the record; None for a record that was never in a file.
     start : StartTable or None
         Start of the run, as the system states it.
-    table : str or None
-        Name of the file of the samples; None for a record that was never in a file.
     uplift_forces : tuple of float
         Uplift force of every pantograph in the run [N]; empty: not known.
     line_shape : LineShape or None
@@ -83,7 +81,6 @@ class Delivered:
     case_digest: str | None = None
     digest: str | None = None
     start: StartTable | None = None
-    table: str | None = None
     uplift_forces: tuple[float, ...] = ()
     line_shape: LineShape | None = None
     refined: "Delivered | None" = None

@@ -4,9 +4,8 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import Field
 
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
-from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
 from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 

@@ -96,6 +96,7 @@ def build_results(
         suite=build_suite(),
         system=system,
         verdict="info",
+        criteria_verdict=None,
         trust=trust,
         started=started,
         platform=Platform(

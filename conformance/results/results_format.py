@@ -25,14 +25,11 @@ from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, Line
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.origin_format import OriginFacts
-from pantocheck.conformance.results.plug_in_format import PlugInFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
 from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
 from pantocheck.conformance.results.suite_part import Suite
-
-RESULTS_SCHEMA = "pantocheck.results/1"
 
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
@@ -45,11 +42,7 @@ class SystemIdentity(ResultsPart):
 
     name: str
     version: str
-    kind: Literal["builtin", "record", "command", "plugin"]
-    plug_in: Annotated[
-        PlugInFacts | None,
-        Field(exclude_if=is_absent, description="distribution that offers the system; missing: none"),
-    ] = None
+    kind: Literal["builtin", "record", "command"]
 
 
 class Platform(ResultsPart):
@@ -76,7 +69,7 @@ class Renderer(ResultsPart):
 
 
 class InputGroup(ResultsPart):
-    """Source and values of a group of inputs; older results have no values."""
+    """Source and values of a group of inputs; a single key has no values, because its group has them."""
 
     group: str
     trust: Trust
@@ -128,7 +121,7 @@ class ScopeStep(ResultsPart):
     cases: list[str]
 
 
-def name_case(case_id: str, library: LibraryIdentity | None) -> str:
+def name_case(case_id: str, library: LibraryIdentity) -> str:
     """Name of a case in reports: its id, or `modified copy of` the library case with this id."""
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
@@ -144,8 +137,8 @@ class CaseResult(ResultsPart):
     title: str
     verdict: Verdict
     criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
-    ] = None
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: an assessment by a profile")
+    ]
     verification: Annotated[
         CaseVerification | None, Field(description="verification; null: the case has no converged values")
     ] = None
@@ -153,8 +146,7 @@ class CaseResult(ResultsPart):
         BaselineComparison | None,
         Field(
             exclude_if=is_absent,
-            description="comparison with a baseline; missing: none was made, or by an older version, which counted a "
-            "drift in `criteria_verdict`",
+            description="comparison with a baseline; missing: none was made",
         ),
     ] = None
     reason: str | None
@@ -163,36 +155,24 @@ class CaseResult(ResultsPart):
     inputs: list[InputGroup]
     derived: Annotated[
         list[DerivedFact],
-        Field(
-            description="values that the suite derives from the inputs, and the uplift forces of its own run; empty: "
-            "made by an older version"
-        ),
+        Field(description="values that the suite derives from the inputs, and the uplift forces of its own run"),
     ] = []
     input_digest: str
     changes: Annotated[
         list[str],
         Field(description="inputs that were changed on the command line, with the values of the files"),
     ] = []
-    limits_digest: Annotated[
-        str | None, Field(description="SHA-256 of the limits, those of a limits file included")
-    ] = None
+    limits_digest: Annotated[str, Field(description="SHA-256 of the limits, those of a limits file included")]
     stated_limits_digest: Annotated[
-        str | None, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
-    ] = None
+        str, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
+    ]
     limit_changes: Annotated[
         list[str], Field(description="limits of the case file or profile that a limits file weakens")
     ] = []
-    library: Annotated[
-        LibraryIdentity | None,
-        Field(description="comparison with the library case or profile of this name; null: made by an older version"),
-    ] = None
+    library: Annotated[LibraryIdentity, Field(description="comparison with the library case or profile of this name")]
     origin: Annotated[
         OriginFacts | None,
         Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
-    ] = None
-    plug_ins: Annotated[
-        list[PlugInFacts] | None,
-        Field(exclude_if=is_absent, description="reader and quantities of other distributions; missing: none"),
     ] = None
     profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
     edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None
@@ -276,8 +256,8 @@ class Results(ResultsPart):
     statement: str = STATEMENT
     verdict: Verdict
     criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: made by an older version")
-    ] = None
+        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: no case takes part in it")
+    ]
     verification_verdict: Annotated[
         Verdict | None, Field(description="verdict by verification; null: no case has converged values")
     ] = None
@@ -301,12 +281,8 @@ class Results(ResultsPart):
     administration: Annotated[
         Administration | None, Field(description="administrative data of the report; null: none were given")
     ] = None
-    renderer: Annotated[
-        Renderer | None, Field(description="software that made the pages; null: made by an older version")
-    ] = None
-    scope: Annotated[
-        list[ScopeStep], Field(description="every step of the procedure; empty: made by an older version")
-    ] = []
+    renderer: Annotated[Renderer, Field(description="software that made the pages")]
+    scope: Annotated[list[ScopeStep], Field(description="every step of the procedure")]
     findings: Annotated[
         FindingCounts | None, Field(description="findings of publications by outcome; null: the cases grade none")
     ] = None

@@ -12,6 +12,4 @@ class Suite(ResultsPart):
 
     version: str
     commit: str | None
-    digest: Annotated[
-        str | None, Field(description="SHA-256 of the installed files of the suite; null: made by an older version")
-    ] = None
+    digest: Annotated[str, Field(description="SHA-256 of the installed files of the suite")]

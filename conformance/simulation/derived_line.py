@@ -1,176 +1,72 @@
-"""Derived values of a line at rest, from its fine finite elements; `derived_format` defines them."""
+"""Derived values of a line at rest, from its fine finite elements; the elements define and compute them."""
 
-from collections.abc import Iterable, Sequence
-from itertools import accumulate
-from typing import TypeVar
+from typing import Annotated, Any
 
-import numpy as np
+from pydantic import Field, create_model
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.simulation.derived_details import (
-    derive_curves,
-    derive_irregularity,
-    derive_point_masses,
-    derive_stretches,
-)
-from pantocheck.conformance.simulation.derived_format import (
-    DerivedContactWire,
-    DerivedDroppers,
-    DerivedLine,
-    DerivedMessengerSupports,
-    DerivedSteadyArms,
-    DerivedStitchWires,
-    DerivedWire,
-)
-from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
-from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
+from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent
+from pantocheck.conformance.line.derived_numbers import Numbers, round_positions
+from pantocheck.conformance.line.elements.element import BuiltSection
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.model import DiscretisedLine
 from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.fem.beam import wave_speed
-from pantocheck.model.fem.connectors import arm_direction
 
-Entry = TypeVar("Entry")
+
+class SectionLimits(InputTable):
+    """First key of a tension section."""
+
+    span_limits_m: Annotated[
+        Numbers, Field(description="positions of both anchors, and of the supports between them [m]")
+    ]
+
+
+_KEYS: dict[str, Any] = {key: content for element in ELEMENTS for key, content in element.derived.items()}
+DerivedSection: Any = create_model(
+    "DerivedSection",
+    __base__=SectionLimits,
+    __doc__="Tension section at rest: its wires and the parts on them.",
+    **_KEYS,
+)
+
+
+class DerivedLine(DerivedSection):
+    """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
+
+    gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]
+    origin_x_m: Annotated[float, Field(description="position of the first anchor of the line [m]")] = 0.0
+    zero_height_m: Annotated[
+        float,
+        Field(
+            description="datum of all heights [m]; on a level line the height of the contact wire at anchors, and at "
+            "supports whose arm keeps it level"
+        ),
+    ] = 0.0
+    further_sections: Annotated[
+        tuple[DerivedSection, ...],
+        Field(
+            strict=False,
+            exclude_if=is_absent,
+            description="every tension section behind the first one, in running order; the tables beside this key hold "
+            "for the first. Absent: one section",
+        ),
+    ] = ()
 
 
 def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
     """Derived values of a line.
 
-    Parameters
-    ----------
-    file : LineFile
-        Content of the line file.
-    line : DiscretisedLine
-        Its finite elements.
+    Args:
+        file: Content of the line file.
+        line: Its finite elements.
     """
-    return DerivedLine(
-        gravity_m_s2=GRAVITY,
-        span_limits_m=round_positions(file.geometry.span_limits),
-        contact_wire=DerivedContactWire(
-            **_wire(file, line, Kind.CONTACT_WIRE).model_dump(), irregularity=derive_irregularity(line.catenary)
-        ),
-        messenger_wire=_wire(file, line, Kind.MESSENGER_WIRE),
-        stitch_wires=_stitch_wires(line.catenary),
-        droppers=_droppers(file, line),
-        steady_arms=_steady_arms(line),
-        messenger_supports=_messenger_supports(line.catenary),
-        point_masses=derive_point_masses(line.catenary),
-        curves=derive_curves(line.catenary),
-    )
+    first, *further = (_derive_section(section) for section in file.divide_line(line))
+    return DerivedLine(**dict(first), gravity_m_s2=GRAVITY, further_sections=tuple(further))
 
 
-def _wire(file: LineFile, line: DiscretisedLine, kind: Kind) -> DerivedWire:
-    wires = _wires_of(line.catenary, kind)
-    first, row = wires[0], line.mesh.row_of[wires[0].name, "z"]
-    stations = [line.mesh.station(x) for x in file.geometry.span_limits]
-    staggers = [wire.stagger for wire in wires if wire.stagger is not None]
-    return DerivedWire(
-        start_m=first.start,
-        end_m=first.end,
-        wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
-        height_m=round_numbers(line.state.deflection[row, stations, 0]),
-        lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
-        stretches=derive_stretches(file, line, first),
-    )
-
-
-def _wires_of(catenary: Catenary, kind: Kind) -> list[Wire]:
-    return [wire for wire in catenary.wires if wire.kind is kind]
-
-
-def _stitch_wires(catenary: Catenary) -> DerivedStitchWires | None:
-    wires = _wires_of(catenary, Kind.STITCH_WIRE)
-    if not wires:
-        return None
-    messenger = _wires_of(catenary, Kind.MESSENGER_WIRE)[0]
-    return DerivedStitchWires(
-        start_m=round_positions(wire.start for wire in wires),
-        end_m=round_positions(wire.end for wire in wires),
-        wave_speed_m_s=round_number(wave_speed(wires[0].tension, wires[0].mass_per_length)),
-        messenger_tension_N=messenger.tension + messenger.tension_changes[0].change,
-        clamp_mass_kg=catenary.clamps[0].mass,
-        mass_coefficient_1_s=catenary.rayleigh(Kind.DROPPER).mass_coefficient,
-    )
-
-
-def _droppers(file: LineFile, line: DiscretisedLine) -> DerivedDroppers:
-    catenary, state, droppers = line.catenary, line.state, line.catenary.droppers
-    length, direction = state.dropper_length, state.dropper_direction
-    spans, rayleigh = _count_by_span(file, catenary), catenary.rayleigh(Kind.DROPPER)
-    contact = {wire.name: n for n, wire in enumerate(catenary.contact_wires, 1)}
-
-    def by_span(values: Sequence[float] | RealArray) -> tuple[tuple[float, ...], ...]:
-        return _split(round_numbers(values), spans)
-
-    stiffness = [d.taut_stiffness(float(rest)) for d, rest in zip(droppers, length, strict=True)]
-    stitched = [catenary.wire(dropper.upper).kind is Kind.STITCH_WIRE for dropper in droppers]
-    return DerivedDroppers(
-        position_m=_split(round_positions(dropper.position for dropper in droppers), spans),
-        contact_wire=_split([contact[dropper.lower] for dropper in droppers], spans),
-        on_stitch_wire=_split(stitched, spans),
-        contact_wire_height_m=by_span([dropper.contact_wire_height or 0.0 for dropper in droppers]),
-        length_m=by_span(length),
-        height_m=by_span(length * direction[:, 1]),
-        width_m=by_span(length * direction[:, 0]),
-        vertical_force_N=by_span(state.dropper_tension * direction[:, 1]),
-        stiffness_N_m=by_span(stiffness),
-        transverse_stiffness_N_m=by_span(state.dropper_tension / length) if catenary.has_lateral_field else None,
-        mass_kg=by_span([dropper.mass for dropper in droppers]),
-        upper_clamp_kg=droppers[0].upper_clamp_mass,
-        lower_clamp_kg=droppers[0].lower_clamp_mass,
-        mass_coefficient_1_s=rayleigh.mass_coefficient,
-        stiffness_coefficient_s=rayleigh.stiffness_coefficient,
-    )
-
-
-def _count_by_span(file: LineFile, catenary: Catenary) -> list[int]:
-    """Number of droppers of every span."""
-    positions = [dropper.position for dropper in catenary.droppers]
-    return [int(count) for count in np.histogram(positions, file.geometry.span_limits)[0]]
-
-
-def _split(values: Sequence[Entry], counts: Sequence[int]) -> tuple[tuple[Entry, ...], ...]:
-    """Values in consecutive parts with given numbers of entries."""
-    return tuple(tuple(values[end - count : end]) for count, end in zip(counts, accumulate(counts), strict=True))
-
-
-def _join(values: Iterable[Entry]) -> Entry | tuple[Entry, ...]:
-    """One value if all are equal, or else all values."""
-    listed = tuple(values)
-    return listed if len(set(listed)) != 1 else listed[0]
-
-
-def _steady_arms(line: DiscretisedLine) -> DerivedSteadyArms:
-    catenary, force = line.catenary, line.state.arm_force
-    arms, rayleigh = catenary.steady_arms, catenary.rayleigh(Kind.STEADY_ARM)
-    tensions = [arm_direction(arm, f)[2] for arm, f in zip(arms, force, strict=True)]
-    across = [arm.transverse_stiffness(tension) for arm, tension in zip(arms, tensions, strict=True)]
-    hinged = [catenary.has_lateral_field and arm.vertical_stiffness is None for arm in arms]
-    return DerivedSteadyArms(
-        position_m=round_positions(arm.position for arm in arms),
-        lateral_force_N=round_numbers(force[:, 0]),
-        vertical_force_N=round_numbers(force[:, 1]),
-        transverse_stiffness_N_m=round_numbers(across) if any(hinged) else None,
-        vertical_stiffness_N_m=None if all(hinged) else _join(arm.vertical_stiffness or 0.0 for arm in arms),
-        vertical_damper_N_s_m=_join(arm.vertical_damper for arm in arms),
-        mass_kg=_join(round_number(arm.mass) for arm in arms),
-        mass_coefficient_1_s=rayleigh.mass_coefficient,
-        stiffness_coefficient_s=rayleigh.stiffness_coefficient,
-    )
-
-
-def _messenger_supports(catenary: Catenary) -> DerivedMessengerSupports:
-    """Supports of the first messenger wire; those of the others are equal."""
-    first = _wires_of(catenary, Kind.MESSENGER_WIRE)[0].name
-    supports = [support for support in catenary.messenger_supports if support.wire == first]
-    stiffness = _join(support.stiffness for support in supports)
-    damper = _join(support.damping for support in supports)
-    lateral = catenary.has_lateral_field
-    return DerivedMessengerSupports(
-        position_m=round_positions(support.position for support in supports),
-        height_m=_join(support.height for support in supports),
-        vertical_stiffness_N_m=stiffness,
-        lateral_stiffness_N_m=stiffness if lateral else None,
-        vertical_damper_N_s_m=damper,
-        lateral_damper_N_s_m=damper if lateral else None,
-        held_along_track=_join(support.along_track == "fixed" for support in supports),
-    )
+def _derive_section(section: BuiltSection) -> Any:
+    """Derived values of one tension section."""
+    values: dict[str, Any] = {"span_limits_m": round_positions(section.limits)}
+    for element in ELEMENTS:
+        values |= element.derive(section.file, section)
+    return DerivedSection(**values)

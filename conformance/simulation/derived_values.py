@@ -4,7 +4,7 @@ import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line.derived_numbers import round_number, round_numbers, round_positions
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.simulation.case_run import start_forces
 from pantocheck.conformance.simulation.catenary_model import build_catenary
@@ -16,7 +16,6 @@ from pantocheck.conformance.simulation.derived_format import (
     DerivedTrain,
 )
 from pantocheck.conformance.simulation.derived_line import build_derived_line
-from pantocheck.conformance.simulation.derived_rounding import round_number, round_numbers, round_positions
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.uplift_tuning import TOLERANCE
 from pantocheck.conformance.simulation.working_height import (
@@ -48,19 +47,11 @@ def build_derived(case: Case) -> Derived:
 
     Raises
     ------
-    InputError
-        The line has several tension sections.
     NoInitialState
         The prescribed geometry of the line has no equilibrium.
     NoEquilibrium
         The line has no equilibrium under the uplift forces.
     """
-    if case.line.section is not None:
-        raise InputError(
-            f"case {case.id}, key line.section",
-            f"the line has {len(case.line.section)} tension sections; the derived values describe one",
-            "Use the builtin system, or write a record: a program receives lines with one section only.",
-        )
     line = discretise(build_catenary(case.line), ELEMENT_M)
     train = None if case.is_static else _train(case, line)
     return Derived(line=build_derived_line(case.line, line), train=train)

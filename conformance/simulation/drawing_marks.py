@@ -1,45 +1,23 @@
-"""Points in the drawing of a line: point masses of the line, sensors and dropped masses of a case."""
+"""Points in the drawing of a line: those of its elements, sensors and dropped masses of a case."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.drop_test import MassDrop
-from pantocheck.model import Catenary, Kind
+from pantocheck.conformance.line.elements.element import KINDS, DrawnMark
+from pantocheck.conformance.simulation.drawn_points import list_element_marks
+from pantocheck.model import Catenary
 
 
-@dataclass(frozen=True)
-class DrawnMark:
-    """Point on a wire with a text beside it.
-
-    Parameters
-    ----------
-    symbol : {"sensor", "mass"}
-        Kind of the point.
-    wire : str
-        Name of the wire.
-    position : float
-        Position along the line [m].
-    text : str
-        Text beside the point.
-    """
-
-    symbol: Literal["sensor", "mass"]
-    wire: str
-    position: float
-    text: str
-
-
-def list_point_masses(catenary: Catenary) -> tuple[DrawnMark, ...]:
-    """Point masses of a line."""
-    return tuple(DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+def list_labelled_marks(catenary: Catenary) -> tuple[DrawnMark, ...]:
+    """Points of the elements of a line that have a text."""
+    return tuple(mark for mark in list_element_marks(catenary) if mark.text)
 
 
 def list_marks(case: Case, catenary: Catenary) -> tuple[DrawnMark, ...]:
-    """Point masses of a line, and sensors and dropped masses of its case, numbered from 1 as in its file."""
-    fixed = list_point_masses(catenary)
-    return (*fixed, *(_list_drop_marks(case.file.mass_drop, catenary) if case.file.mass_drop is not None else ()))
+    """Masses of a line, and sensors and dropped masses of its case, numbered from 1 as in its file."""
+    drops = case.file.mass_drop
+    return (*list_labelled_marks(catenary), *(() if drops is None else _list_drop_marks(drops, catenary)))
 
 
 def _list_drop_marks(drops: MassDrop, catenary: Catenary) -> Iterator[DrawnMark]:
@@ -52,5 +30,4 @@ def _list_drop_marks(drops: MassDrop, catenary: Catenary) -> Iterator[DrawnMark]
 
 def _find_wire(catenary: Catenary, name: str, position: float) -> str:
     """First wire of a kind, named as in a case file, at a position."""
-    kind = Kind.CONTACT_WIRE if name == "contact_wire" else Kind.MESSENGER_WIRE
-    return next(w.name for w in catenary.wires if w.kind is kind and w.start <= position <= w.end)
+    return next(w.name for w in catenary.wires if w.kind is KINDS[name] and w.start <= position <= w.end)

@@ -1,15 +1,13 @@
 """Points and shapes of a line at rest, for its drawings."""
 
-from collections.abc import Iterator
-from typing import Literal
+from typing import get_args
 
 import numpy as np
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.model import Catenary, DiscretisedLine, Kind
-
-FixedSymbol = Literal["anchor", "messenger support", "steady arm"]
-"""Part that is drawn as a point on a wire."""
+from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark, Symbol
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.model import Catenary, DiscretisedLine
 
 
 def find_deflection(line: DiscretisedLine, wire: str, field: str, position: RealArray | float) -> RealArray:
@@ -35,10 +33,13 @@ def find_deflection(line: DiscretisedLine, wire: str, field: str, position: Real
     return np.asarray(np.interp(np.asarray(position), line.mesh.position, line.state.deflection[row, :, 0]))
 
 
-def list_fixed_points(catenary: Catenary) -> Iterator[tuple[FixedSymbol, str, float]]:
-    """Symbol, wire and position of every anchor, messenger support and steady arm."""
-    for wire in catenary.wires:
-        if wire.kind is not Kind.STITCH_WIRE:
-            yield from (("anchor", wire.name, end) for end in (wire.start, wire.end))
-    yield from (("messenger support", support.wire, support.position) for support in catenary.messenger_supports)
-    yield from (("steady arm", arm.wire, arm.position) for arm in catenary.steady_arms)
+def list_element_marks(catenary: Catenary) -> list[DrawnMark]:
+    """Points of all elements of a line, by their kinds in the order of `Symbol`."""
+    order = get_args(Symbol)
+    marks = [mark for element in ELEMENTS for mark in element.mark(catenary)]
+    return sorted(marks, key=lambda mark: order.index(mark.symbol))
+
+
+def list_connections(catenary: Catenary) -> list[DrawnConnection]:
+    """Lines between two wires of all elements of a line."""
+    return [connection for element in ELEMENTS for connection in element.connect(catenary)]

@@ -9,9 +9,9 @@ from matplotlib.lines import Line2D
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.cases.section_tables import SectionPlace
+from pantocheck.conformance.line.elements.element import DrawnMark
+from pantocheck.conformance.line.elements.tension_section import SectionPlace
 from pantocheck.conformance.reports.figures.figure_style import GREY, INK, PALE, render_pdf_pages, render_svg
-from pantocheck.conformance.simulation.drawing_marks import DrawnMark
 from pantocheck.conformance.simulation.drawing_rows import (
     FILLED,
     HEADING,
@@ -25,7 +25,7 @@ from pantocheck.conformance.simulation.drawing_rows import (
     divide_into_rows,
     row_height,
 )
-from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
+from pantocheck.conformance.simulation.drawn_points import find_deflection, list_connections, list_element_marks
 from pantocheck.model import DiscretisedLine, Kind, Wire
 
 WIDTHS = {Kind.CONTACT_WIRE: 1.6, Kind.MESSENGER_WIRE: 1.0, Kind.STITCH_WIRE: 0.7}
@@ -202,15 +202,15 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
         x, w = drawing.shape(wire, field, row)
         if x.size > 1:
             axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind], solid_capstyle="butt")
-    for dropper in catenary.droppers:
-        if row.start <= dropper.position <= row.end:
-            ends = [drawing.deflection(name, field, dropper.position) for name in (dropper.lower, dropper.upper)]
-            axes.plot([dropper.position] * 2, ends, color=GREY, linewidth=0.7)
-    for symbol, wire_name, position in list_fixed_points(catenary):
-        if row.start <= position <= row.end:
+    for part in list_connections(catenary):
+        if row.start <= part.position <= row.end:
+            ends = [drawing.deflection(name, field, part.position) for name in (part.lower, part.upper)]
+            axes.plot([part.position] * 2, ends, color=GREY, linewidth=0.7)
+    for mark in list_element_marks(catenary):
+        if row.start <= mark.position <= row.end and not mark.text:
             axes.plot(
-                position, drawing.deflection(wire_name, field, position), SYMBOLS[symbol], color=INK, markersize=3,
-                clip_on=False, markerfacecolor=_fill_colour(symbol),
+                mark.position, drawing.deflection(mark.wire, field, mark.position), SYMBOLS[mark.symbol], color=INK,
+                markersize=3, clip_on=False, markerfacecolor=_fill_colour(mark.symbol),
             )  # fmt: skip
     return axes
 

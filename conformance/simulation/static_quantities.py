@@ -5,14 +5,12 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.track_table import TrackTable
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.simulation.line_discretisation import discretise_line
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
-from pantocheck.model.curves import head_shift
 from pantocheck.model.fem.beam import wave_speed
-from pantocheck.model.fem.contact_wires import touched_wires
 from pantocheck.model.kept_results import keep_with_line
 from pantocheck.model.modal.modes import Modes, compute_modes
 from pantocheck.model.pantograph import apparent_mass
@@ -50,8 +48,8 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
     quantities: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
     span = case.line.geometry.span(case.line.middle_span)
     quantities |= _dropper_lengths(line, *span) | _elasticity(line, *span) | _waves(case, line.catenary)
-    if case.line.track is not None and line.catenary.has_lateral_field:
-        quantities["head_offset_mm"] = 1e3 * largest_head_offset(case.line.track, line)
+    for element in ELEMENTS:
+        quantities |= element.measure(case.line, line)
     if case.is_static:
         if case.static_pantograph is not None and case.file.apparent_mass is not None:
             pantograph = build_pantograph(case.static_pantograph, 0.0, 0.0)
@@ -59,26 +57,6 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
             quantities["apparent_mass_kg"] = tuple(map(float, np.abs(response)))
         quantities["natural_frequency_Hz"] = tuple(map(float, first_modes(case.line, _element(line)).frequency))
     return quantities
-
-
-def largest_head_offset(track: TrackTable, line: DiscretisedLine) -> float:
-    """Largest lateral distance of a touched contact wire at rest from the centre of a pantograph head [m].
-
-    Parameters
-    ----------
-    track : TrackTable
-        Track with its cant.
-    line : DiscretisedLine
-        Line in finite elements, with a lateral field.
-    """
-    position, wires = line.mesh.position, line.catenary.contact_wires
-    shift = head_shift(line.catenary.curves, position, track.rail_distance_m, track.contact_wire_height_m)
-    rows = [line.mesh.row_of[wire.name, "y"] for wire in wires]
-    return max(
-        abs(float(line.state.deflection[rows[wire], station, 0] - shift[station]))
-        for station, x in enumerate(position)
-        for wire in touched_wires(line, float(x))
-    )
 
 
 def sample_span(start: float, end: float) -> RealArray:

@@ -31,7 +31,7 @@ def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict
     """
     if not isinstance(file.geometry, ListedSpans):
         return {}
-    return _elasticity(file, line) | ({} if file.section else _droppers(file, line))
+    return _elasticity(file, line) | ({} if len(file.section_places) > 1 else _droppers(file, line))
 
 
 def _elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:

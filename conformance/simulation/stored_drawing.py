@@ -8,8 +8,7 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.results.figure_data import DrawnCurve, DrawnDroppers, DrawnPoint, DrawnView, LineShape
-from pantocheck.conformance.simulation.drawing_marks import list_point_masses
-from pantocheck.conformance.simulation.drawn_points import find_deflection, list_fixed_points
+from pantocheck.conformance.simulation.drawn_points import find_deflection, list_connections, list_element_marks
 from pantocheck.model import DiscretisedLine
 
 MOST_DRAWN_SPANS = 24
@@ -60,13 +59,13 @@ def build_line_shape(case: Case, line: DiscretisedLine) -> LineShape:
 
 def _build_view(window: _Window, field: str) -> DrawnView:
     line = window.line
-    droppers = [dropper for dropper in line.catenary.droppers if window.contains(dropper.position)]
+    connections = [part for part in list_connections(line.catenary) if window.contains(part.position)]
     return DrawnView(
         curves=list(_list_curves(window, field)),
         droppers=DrawnDroppers(
-            x_m=[round(dropper.position, 2) for dropper in droppers],
-            lower_m=[_deflection(window, dropper.lower, field, dropper.position) for dropper in droppers],
-            upper_m=[_deflection(window, dropper.upper, field, dropper.position) for dropper in droppers],
+            x_m=[round(part.position, 2) for part in connections],
+            lower_m=[_deflection(window, part.lower, field, part.position) for part in connections],
+            upper_m=[_deflection(window, part.upper, field, part.position) for part in connections],
         ),
         points=list(_list_points(window, field)),
     )
@@ -88,11 +87,10 @@ def _list_curves(window: _Window, field: str) -> Iterator[DrawnCurve]:
 
 
 def _list_points(window: _Window, field: str) -> Iterator[DrawnPoint]:
-    catenary = window.line.catenary
-    marks = ((mark.symbol, mark.wire, mark.position, mark.text) for mark in list_point_masses(catenary))
-    for symbol, wire, x, text in (*((*point, "") for point in list_fixed_points(catenary)), *marks):
-        if window.contains(x):
-            yield DrawnPoint(symbol=symbol, x_m=round(x, 2), y_m=_deflection(window, wire, field, x), text=text)
+    for mark in list_element_marks(window.line.catenary):
+        if window.contains(mark.position):
+            y = _deflection(window, mark.wire, field, mark.position)
+            yield DrawnPoint(symbol=mark.symbol, x_m=round(mark.position, 2), y_m=y, text=mark.text)
 
 
 def _deflection(window: _Window, wire: str, field: str, position: float) -> float:

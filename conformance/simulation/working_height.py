@@ -7,7 +7,6 @@ import numpy as np
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.cases.section_rises import lowest_rise
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.conformance.simulation.static_quantities import sample_span
 from pantocheck.model import DiscretisedLine, Pantograph
@@ -35,7 +34,7 @@ def nominal_wire_height(case: Case) -> float:
     It is the mean of the straight lines between the supports, in an overlap of those of the lowest wire.
     """
     positions = working_height_positions(case)
-    rises = [lowest_rise(case.line, float(x)) for x in positions]
+    rises = [case.line.lowest_rise(float(x)) for x in positions]
     return float(case.line.layout.chord_height(positions).mean() + np.mean(rises))
 
 

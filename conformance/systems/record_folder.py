@@ -51,7 +51,6 @@ class RecordFolder:
             warnings=tuple(list_sensor_warnings(sidecar.columns)),
             case_digest=sidecar.case_digest,
             digest=record_digest(path, path.parent / sidecar.file),
-            table=sidecar.file,
         )
 
 

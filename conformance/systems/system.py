@@ -5,6 +5,8 @@ from typing import Literal, Protocol
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.results.outcome import Outcome
 
+SystemKind = Literal["builtin", "record", "command"]
+
 
 class System(Protocol):
     """Interface of a system under test. Systems are sent to other processes, so they contain plain data only."""
@@ -18,7 +20,7 @@ class System(Protocol):
         """Version in reports."""
 
     @property
-    def kind(self) -> Literal["builtin", "record", "command", "plugin"]:
+    def kind(self) -> SystemKind:
         """Kind of the system."""
 
     def run(self, case: Case) -> Outcome:

@@ -4,18 +4,14 @@ from importlib import import_module
 from pathlib import Path
 
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.plug_ins.plug_in import find_plug_in
 from pantocheck.conformance.systems.system import System
-
-SYSTEM_KINDS = ("builtin", "record", "command")
-"""Words before the colon of `--system` that belong to the suite; no plug-in is looked up for them."""
 
 TIMEOUT_S = 600.0
 """Default time limit of a program for a case [s]."""
 
 
 def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
-    """Choose the system under test: `builtin`, `record:DIR`, `command:PROGRAM ARGUMENTS`, or `NAME:TEXT` of a plug-in.
+    """Choose the system under test: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
     Parameters
     ----------
@@ -47,19 +43,8 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
         from pantocheck.conformance.systems.command.command_system import parse_command
 
         return parse_command(rest, Path(), timeout_s)
-    if kind not in SYSTEM_KINDS and (plug_in_system := _find_plug_in_system(kind, rest)) is not None:
-        return plug_in_system
     raise InputError(
         f"system '{text}'",
         "there is no such system",
-        "Choose builtin, record:DIR, command:PROGRAM ARGUMENTS or NAME:TEXT of an installed plug-in.",
+        "Choose builtin, record:DIR or command:PROGRAM ARGUMENTS.",
     )
-
-
-def _find_plug_in_system(name: str, text: str) -> System | None:
-    """System of another distribution; the names of the suite are never looked up."""
-    if find_plug_in("system", name) is None:
-        return None
-    from pantocheck.conformance.systems.plug_in_system import open_plug_in_system
-
-    return open_plug_in_system(name, text)

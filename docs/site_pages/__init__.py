@@ -3,16 +3,19 @@
 from functools import partial
 from pathlib import Path
 
+from site_pages.check_table import build_check_table
 from site_pages.command_pages import build_command_page
 from site_pages.contributing_page import build_contributing_page
-from site_pages.converged_page import build_converged_page
+from site_pages.converged_pages import build_converged_page
 from site_pages.format_pages import build_format_page
+from site_pages.guide_tables import build_guide_counts
 from site_pages.interface_pages import build_interface_page
-from site_pages.limitations_page import build_limitations_page
 from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
 from site_pages.quantity_pages import build_quantity_page
 from site_pages.start_pictures import write_start_pictures
+from site_pages.threshold_pages import build_threshold_page
+from site_pages.trust_table import build_trust_table
 from site_pages.tutorial_pages import write_tutorial_pictures
 
 DOCS = Path(__file__).parents[1]
@@ -21,13 +24,16 @@ PAGES = {
     "commands": build_command_page,
     "formats": build_format_page,
     "quantity-reference": build_quantity_page,
+    "thresholds": build_threshold_page,
     "interface": build_interface_page,
-    "contributing": build_contributing_page,
-    "known-limitations": build_limitations_page,
     "converged-values": build_converged_page,
+    "contributing": build_contributing_page,
     "all-pages": build_page_list,
 }
 """Builder of each page by its name."""
+
+TABLES = {"guide-counts": build_guide_counts, "limit-trust": build_trust_table, "record-checks": build_check_table}
+"""Builder of each table that a written page includes."""
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 """Pages of the tutorials, one per role."""
@@ -35,8 +41,9 @@ TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
 
 def write_generated_pages(folder: Path) -> None:
     """Write every generated page; a page that did not change keeps its date, so that it is not built again."""
-    folder.mkdir(exist_ok=True)
-    for name, build in PAGES.items():
+    (folder / "tables").mkdir(parents=True, exist_ok=True)
+    tables = {f"tables/{name}": build for name, build in TABLES.items()}
+    for name, build in (PAGES | tables).items():
         path, content = folder / f"{name}.md", build()
         if not path.exists() or path.read_text("utf-8") != content:
             path.write_text(content, "utf-8")

@@ -2,8 +2,11 @@
 //
 // An adapter is a function that simulates a case, and one call:
 //
-//     Record simulate(const Json& case_) { ... throw Skip("only one pantograph is supported"); ... return record; }
-//     int main() { return serve("my simulator", "1.0", simulate); }
+//     Record simulate(const Json& case_) { ... return record; }
+//     int main() { return serve("my simulator", "1.0", simulate, {"chain", "droppers", "stagger", "steady_arms"}); }
+//
+// The last argument lists what your simulator takes into account, by the names in docs/systems.md. A case that uses
+// another feature is skipped before `simulate` is called.
 //
 // Try it:  g++ -O2 -std=c++17 -o adapter adapter.cpp && pantocheck system check ./adapter
 
@@ -18,6 +21,7 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -311,8 +315,11 @@ inline void write_record(const Record& record, const Json& case_, const std::str
 
 /// Answer to a message `run`, without its number.
 inline std::string run(
-    const Json& case_, const std::string& system, const std::function<Record(const Json&)>& simulate) {
+    const Json& case_, const std::string& system, const std::function<Record(const Json&)>& simulate,
+    const std::set<std::string>& features) {
     try {
+        for (const Json& feature : case_["features"].items)
+            if (!features.count(feature.characters)) throw Skip("the simulator neglects " + feature.characters);
         const auto begin = std::chrono::steady_clock::now();
         const Record record = simulate(case_);
         const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
@@ -332,17 +339,20 @@ inline std::string run(
 
 /// Answer the messages of Pantocheck until it says stop. Use std::cerr for a log.
 inline int serve(
-    const std::string& name, const std::string& version, const std::function<Record(const Json&)>& simulate) {
+    const std::string& name, const std::string& version, const std::function<Record(const Json&)>& simulate,
+    const std::set<std::string>& features) {
+    std::string listed;
+    for (const std::string& feature : features) listed += (listed.empty() ? "" : ", ") + quote(feature);
     const std::string system = "[system]\nname = " + quote(name) + "\nversion = " + quote(version) + "\n";
     for (std::string line; std::getline(std::cin, line);) {
         const Json message = JsonParser(line).parse();
         const std::string kind = message["message"].characters;
         if (kind == "stop") break;
         if (kind == "start") {
-            std::cout << "{\"message\": \"started\", \"protocol\": \"pantocheck.command/2\", \"name\": " << quote(name)
-                      << ", \"version\": " << quote(version) << "}" << std::endl;
+            std::cout << "{\"message\": \"started\", \"protocol\": \"pantocheck.command/1\", \"name\": " << quote(name)
+                      << ", \"version\": " << quote(version) << ", \"features\": [" << listed << "]}" << std::endl;
         } else {
-            const std::string answer = run(message["case"], system, simulate);
+            const std::string answer = run(message["case"], system, simulate, features);
             std::cout << "{\"id\": " << int(double(message["id"])) << ", " << answer << "}" << std::endl;
         }
     }

@@ -16,7 +16,16 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
-PROTOCOL = "pantocheck.command/2"
+PROTOCOL = "pantocheck.command/1"
+FEATURES = [
+    "applied_forces", "base_spring_at_wire_height", "bending_stiffness", "cant", "chain", "curves", "dropper_mass",
+    "droppers", "gradients", "irregularity", "listed_spans", "matrices", "messenger_wire_held_along_track",
+    "modal_damping", "modes", "point_masses", "presag", "pushing_steady_arms", "rayleigh_damping", "sections",
+    "several_pantographs", "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms",
+    "stitch_wire", "support_dampers", "surveyed_wire_heights", "twin_wires", "uplift_force_tuning", "variation",
+    "wire_changes", "wire_springs", "wire_height",
+]  # fmt: skip
+"""Features that the program takes into account. A case with another one, such as `line_at_rest`, is skipped."""
 FORCES = ("uplift_force_N", "target_mean_force_N")
 
 
@@ -109,12 +118,10 @@ def main(program):
             version = subprocess.run([*program, "--version"], capture_output=True, text=True, check=True).stdout
             name, _, version = version.strip().rpartition(" ")
             answer = {"message": "started", "protocol": PROTOCOL, "name": f"{name} (external)", "version": version}
-        elif message["case"]["speed_km_h"] is None:
-            answer = {
-                "message": "skipped",
-                "id": message["id"],
-                "reason": "checks of the line at rest are not supported",
-            }
+            answer["features"] = FEATURES
+        elif missing := sorted(set(message["case"]["features"]) - set(FEATURES)):
+            reason = f"the program neglects {', '.join(missing)}"
+            answer = {"message": "skipped", "id": message["id"], "reason": reason}
         else:
             write_input(message["case"])
             try:

@@ -1,4 +1,4 @@
-function pantocheck_serve(name, version, simulate)
+function pantocheck_serve(name, version, simulate, features)
 % Kit for adapters in GNU Octave and MATLAB: messages, record files and digests.
 %
 % `simulate` receives a case as a struct, as jsondecode reads it, and returns a record, a struct with evenly spaced
@@ -9,8 +9,9 @@ function pantocheck_serve(name, version, simulate)
 %   start                                               struct with place_m, ramp_m and state
 %   dt_s, element_m, note                               printed in reports
 %
-% It calls error('pantocheck:skip', reason) for a case that it does not support: verdict `skip`. Any other error becomes
-% the verdict `error` of the case. Write a log to the standard error: fprintf(2, ...).
+% `features` lists what the simulator takes into account, by the names in docs/systems.md: {'chain', 'droppers'}. A case
+% that uses another feature is skipped before `simulate` is called. `simulate` calls error('pantocheck:skip', reason) for
+% any other case that it does not support: verdict `skip`. Any other error becomes the verdict `error` of the case. Write a log to the standard error: fprintf(2, ...).
 %
 % Tested with GNU Octave 7. The branches for MATLAB could not be run where this was written; MATLAB must be started so
 % that it can read its standard input (matlab -nodisplay -r).
@@ -23,11 +24,12 @@ function pantocheck_serve(name, version, simulate)
     if strcmp(message.message, 'stop')
       break
     elseif strcmp(message.message, 'start')
-      answer = struct('message', 'started', 'protocol', 'pantocheck.command/2', 'name', name, 'version', version);
+      answer = struct('message', 'started', 'protocol', 'pantocheck.command/1', 'name', name, 'version', version);
+      answer.features = features;
     else
       names = fieldnames(message);
       given = message.(names{strcmpi(names, 'xcase')});  % jsondecode renames the keyword `case`
-      answer = run_case(name, version, simulate, given);
+      answer = run_case(name, version, simulate, features, given);
       answer.id = message.id;
     end
     fprintf(1, '%s\n', jsonencode(answer));
@@ -37,9 +39,13 @@ function pantocheck_serve(name, version, simulate)
   end
 end
 
-function answer = run_case(name, version, simulate, given)
+function answer = run_case(name, version, simulate, features, given)
 % Answer to a message `run`, without its number.
   try
+    missing = setdiff(given.features, features);
+    if ~isempty(missing)
+      error('pantocheck:skip', 'the simulator neglects %s', strjoin(missing(:)', ', '));
+    end
     begin = tic();
     record = simulate(given);
     write_record(record, given, name, version, toc(begin));

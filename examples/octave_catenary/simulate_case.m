@@ -4,7 +4,6 @@ function record = simulate_case(given)
 % Deflections w [m] are positive upwards and start from the initial state of the line. The time integration is explicit
 % (semi-implicit Euler). At rest, the contact wire is a string between its droppers and arms. These are the equations of
 % examples/string_catenary, apart from the bending of the wire at rest.
-  check_supported(given);
   train = given.pantographs(1);
   speed = given.speed_km_h / 3.6;
   step = given.discretisation.time_step_s;
@@ -65,47 +64,6 @@ function record = simulate_case(given)
     'start', struct('place_m', train.start_m, 'ramp_m', 0, 'state', 'equilibrium_under_uplift_forces'), ...
     'dt_s', step, 'element_m', given.discretisation.element_m, ...
     'note', 'Finite differences, explicit time stepping.');
-end
-
-function check_supported(given)
-% Refuse cases that the simulator does not support, with the reason.
-  derived = given.derived.line;
-  if isempty(given.speed_km_h)
-    skip('checks of the line at rest are not supported');
-  end
-  if numel(given.pantographs) ~= 1
-    skip('only one pantograph is supported');
-  end
-  train = given.pantographs(1);
-  if isempty(train.uplift_force_N) || ~isempty(train.target_mean_force_N) || isfield(train, 'applied_forces')
-    skip('only a fixed uplift force at one point is supported');
-  end
-  if isempty(train.chain) || ~strcmp(train.chain.base_spring_unstretched, 'working_height')
-    skip('only chains of masses that are unstretched at the working height are supported');
-  end
-  if ~isempty(given.line.stitch_wire) || given.line.contact_wire.number > 1 || ~isempty(given.line.damping.modal)
-    skip('stitch wires, twin contact wires and modal damping are not supported');
-  end
-  if ~isempty(derived.contact_wire.lateral_position_m)
-    skip('stagger is not supported');
-  end
-  if any(flatten(derived.steady_arms.vertical_damper_N_s_m) ~= 0)
-    skip('dampers of steady arms are not supported');
-  end
-  if any(derived.messenger_supports.held_along_track)
-    skip('messenger wires held along the track are not supported');
-  end
-  wires = {derived.contact_wire, derived.messenger_wire};
-  if any(cellfun(@(wire) isfield(wire, 'stretches') || isfield(wire, 'irregularity'), wires))
-    skip('changes of a wire and its irregularity are not supported');
-  end
-  if isfield(derived, 'point_masses')
-    skip('point masses are not supported');
-  end
-end
-
-function skip(reason)
-  error('pantocheck:skip', '%s', reason);
 end
 
 function line = build_line(data, derived, element)

@@ -5,14 +5,13 @@ It needs the standard library only. An adapter is a function that simulates a ca
     from pantocheck_adapter import Record, Skip, serve
 
     def simulate(case):
-        if case["speed_km_h"] is None:
-            raise Skip("checks of the line at rest are not supported")
-        if len(case["pantographs"]) > 1:
-            raise Skip("only one pantograph is supported")
         ...
         return Record(time_s=..., position_m=[...], force_N=[...], start=START_OF_THE_CASE)
 
-    serve("my simulator", "1.0", simulate)
+    serve("my simulator", "1.0", simulate, features=["chain", "droppers", "stagger", "steady_arms"])
+
+`features` lists what your simulator takes into account, by the names in docs/systems.md. A case that uses another
+feature is skipped before `simulate` is called.
 
 Try it:  pantocheck system check 'python3 adapter.py'
 """
@@ -25,7 +24,7 @@ import time
 import traceback
 from dataclasses import dataclass, field
 
-PROTOCOL = "pantocheck.command/2"
+PROTOCOL = "pantocheck.command/1"
 
 START_OF_THE_CASE = "as in the case"
 """The line starts at rest under the uplift forces, and the train at full speed, at the place of the case."""
@@ -64,11 +63,12 @@ class Record:
     """Cut-off of a low-pass filter that was applied to the force [Hz], or "none"."""
 
 
-def serve(name, version, simulate):
+def serve(name, version, simulate, features):
     """Answer the messages of Pantocheck until it says stop.
 
     `simulate` receives a case as a dictionary and returns a `Record`, or a dictionary of static quantities for a check
-    of the line at rest (`speed_km_h` is None). It raises `Skip` for a case that is not supported. Any other exception
+    of the line at rest (`speed_km_h` is None). It is not called for a case that uses a feature which is not in the list
+    `features`. It raises `Skip` for any other case that is not supported. Any other exception
     becomes the verdict `error` of the case, and its traceback goes to the log. Printed output goes to the log, too.
     """
     # Output of libraries, even of compiled ones, must not mix with the answers.
@@ -80,15 +80,19 @@ def serve(name, version, simulate):
             break
         if message["message"] == "start":
             answer = {"message": "started", "protocol": PROTOCOL, "name": name, "version": version}
+            answer["features"] = sorted(features)
         else:
-            answer = {"id": message["id"]} | _run(name, version, simulate, message["case"])
+            answer = {"id": message["id"]} | _run(name, version, simulate, features, message["case"])
         print(json.dumps(answer), file=answers, flush=True)
 
 
-def _run(name, version, simulate, case):
+def _run(name, version, simulate, features, case):
     """Answer to a message `run`, without its number."""
     begin = time.perf_counter()
     try:
+        missing = sorted(set(case["features"]) - set(features))
+        if missing:
+            raise Skip(f"the simulator neglects {', '.join(missing)}")
         result = simulate(case)
         if isinstance(result, dict):
             return {"message": "delivered", "static": result}

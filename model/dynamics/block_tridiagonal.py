@@ -126,15 +126,3 @@ def _transfer(link: Array, row: int, s: int, force: float, moment: float) -> For
         link[row, s, 0] * force + link[row, s, 1] * moment,
         link[row, s, 2] * force + link[row, s, 3] * moment,
     )
-
-
-@njit(cache=True)
-def solve_rows(factor: Factor, force: Array) -> Array:
-    """Solve A x = f on all rows for several right-hand sides; forces and accelerations (n, B, S, 2)."""
-    solution = np.empty_like(force)
-    for n in range(force.shape[0]):
-        for b in range(force.shape[1]):
-            w, r = force[n, b, :, 0].copy(), force[n, b, :, 1].copy()
-            solve_stations(factor, b, 0, w.size - 1, w, r, 0)
-            solution[n, b, :, 0], solution[n, b, :, 1] = w, r
-    return solution

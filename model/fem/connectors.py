@@ -64,11 +64,11 @@ class Connectors(NamedTuple):
 
 
 def build_connectors(catenary: Catenary, mesh: Mesh, beams: Beams, state: InitialState) -> Connectors:
-    """Build droppers, clamps and, with a lateral field, steady arms of a line.
+    """Build droppers, clamps, springs and, with a lateral field, steady arms of a line.
 
     Each is in series with the residual flexibility of the wires at its ends.
     """
-    bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state)
+    bars = _droppers(catenary, mesh, state) + _clamps(catenary, mesh, state) + _springs(catenary, mesh)
     if catenary.has_lateral_field:
         bars += _transverse_droppers(catenary, mesh, state) + _steady_arms(catenary, mesh, state)
     coefficient = np.zeros((len(bars), mesh.rows))
@@ -142,6 +142,19 @@ def _clamps(catenary: Catenary, mesh: Mesh, state: InitialState) -> list[Bar]:
         )
         for n, clamp in enumerate(catenary.clamps)
         for y, z in directions
+    ]
+
+
+def _springs(catenary: Catenary, mesh: Mesh) -> list[Bar]:
+    """Vertical bars of the springs between two wires."""
+    return [
+        Bar(
+            mesh.station(spring.position),
+            _coefficients(mesh, spring.upper, spring.lower, (0.0, 1.0)),
+            spring.stiffness,
+            spring.damping,
+        )
+        for spring in catenary.springs
     ]
 
 

@@ -113,6 +113,7 @@ def _breakpoints(catenary: Catenary, requested: tuple[float, ...]) -> Array:
     places += [dropper.position for dropper in catenary.droppers] + [arm.position for arm in catenary.steady_arms]
     places += [support.position for support in catenary.messenger_supports]
     places += [clamp.position for clamp in catenary.clamps] + [mass.position for mass in catenary.point_masses]
+    places += [spring.position for spring in catenary.springs]
     for curve in catenary.curves:
         transitions = (curve.start + curve.transition, curve.end - curve.transition)
         places += [place for place in (curve.start, *transitions, curve.end) if min(places) < place < max(places)]

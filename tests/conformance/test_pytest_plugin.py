@@ -52,6 +52,7 @@ for line in sys.stdin:
         break
     if message["message"] == "start":
         answer = {"message": "started", "protocol": "pantocheck.command/1", "name": "skipper", "version": "1"}
+        answer["features"] = "bending_stiffness chain droppers presag rayleigh_damping steady_arms".split()
     else:
         with open(sys.argv[1], "a") as log:
             print(message["case"]["id"], file=log)

@@ -1,5 +1,6 @@
-"""Self-test: every mutant on one case, and its page."""
+"""Self-test: every mutant on one case, and its tables."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,15 +9,14 @@ from typer.testing import CliRunner
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.self_test import bench
 from pantocheck.conformance.self_test.bench import SelfTest, run_self_test
 from pantocheck.conformance.self_test.mutants import MILD, MUTANTS, Mutant
 from pantocheck.conformance.self_test.numerical_faults import FAULTS, run_numerical_faults
-from pantocheck.conformance.self_test.self_test_page import build_self_test_page
+from verification.tables import self_test_tables
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "self-test.md"
+TABLES = Path(__file__).parents[2] / "docs" / "tables"
 
 
 @pytest.fixture(scope="module")
@@ -58,25 +58,24 @@ def test_limits_alone_do_not_detect_shifts(self_test: SelfTest) -> None:
     assert by_limits["no slackening"] == by_limits["gain 1.05"] == "fail"
 
 
-def test_self_test_page_is_current(self_test: SelfTest) -> None:
-    """The committed page has the mutants and verdicts of this run."""
-    text = DOCUMENT.read_text(encoding="utf-8")
+def test_tables_of_the_page_are_those_of_this_run(self_test: SelfTest) -> None:
     assert len(self_test.mild) == len(MILD)
-    assert render_markdown(build_self_test_page(self_test)).splitlines() == [
-        row for row in text.splitlines() if "en50318-2002/250" not in row and "320-twin" not in row
-    ]
+    for name, rows in (
+        ("mutants", self_test_tables.list_severe(self_test.severe)),
+        ("numerical", self_test_tables.list_numerical(self_test.numerical)),
+        ("mild", self_test_tables.list_mild(self_test.mild)),
+    ):
+        text = (TABLES / f"self-test-{name}.csv").read_text("utf-8")
+        heading, *written = (tuple(row) for row in csv.reader(text.splitlines()))
+        assert [heading, *(row for row in written if "`en50318-2002/300`" in row)] == rows
 
 
-def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mutant without a fault: the self-test itself must be able to fail, also on a narrow terminal."""
     harmless = Mutant("harmless", "Nothing.", lambda case, record: Delivered(record), "limits")
     monkeypatch.setattr(bench, "MUTANTS", (harmless,))
     monkeypatch.setattr(bench, "MILD", ())
-    page = tmp_path / "page.md"
-    result = CliRunner(env={"COLUMNS": "80"}).invoke(
-        app, ["system", "self-test", "en50318-2002/250", "--markdown", str(page)]
-    )
+    result = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["system", "self-test", "en50318-2002/250"])
     assert result.exit_code == 1
     assert result.output.startswith("FAIL 0 of 1 mutants detected by the expected check")
     assert "NOT DETECTED: harmless on en50318-2002/250, expected check: limits\n" in result.output
-    assert "| harmless |" in page.read_text()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jsonschema import validate
 
-from pantocheck.conformance.comparison.drop_limits import DropLimits
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.schemas import build_schema
 
 TEXT = (Path(__file__).parents[2] / "docs" / "compare-drop.md").read_text(encoding="utf-8")
@@ -14,6 +14,6 @@ TEXT = (Path(__file__).parents[2] / "docs" / "compare-drop.md").read_text(encodi
 
 def test_limits_of_the_page_follow_their_format() -> None:
     tables = tomllib.loads(re.search(r"```toml\n(.*?)```", TEXT, re.DOTALL)[1])
-    validate(tables, build_schema("drop-limits"))
-    (limit,) = DropLimits.model_validate(tables).limit
-    assert (limit.sensors, limit.window_s, limit.band) == ((1, 2, 3, 4), (0.0, 10.0), (0.3, 20.0))
+    validate(tables, build_schema("comparison-limits"))
+    (limit,) = ComparisonLimits.model_validate(tables).limit
+    assert (limit.sensors, limit.window_s, limit.band_Hz) == ((1, 2, 3, 4), (0.0, 10.0), (0.3, 20.0))

@@ -11,7 +11,7 @@ from helpers.line_table_files import change_cell, export_tables
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.comparison.static_criteria import CRITERIA
+from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import COLUMN_UNITS, read_static_record
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model

@@ -6,11 +6,9 @@ from pathlib import Path
 
 from jsonschema import validate
 
-from pantocheck.conformance.comparison.response_columns import list_response_columns
-from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS
-from pantocheck.conformance.comparison.response_limits import ResponseLimits
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.comparison.response_record import read_response
-from pantocheck.conformance.comparison.response_sidecar import ResponseSidecar
+from pantocheck.conformance.comparison.response_sidecar import RESPONSE_FORMS, ResponseSidecar, list_response_columns
 from pantocheck.conformance.input_files.units import convert_key
 from pantocheck.conformance.schemas import build_schema
 
@@ -32,8 +30,8 @@ def test_sidecar_and_table_of_the_page_can_be_read(tmp_path: Path) -> None:
 
 def test_limits_of_the_page_follow_their_format() -> None:
     tables = tomllib.loads(LIMITS)
-    validate(tables, build_schema("response-limits"))
-    assert ResponseLimits.model_validate(tables).limit[0].heights_m == (0.6, 1.2)
+    validate(tables, build_schema("comparison-limits"))
+    assert ComparisonLimits.model_validate(tables).limit[0].heights_m == (0.6, 1.2)
 
 
 def test_units_of_the_page_are_those_of_each_kind() -> None:

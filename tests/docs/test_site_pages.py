@@ -13,6 +13,8 @@ import pantocheck.model
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.command_line.app import COMMANDS, load_command
+from pantocheck.conformance.consistency import roll_off
+from pantocheck.conformance.quantities import filters
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.schemas import FORMAT_NAMES, build_schema
 
@@ -33,7 +35,7 @@ def test_every_option_of_a_command_is_described(pages: dict[str, str]) -> None:
     for name in COMMANDS:
         section = pages["commands"].split(f"## pantocheck {name}\n")[1].split("\n## ")[0]
         options = {option for parameter in load_command(name).params for option in parameter.opts if option[:2] == "--"}
-        missing += [f"{name} {option}" for option in options - {"--help"} if option not in section]
+        missing += [(name, option) for option in options - {"--help"} if option not in section]
     assert missing == []
 
 
@@ -42,9 +44,19 @@ def test_every_key_of_a_format_is_described(pages: dict[str, str]) -> None:
     for name in FORMAT_NAMES:
         section = pages["formats"].split(f"## {name}\n")[1].split("\n## ")[0]
         schema = build_schema(name)
-        keys = {key for part in (schema, *schema.get("$defs", {}).values()) for key in part.get("properties", {})}
-        missing += [f"{name}: {key}" for key in keys if f"`{key}`" not in section]
+        parts = [schema, *schema.get("$defs", {}).values()]
+        missing += [(name, key) for part in parts for key in part.get("properties", {}) if f"`{key}`" not in section]
     assert missing == []
+
+
+def test_every_threshold_has_its_value_and_a_reason(pages: dict[str, str]) -> None:
+    rows = re.findall(r"^\| `(\w+)` \| (.*) \| (.*) \|$", pages["thresholds"], re.MULTILINE)
+    assert len(rows) > 200
+    assert [name for name, _, reason in rows if len(reason) < 10] == []
+    values = {name: value for name, value, _ in rows}
+    assert values["HIGHEST_SHARE_OF_RATE"] == f"{filters.HIGHEST_SHARE_OF_RATE:g}"
+    assert values["STOP_BAND"] == ", ".join(f"{value:g}" for value in roll_off.STOP_BAND)
+    assert values["CONTRADICTION"] == f"{roll_off.CONTRADICTION:g}"  # one of two numbers of a statement
 
 
 def test_every_quantity_and_public_name_is_described(pages: dict[str, str]) -> None:
@@ -87,8 +99,11 @@ def test_picture_of_the_readme_is_that_of_the_code(tmp_path: Path, monkeypatch: 
     assert legends[0] == legends[1]
 
 
-def test_limitations_state_the_trust_of_the_limits_of_every_case(pages: dict[str, str]) -> None:
-    [page] = [text for name, text in pages.items() if "known-limitations" in name]
-    assert "| `en50318-2002/250` | 8 secondary |" in page
-    assert "| `en50318-2018/ac-stitched/275` | none |" in page
-    assert all(f"| `{name}` |" in page for name in list_library(library_folder()))
+def test_tables_of_written_pages(pages: dict[str, str]) -> None:
+    """Every included table has a builder; that of the trust names every case."""
+    tables = {name: build() for name, build in import_module("site_pages").TABLES.items()}
+    text = "\n".join(page.read_text("utf-8") for page in DOCS.glob("*.md"))
+    assert sorted(re.findall(r"^```\{include\} generated/tables/(.+)\.md$", text, re.MULTILINE)) == sorted(tables)
+    assert "| `en50318-2002/250` | 8 secondary |" in tables["limit-trust"]
+    assert all(f"| `{name}` |" in tables["limit-trust"] for name in list_library(library_folder()))
+    assert "## en50318-2002/250" in pages["converged-values"]

@@ -166,6 +166,13 @@ def run_facts(speed: float) -> dict[str, Any]:
     }
 
 
+def with_identity(case: dict[str, Any]) -> dict[str, Any]:
+    """Case with its verdict by the criteria and its place outside the library."""
+    digest = "sha256:" + 64 * "6"
+    stated = {"criteria_verdict": case["verdict"], "library": "own"}
+    return case | stated | {"limits_digest": digest, "stated_limits_digest": digest}
+
+
 def passing_case() -> dict[str, Any]:
     front, rear = force(118.4, 0.98, 0.0), force(119.2, 1.02, 1.1)
     q1, q2 = statistics(*front[1:]), statistics(*rear[1:])
@@ -182,29 +189,33 @@ def passing_case() -> dict[str, Any]:
         ("max_uplift_at_support_mm", "mm", 48, 55),
         ("contact_loss_pct", "%", 0, 0),
     ]
-    return {
-        "id": "en50318-2002/250",
-        "title": "EN 50318:2002 reference model, 250 km/h",
-        "verdict": "pass",
-        "reason": None,
-        "notes": ["The steady arm carries its share of the contact wire, so that the wire is level at the support."],
-        "warnings": ["The contact force is sampled at 1000 Hz; contact losses shorter than 1 ms are not seen."],
-        "inputs": [
-            {"group": "contact_wire", "trust": "secondary", "source": SOURCE},
-            {"group": "evaluated_spans", "trust": "provisional", "source": "not traced to a printed source"},
-            {"group": "pantograph", "trust": "primary", "source": "manufacturer's data sheet"},
-        ],
-        "input_digest": "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
-        "criteria": [criterion(q1, 1, *limit) for limit in limits] + [criterion(q2, 2, *limit) for limit in limits],
-        "quantities": {"0": {"wave_speed_m_s": 121.7}, "1": q1, "2": q2},
-        **uncertainty({"1": q1, "2": q2}),
-        "skipped": {},
-        "record": VERIFIED,
-        "run": run_facts(250),
-        "traces": {"1": trace(*front), "2": trace(*rear)},
-        "uplift": [uplift(240.0, 50.1), uplift(300.0, 51.3), uplift(360.0, 48.9)],
-        "places": {"1": places(*front) | highest, "2": places(*rear) | highest},
-    }
+    return with_identity(
+        {
+            "id": "en50318-2002/250",
+            "title": "EN 50318:2002 reference model, 250 km/h",
+            "verdict": "pass",
+            "reason": None,
+            "notes": [
+                "The steady arm carries its share of the contact wire, so that the wire is level at the support."
+            ],
+            "warnings": ["The contact force is sampled at 1000 Hz; contact losses shorter than 1 ms are not seen."],
+            "inputs": [
+                {"group": "contact_wire", "trust": "secondary", "source": SOURCE},
+                {"group": "evaluated_spans", "trust": "provisional", "source": "not traced to a printed source"},
+                {"group": "pantograph", "trust": "primary", "source": "manufacturer's data sheet"},
+            ],
+            "input_digest": "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
+            "criteria": [criterion(q1, 1, *limit) for limit in limits] + [criterion(q2, 2, *limit) for limit in limits],
+            "quantities": {"0": {"wave_speed_m_s": 121.7}, "1": q1, "2": q2},
+            **uncertainty({"1": q1, "2": q2}),
+            "skipped": {},
+            "record": VERIFIED,
+            "run": run_facts(250),
+            "traces": {"1": trace(*front), "2": trace(*rear)},
+            "uplift": [uplift(240.0, 50.1), uplift(300.0, 51.3), uplift(360.0, 48.9)],
+            "places": {"1": places(*front) | highest, "2": places(*rear) | highest},
+        }
+    )
 
 
 def failing_case() -> dict[str, Any]:
@@ -217,57 +228,62 @@ def failing_case() -> dict[str, Any]:
     skipped = criterion(q, 1, "std_force_N", "N", 10, 20) | {"quantity": "rms_20_50_N", "verdict": "skip"}
     skipped |= dict.fromkeys(("value", "margin", "discretisation_error", "uncertainty")) | {"components": {}}
     skipped["reason"] = "the force was low-pass filtered at 20 Hz before delivery, which removed the band 20-50 Hz"
-    return {
-        "id": "en50318-2002/300",
-        "title": "EN 50318:2002 reference model, 300 km/h",
-        "verdict": "fail",
-        "reason": None,
-        "notes": [],
-        "warnings": [],
-        "inputs": [{"group": "contact_wire", "trust": "secondary", "source": SOURCE}],
-        "input_digest": "sha256:2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae",
-        "criteria": [
-            criterion(q, 1, "mean_force_N", "N", 110, 120),
-            criterion(q, 1, "std_force_N", "N", 32, 34),
-            criterion(q, 1, "max_force_N", "N", None, 225),
-            criterion(q, 1, "min_force_N", "N", 30, None),
-            provisional,
-            skipped,
-        ],
-        "quantities": {"1": q},
-        **uncertainty({"1": q}),
-        "skipped": {"1": {"rms_20_50_N": skipped["reason"], "std_force_50_N": skipped["reason"]}},
-        "record": VERIFIED,
-        "run": run_facts(300),
-        "traces": {"1": trace(*signal)},
-        "uplift": [],
-        "places": {"1": places(*signal)},
-    }
+    return with_identity(
+        {
+            "id": "en50318-2002/300",
+            "title": "EN 50318:2002 reference model, 300 km/h",
+            "verdict": "fail",
+            "reason": None,
+            "notes": [],
+            "warnings": [],
+            "inputs": [{"group": "contact_wire", "trust": "secondary", "source": SOURCE}],
+            "input_digest": "sha256:2c26b46b68ffc68ff99b453c1d30413413422d706483bfa0f98a5e886266e7ae",
+            "criteria": [
+                criterion(q, 1, "mean_force_N", "N", 110, 120),
+                criterion(q, 1, "std_force_N", "N", 32, 34),
+                criterion(q, 1, "max_force_N", "N", None, 225),
+                criterion(q, 1, "min_force_N", "N", 30, None),
+                provisional,
+                skipped,
+            ],
+            "quantities": {"1": q},
+            **uncertainty({"1": q}),
+            "skipped": {"1": {"rms_20_50_N": skipped["reason"], "std_force_50_N": skipped["reason"]}},
+            "record": VERIFIED,
+            "run": run_facts(300),
+            "traces": {"1": trace(*signal)},
+            "uplift": [],
+            "places": {"1": places(*signal)},
+        }
+    )
 
 
 def skipped_case() -> dict[str, Any]:
-    return {
-        "id": "en50318-2018/ac-simple/320-twin",
-        "title": "EN 50318:2018 AC simple, 320 km/h, two pantographs",
-        "verdict": "skip",
-        "reason": "the static case en50318-2018/ac-simple/static did not pass",
-        "notes": [],
-        "warnings": [],
-        "inputs": [],
-        "input_digest": "sha256:fcde2b2edba56bf408601fb721fe9b5c338d10ee429ea04fae5511b68fbf8fb9",
-        "criteria": [],
-        "quantities": {},
-        "skipped": {},
-        "run": run_facts(320) | dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m", "rate_Hz", "evaluated_m")),
-        "traces": {},
-        "uplift": [],
-    }
+    return with_identity(
+        {
+            "id": "en50318-2018/ac-simple/320-twin",
+            "title": "EN 50318:2018 AC simple, 320 km/h, two pantographs",
+            "verdict": "skip",
+            "reason": "the static case en50318-2018/ac-simple/static did not pass",
+            "notes": [],
+            "warnings": [],
+            "inputs": [],
+            "input_digest": "sha256:fcde2b2edba56bf408601fb721fe9b5c338d10ee429ea04fae5511b68fbf8fb9",
+            "criteria": [],
+            "quantities": {},
+            "skipped": {},
+            "run": run_facts(320)
+            | dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m", "rate_Hz", "evaluated_m")),
+            "traces": {},
+            "uplift": [],
+        }
+    )
 
 
 def example() -> dict[str, Any]:
     results = {
         "schema": "pantocheck.results/1",
-        "suite": {"version": "0.1.0", "commit": "4f2c9d1e7a3b"},
+        "suite": {"version": "0.1.0", "commit": "4f2c9d1e7a3b", "digest": "sha256:" + 64 * "4"},
         "system": {"name": "Pantocheck reference simulator", "version": "0.1.0", "kind": "builtin"},
         "statement": "self-declared conformance report, in the style of EN 50318",
         "verdict": "fail",
@@ -281,6 +297,17 @@ def example() -> dict[str, Any]:
             "machine": "x86_64",
             "system": "Linux",
         },
+        "criteria_verdict": "fail",
+        "renderer": {
+            "typst": "0.15.0",
+            "matplotlib": "3.10.8",
+            "jinja2": "3.1.6",
+            "numpy": "2.4.6",
+            "fonts": "sha256:" + 64 * "5",
+            "machine": "x86_64",
+            "system": "Linux",
+        },
+        "scope": [],
         "cases": [passing_case(), failing_case(), skipped_case()],
     }
     return Results.model_validate(results).to_dict()
@@ -296,7 +323,7 @@ def results() -> dict[str, Any]:
 def passing() -> dict[str, Any]:
     """The passing case alone."""
     results = example()
-    return results | {"verdict": "pass", "cases": results["cases"][:1]}
+    return results | {"verdict": "pass", "criteria_verdict": "pass", "cases": results["cases"][:1]}
 
 
 def chart(label: str, caption: str) -> dict[str, Any]:

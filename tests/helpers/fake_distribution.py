@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from pantocheck.conformance.quantities import plug_in_quantity
-
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
@@ -19,7 +17,6 @@ def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     for name, module in [*sys.modules.items()]:
         if str(folder) in str(getattr(module, "__file__", "")):
             del sys.modules[name]
-    plug_in_quantity._load_quantity.cache_clear()
 
 
 def write_distribution(

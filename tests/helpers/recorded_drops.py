@@ -74,5 +74,5 @@ def record_drop(
 def build_task(*coefficients: float, **changes: Any) -> DropTask:
     """Comparison with the mass coefficients of some models [1/s], named after them."""
     models = {f"b{coefficient:g}": DampingChoice("made", damp_masses(coefficient)) for coefficient in coefficients}
-    task = DropTask(read_short_line(), models, WINDOWS, ELEMENT, TIME_STEP, 0.0, None)
+    task = DropTask(read_short_line(), models, WINDOWS, ELEMENT, TIME_STEP, 0.0)
     return replace(task, **changes)

@@ -37,10 +37,10 @@ def measure_line(element: float = 0.5) -> dict[str, Array]:
     return {"position_m": position, "elasticity_mm_N": elasticity, "contact_wire_height_m": heights}
 
 
-def write_static_record(folder: Path, columns: dict[str, Array], **sidecar: Any) -> Path:
+def write_static_record(folder: Path, table_columns: dict[str, Array], **sidecar: Any) -> Path:
     """Write a table and its sidecar; return the path of the table."""
-    rows = (",".join(f"{value:.9g}" for value in row) for row in zip(*columns.values(), strict=True))
-    (folder / "measured.csv").write_text("\n".join([",".join(columns), *rows]) + "\n", encoding="utf-8")
+    rows = (",".join(f"{value:.9g}" for value in row) for row in zip(*table_columns.values(), strict=True))
+    (folder / "measured.csv").write_text("\n".join([",".join(table_columns), *rows]) + "\n", encoding="utf-8")
     stated = {"schema": "pantocheck.static/1", "file": "measured.csv", "force_N": [FORCE], **sidecar}
     content = {key: value for key, value in stated.items() if value is not None}
     (folder / "measured.toml").write_text(tomli_w.dumps(content), encoding="utf-8")

@@ -7,14 +7,14 @@ import pytest
 
 from helpers.central_differences import contact_force
 from helpers.lines import PANTOGRAPH_2002, Array, simple_line
-from pantocheck.conformance.guide.peers.scikit_fem_modes import (
+from pantocheck.model import Kind, Passage, Rayleigh, discretise, simulate_passage
+from pantocheck.model.modal.modes import compute_modes
+from pantocheck.model.pantograph import preload_springs
+from verification.guide.peers.scikit_fem_modes import (
     COMPARED_MODES,
     FREQUENCY_TOLERANCE,
     solve_with_scikit_fem,
 )
-from pantocheck.model import Kind, Passage, Rayleigh, discretise, simulate_passage
-from pantocheck.model.modal.modes import compute_modes
-from pantocheck.model.pantograph import preload_springs
 
 PANTOGRAPH = preload_springs(PANTOGRAPH_2002, np.full(2, 0.06))
 RATE = 500.0

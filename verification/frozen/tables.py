@@ -59,6 +59,7 @@ _OLD_COMMAND = re.compile(
 )
 
 PLACEHOLDERS = (
+    (re.compile(r"sha256:(?:[0-9a-f]{64}|[0-9a-f]{30,63} [0-9a-f]+)\b"), "<digest>"),
     (re.compile(r"sha256[:-][0-9A-Za-z+/=]{12,64}"), "<digest>"),
     (re.compile(r"(?<![\w.])(?=[0-9a-f]*[a-f])(?=[0-9a-f]*\d)[0-9a-f]{12,64}(?![\w.])"), "<digest>"),
     (re.compile(r"\b20\d\d-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d)?(?:\.\d+)?(?:Z| UTC|\+00:00)?)?"), "<date>"),
@@ -66,7 +67,7 @@ PLACEHOLDERS = (
     (re.compile(r"(?i)\b(python|numpy|scipy|numba|typst|matplotlib|jinja2) \d+(?:\.\d+)+"), r"\1 <version>"),
     (re.compile(r"(?m)^(wall_s|version) = .*$"), r"\1 = <fact of the run>"),
 )
-"""Digests, dates, versions and facts of a run; the same for both states."""
+"""Digests (broken over two lines, too), dates, versions and facts of a run; the same for both states."""
 
 
 class Tables:

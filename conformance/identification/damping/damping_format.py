@@ -109,7 +109,7 @@ class PairedMode(RoundedModel):
     measured: Annotated[Rounded, Field(description="measured damping ratio [-]")]
     fitted: Annotated[Rounded, Field(description="damping ratio of the fitted model [-]")]
     used: Annotated[bool, Field(description="false: outlier of its group or overlapping, left out of the fit")]
-    overlapping: Annotated[bool, Field(description="true: another mode lies within the half-power bandwidth")] = False
+    overlapping: Annotated[bool, Field(description="true: another mode lies within the half-power bandwidth")]
 
 
 class WireShape(RoundedModel):

@@ -8,12 +8,12 @@ import numpy as np
 from scipy.linalg import eigh
 
 from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
 from pantocheck.conformance.identification.pantograph_fit.chain_selection import ChainSelection, information_criterion
 from pantocheck.conformance.identification.pantograph_fit.chain_stiffness import chain_response
 from pantocheck.conformance.identification.pantograph_fit.fit_intervals import FitIntervals, judge_parameters
-from pantocheck.conformance.identification.pantograph_fit.pantograph_fit_format import (
+from pantocheck.conformance.results.comparison_format import ResponseComparison
+from pantocheck.conformance.results.pantograph_fit_format import (
     ChainCandidate,
     ChainKey,
     ChainParameter,

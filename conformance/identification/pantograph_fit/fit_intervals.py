@@ -1,13 +1,13 @@
 """Intervals of the parameters of a fitted chain, from the curvature of the sum of squares at its minimum."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy.stats import t
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
+from pantocheck.conformance.results.pantograph_fit_format import Determination
 
 INTERVAL_CONFIDENCE = 0.95
 """Confidence of an interval."""
@@ -15,9 +15,6 @@ INTERVAL_CONFIDENCE = 0.95
 WEAK = 0.2
 """Half-width of an interval over its value above which a parameter is weakly determined: models are compared with
 changes of five percent and more."""
-
-Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
-"""How well the measured band determines a parameter."""
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,8 @@ from pantocheck.conformance.input_files.measured_table import (
 
 MATLAB_TIME_NAMES = ("time", "time_s", "t")
 NUMERIC_CLASSES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
-COMPRESSED = 15  # type of an element of version 5
+COMPRESSED = 15
+"""Type of a compressed element of version 5."""
 
 RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
 

@@ -23,8 +23,10 @@ from pantocheck.conformance.input_files.measured_table import (
     stack_channels,
 )
 
-SPARE_BYTES = 2**20  # of a group beside its numbers
-SAME_TIME = 1e-6  # tolerance between the times of two channels [s]; a hundredth of an interval at 10 kHz
+SPARE_BYTES = 2**20
+"""Size of a group beside its numbers [bytes]."""
+SAME_TIME = 1e-6
+"""Tolerance between the times of two channels [s]; a hundredth of an interval at 10 kHz."""
 
 
 def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:

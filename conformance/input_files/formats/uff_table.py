@@ -19,7 +19,8 @@ from pantocheck.conformance.input_files.measured_table import (
 )
 from pantocheck.conformance.input_files.units import SI_UNITS, MotionQuantity
 
-TIME_RESPONSE = 1  # function type of the format
+TIME_RESPONSE = 1
+"""Function type of the format."""
 DIRECTIONS = {1: "+x", 2: "+y", 3: "+z", -1: "-x", -2: "-y", -3: "-z"}
 DATA_TYPES: dict[MotionQuantity, int] = {"acceleration": 12, "velocity": 11, "displacement": 8}
 """Specific data types of the format."""

@@ -5,6 +5,7 @@ Replicates represent such records: they consist of blocks of one span, drawn at 
 doi:10.1214/aos/1176347265). The scatter of a statistic among the replicates gives its uncertainty.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,6 +54,11 @@ class BlockReplicates(Sampling):
         """Standard deviation of each replicate."""
         centred = series - series.mean()  # the difference of two large numbers would lose digits
         return np.asarray(np.sqrt(np.maximum(self.mean(centred**2) - self.mean(centred) ** 2, 0)))
+
+    def apply(self, statistic: Callable[[RealArray], float], series: RealArray) -> RealArray:
+        """Any other statistic of the samples of each replicate."""
+        block = np.arange(self.length)
+        return np.array([statistic(series[(starts[:, None] + block).ravel()]) for starts in self.starts])
 
     def largest(self, series: RealArray) -> RealArray:
         """Largest value of each replicate."""

@@ -71,7 +71,7 @@ def _list_facts(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
         **results["inputs"],
         **_join_sources(results["sources"]),
         "Suite": f"Pantocheck {results['suite']['version']}",
-        "Digest of the suite": results["suite"]["digest"] or "not known",
+        "Digest of the suite": results["suite"]["digest"],
     }
     return tuple((name, text) for name, text in facts.items() if text)
 

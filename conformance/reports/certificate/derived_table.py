@@ -16,7 +16,7 @@ SHOWN_DIGITS = 5
 
 
 def derived_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
-    """Table of derived values, and by whom they were computed; nothing for results of older versions.
+    """Table of derived values, and by whom they were computed; nothing if there are none.
 
     Parameters
     ----------

@@ -16,7 +16,6 @@ CASES_SHOWN = 10
 """Number of cases outside the steps that page 1 names; the table of cases has all."""
 
 SOURCE_LABEL = "Cases from outside the library"
-PLUG_IN_LABEL = "Plug-in"
 
 CHANGES_SHOWN = 5
 """Number of weakened limits of a case on page 1; the section of the case shows all."""
@@ -99,25 +98,12 @@ def describe_origin(case: dict[str, Any]) -> str:
 
 
 def list_sources(results: dict[str, Any]) -> list[tuple[str, str]]:
-    """Label and text for each source of cases from outside, and for each plug-in, that took part."""
+    """Label and text for each source of cases from outside that took part."""
     cases: dict[tuple[str, str], list[str]] = {}
     for case in results["cases"]:
         if origin := case.get("origin"):
             cases.setdefault((_name_source(origin), origin["digest"]), []).append(case["id"])
-    sources = [(SOURCE_LABEL, _describe_source(*source, names)) for source, names in cases.items()]
-    return [*sources, *((PLUG_IN_LABEL, text) for text in _describe_plug_ins(results))]
-
-
-def _describe_plug_ins(results: dict[str, Any]) -> list[str]:
-    """Plug-ins that took part, each once: they are code of another distribution, which the suite does not check."""
-    system = results["system"].get("plug_in")
-    found = [*([system] if system else []), *(item for case in results["cases"] for item in case.get("plug_ins") or ())]
-    return list(dict.fromkeys(map(_describe_plug_in, found)))
-
-
-def _describe_plug_in(item: dict[str, Any]) -> str:
-    definition = f": {item['definition']}" if item["definition"] else ""
-    return f"{item['kind']} {item['name']} of {item['distribution']} {item['version']}{definition}"
+    return [(SOURCE_LABEL, _describe_source(*source, names)) for source, names in cases.items()]
 
 
 def _describe_source(name: str, digest: str, cases: list[str]) -> str:
@@ -136,7 +122,7 @@ def _kind(case: dict[str, Any]) -> str:
 
 
 def build_scope_section(results: dict[str, Any], anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """Table of the steps of the procedure with the verdicts of their cases; empty for results of older versions.
+    """Table of the steps of the procedure with the verdicts of their cases.
 
     Parameters
     ----------

@@ -7,14 +7,13 @@ from pantocheck.conformance.quantities.limit_text import is_relative_margin
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.certificate.procedure_page import anchor_step, name_step
-from pantocheck.conformance.reports.comparison.response_comparison_page import (
-    build_response_sections,
-    list_response_remarks,
-)
-from pantocheck.conformance.reports.comparison.static_comparison_page import build_static_sections, list_remarks
+from pantocheck.conformance.reports.comparison.comparison_parts import list_remarks
+from pantocheck.conformance.reports.comparison.response_sections import build_response_sections
+from pantocheck.conformance.reports.comparison.static_sections import build_static_sections
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_plain, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit, read_words
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
 
 SHORT_STEPS = ("simulation_parameters", "limits_of_validity")
 """Steps that need no page of their own."""
@@ -60,18 +59,18 @@ def build_step_section(
 
 
 def _pantograph_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    responses = map(ResponseComparison.model_validate, results["procedure"]["responses"])
     return tuple(
-        doc.Section(
-            response["pantograph"], (*_warn(list_response_remarks(response)), *build_response_sections(response))
-        )
-        for response in results["procedure"]["responses"]
+        doc.Section(response.model.name, (*_warn(list_remarks(response)), *build_response_sections(response)))
+        for response in responses
     )
 
 
 def _static_blocks(results: dict[str, Any]) -> tuple[doc.Block, ...]:
+    comparisons = map(StaticComparison.model_validate, results["procedure"]["statics"])
     return tuple(
-        doc.Section(statics["line"], (*_warn(list_remarks(statics)), *build_static_sections(statics)))
-        for statics in results["procedure"]["statics"]
+        doc.Section(statics.model.name, (*_warn(list_remarks(statics)), *build_static_sections(statics)))
+        for statics in comparisons
     )
 
 

@@ -43,13 +43,12 @@ def case_verdict(case: dict[str, Any], name: str) -> str | None:
 
 
 def list_criteria(case: dict[str, Any], name: str) -> list[dict[str, Any]]:
-    """Criteria of one of the verdicts of a case; in results of older versions, a drift is one of the criteria."""
+    """Criteria of one of the verdicts of a case."""
     table = (case["verification"] or {"criteria": []}) if name == "verification" else case
     criteria: list[dict[str, Any]] = table["criteria"]
     if name == "verification":
         return criteria
-    compared = case.get("baseline") is not None
-    return [row for row in criteria if (compared and is_drift(row)) == (name == "baseline")]
+    return [row for row in criteria if is_drift(row) == (name == "baseline")]
 
 
 def select_criteria(results: dict[str, Any], case: dict[str, Any]) -> Iterator[dict[str, Any]]:

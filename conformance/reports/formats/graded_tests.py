@@ -8,7 +8,7 @@ from pantocheck.conformance.quantities.limit_text import format_graded, is_relat
 from pantocheck.conformance.reports.certificate.two_verdicts import NAMES, list_criteria, select_criteria
 from pantocheck.conformance.reports.words import name_owner
 
-ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
+TEST_ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
 """Name of each verdict in JUnit; a test without such an element has passed."""
 
 
@@ -39,12 +39,12 @@ class GradedTest:
     @property
     def element(self) -> str:
         """Element of JUnit that states the verdict."""
-        return ELEMENTS.get(self.verdict, "system-out")
+        return TEST_ELEMENTS.get(self.verdict, "system-out")
 
     @property
     def message(self) -> str:
         """Text of this element."""
-        return self.text if self.verdict in ELEMENTS else f"{self.verdict}: {self.text}"
+        return self.text if self.verdict in TEST_ELEMENTS else f"{self.verdict}: {self.text}"
 
 
 def list_case_tests(case: dict[str, Any], results: dict[str, Any]) -> list[GradedTest]:

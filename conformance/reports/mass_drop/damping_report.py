@@ -133,8 +133,7 @@ def _observability_table(rows: list[dict[str, Any]]) -> doc.Table:
 
 
 def _explain_omission(pair: dict[str, Any]) -> str:
-    # Results of an earlier version do not state overlaps.
-    return "no: overlaps another mode" if pair.get("overlapping") else "no: outlier of its group"
+    return "no: overlaps another mode" if pair["overlapping"] else "no: outlier of its group"
 
 
 def _pair_table(pairs: list[dict[str, Any]]) -> doc.Table:

@@ -34,7 +34,7 @@ def list_mode_blocks(line: dict[str, Any]) -> Iterator[doc.Block]:
 
 def _half_power(line: dict[str, Any]) -> Iterator[doc.Block]:
     """One sentence and one figure on the spectral lines in the half-power bands; nothing for results without them."""
-    if (counts := line.get("half_power")) is None or not counts["modes"]:
+    if not (counts := line["half_power"])["modes"]:
         return
     yield doc.Paragraph(describe_half_power(counts))
     figure = doc.Figure(

@@ -3,6 +3,7 @@
 from typing import Any, cast
 
 from pantocheck.conformance.cases.case import Case, drop_keys
+from pantocheck.conformance.cases.case_features import list_case_features
 from pantocheck.conformance.cases.force_law import AppliedForceLaw
 from pantocheck.conformance.cases.lift_force import AppliedForces
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE
@@ -25,6 +26,7 @@ def build_case_message(case: Case) -> dict[str, Any]:
         "id": case.id,
         "case_digest": case.digest,
         "title": file.title,
+        "features": list_case_features(case),
         "speed_km_h": file.speed_km_h,
         "evaluated_m": list(case.analysis_section),
         "filter": file.filter.model_dump(mode="json"),

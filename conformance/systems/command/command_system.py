@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_features import find_missing_features
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.results.outcome import Errored, Outcome, Skipped
 from pantocheck.conformance.systems.command.case_message import build_case_message
@@ -16,6 +17,7 @@ from pantocheck.conformance.systems.command.delivery import DeliveryRefused, rea
 from pantocheck.conformance.systems.command.program import Program, ProgramFailed
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import (
+    PROTOCOL,
     AnswerRefused,
     DeliveredAnswer,
     ErroredAnswer,
@@ -24,7 +26,6 @@ from pantocheck.conformance.systems.command.protocol_messages import (
     encode_message,
     parse_message,
 )
-from pantocheck.conformance.systems.command.protocol_versions import FIRST_VERSION, PROTOCOLS, find_newer_key
 
 START_LIMIT = 120.0
 """Time limit of the first answer of a program [s]; large environments need half a minute to start."""
@@ -59,22 +60,15 @@ class CommandSystem:
         """Run a case in a new process; a failure of the process is an error of this case only."""
         if self.start_failure is not None:
             return Errored(self.start_failure)
-        if case.line.section is not None:
-            return Skipped(
-                f"the line has {len(case.line.section)} tension sections (key section); the protocol describes one only"
-            )
         with tempfile.TemporaryDirectory(prefix="pantocheck-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             try:
                 with Program(self.arguments, folder) as program:
-                    newer_key = find_newer_key(case.line)
-                    if _start_program(program, self.timeout_s).protocol == FIRST_VERSION and newer_key is not None:
+                    started = _start_program(program, self.timeout_s)
+                    if (reason := find_missing_features(case, started.features)) is not None:
                         program.send(encode_message("stop"))
                         program.wait_for_end()
-                        return Skipped(
-                            f"the line has the key {newer_key}, which {FIRST_VERSION} does not contain; a program that"
-                            f" reads it answers 'start' with {PROTOCOLS[-1]}"
-                        )
+                        return Skipped(reason)
                     begin = time.monotonic()
                     limit, content = self.timeout_s, build_case_message(case)
                     program.send(encode_message("run", id=RUN, folder=name, time_limit_s=limit, case=content))
@@ -121,13 +115,12 @@ def _find_late_error(lines: list[bytes]) -> ErroredAnswer | None:
 
 def _start_program(program: Program, limit: float) -> Started:
     """Send the message `start` and return the answer."""
-    versions = {"protocol": FIRST_VERSION, "protocols": PROTOCOLS}
-    program.send(encode_message("start", **versions, suite_version=version("pantocheck")))
+    program.send(encode_message("start", protocol=PROTOCOL, suite_version=version("pantocheck")))
     answer = parse_message(program.read_line(min(limit, START_LIMIT)))
     if not isinstance(answer, Started):
         raise AnswerRefused(f"its first answer is {answer.message!r}; expected 'started'")
-    if answer.protocol not in PROTOCOLS:
-        raise AnswerRefused(f"it uses the protocol {answer.protocol!r}; expected {' or '.join(map(repr, PROTOCOLS))}")
+    if answer.protocol != PROTOCOL:
+        raise AnswerRefused(f"it uses the protocol {answer.protocol!r}; expected {PROTOCOL!r}")
     return answer
 
 

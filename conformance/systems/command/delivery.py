@@ -61,7 +61,6 @@ def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float
         case_digest=sidecar.case_digest,
         digest=record_digest(sidecar_path, table_path),
         start=sidecar.start,
-        table=sidecar.file,
     )
 
 

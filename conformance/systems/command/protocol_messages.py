@@ -1,7 +1,7 @@
 """Messages to and from a program, and their JSON Schemas."""
 
 import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
@@ -12,7 +12,9 @@ from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, is_absent
 from pantocheck.conformance.simulation.derived_format import Derived
-from pantocheck.conformance.systems.command.protocol_versions import FIRST_VERSION, PROTOCOLS
+
+PROTOCOL: Final = "pantocheck.command/1"
+"""Version of the protocol."""
 
 Text = Annotated[str, Field(min_length=1, max_length=2000)]
 
@@ -25,12 +27,7 @@ class Start(InputTable):
     """First message."""
 
     message: Literal["start"] = "start"
-    protocol: Annotated[
-        Literal["pantocheck.command/1"], Field(description="first version of the protocol that the suite speaks")
-    ] = FIRST_VERSION
-    protocols: Annotated[
-        tuple[str, ...], Field(description="all versions that the suite speaks; the program selects one")
-    ] = PROTOCOLS
+    protocol: Annotated[Literal["pantocheck.command/1"], Field(description="version of the protocol")] = PROTOCOL
     suite_version: Annotated[str, Field(description="version of Pantocheck")]
 
 
@@ -75,6 +72,9 @@ class RequestedCase(InputTable):
         str, Field(description="digest of the inputs of the case, to be repeated in the sidecar of the record")
     ]
     title: str
+    features: Annotated[
+        tuple[str, ...], Field(strict=False, description="features that the case uses, in alphabetic order")
+    ]
     speed_km_h: Annotated[float | None, Field(description="speed of the train; null: check of the line at rest")]
     evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the analysis section [m]")]
     filter: Annotated[Filter, Field(description="filter of the graded force; deliver the force unfiltered if possible")]
@@ -107,15 +107,19 @@ class Started(InputTable):
 
     message: Literal["started"]
     protocol: Annotated[
-        str,
-        Field(
-            max_length=100,
-            description='version of the protocol of the program: "pantocheck.command/1", or "pantocheck.command/2" if '
-            "it reads values of single supports",
-        ),
+        str, Field(max_length=100, description='version of the protocol of the program: "pantocheck.command/1"')
     ]
     name: Annotated[str, Field(min_length=1, max_length=200, description="name of the simulator in reports")]
     version: Annotated[str, Field(max_length=200, description="version of the simulator")]
+    features: Annotated[
+        tuple[Annotated[str, Field(max_length=100)], ...] | None,
+        Field(
+            strict=False,
+            max_length=1000,
+            description="features that the program simulates; a case that uses another one is skipped, and without "
+            "this list every case",
+        ),
+    ] = None
 
 
 class File(InputTable):

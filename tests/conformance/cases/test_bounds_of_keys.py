@@ -25,11 +25,10 @@ from pantocheck.conformance.cases import (
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.mass_drops import drop_sidecar
 from pantocheck.conformance.records import record_sidecar, record_summary, sidecar_tables
-from pantocheck.conformance.systems.command import protocol_messages
 
 MODULES = (
     *(case_file, damping_file, drop_test, force_law, geometry, limits, line_file, pantograph_file, profile_file),
-    *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables, protocol_messages),
+    *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables),
 )
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 NUMBERS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")

@@ -14,11 +14,12 @@ from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.library import load_case, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.line_file import DropperTable, LineFile
+from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, MatricesTable, ModesTable
 from pantocheck.conformance.cases.profile_file import NamedBound, Rule, SpeedFormula, load_profile, resolve_bounds
 from pantocheck.conformance.cases.study_tables import DropperDamping, ReleaseVelocity
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line.elements.dropper import DropperTable
 
 OWN = {"trust": "primary", "source": "own"}
 TUNED = {"model": "pantograph.toml", "target_mean_force_N": 120.0, **OWN}

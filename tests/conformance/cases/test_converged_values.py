@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, converged_path, find_converged
+from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, find_converged
 from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.verification_limits import EXTREMES, VERIFIED_QUANTITIES, build_requirements
@@ -33,7 +33,6 @@ def converged(case: Case) -> ConvergedFile:
 
 
 def test_values_belong_to_the_current_case(case: Case, converged: ConvergedFile) -> None:
-    assert converged_path(case.id).is_file()
     assert (converged.case, converged.case_digest) == (case.id, case.digest)
     assert len(converged.uplift_force_N) == len(case.pantographs)
 

@@ -10,11 +10,11 @@ import pytest
 
 from helpers.listed_spans import list_spans
 from helpers.toml_edit import change_keys, write_toml
-from pantocheck.conformance.cases.dropper_schedule import DropperSchedule
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.line.elements.dropper import DropperSchedule
 
 LINES = sorted(path.relative_to(library_folder()).parent.as_posix() for path in library_folder().rglob("line.toml"))
 UNEQUAL = {

@@ -8,10 +8,9 @@ import pytest
 from helpers.section_lines import section_line, section_tables
 from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.section_rises import lowest_rise
-from pantocheck.conformance.cases.section_tables import OverlapTable, SectionPlace
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionPlace
 
 
 def test_sections_begin_with_the_overlap_at_the_end_of_the_one_before() -> None:
@@ -67,9 +66,9 @@ def test_lowest_rise_is_that_of_the_wire_under_the_head() -> None:
     """Overlap of two spans, 240 m to 360 m, rises 0.5 m and 0.1 m: both wires are 0.1 m up at the middle support."""
     line = section_line(overlap={"spans": 2, "support_rises_m": [0.5, 0.1]})
     assert line.overlaps == ((240.0, 360.0),)
-    rises = [lowest_rise(line, x) for x in (100.0, 240.0, 270.0, 300.0, 330.0, 360.0, 500.0)]
+    rises = [line.lowest_rise(x) for x in (100.0, 240.0, 270.0, 300.0, 330.0, 360.0, 500.0)]
     assert rises == pytest.approx([0.0, 0.0, 0.05, 0.1, 0.05, 0.0, 0.0], abs=1e-15)
-    assert lowest_rise(line.shorten(8), 300.0) == 0.0
+    assert line.shorten(8).lowest_rise(300.0) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from pantocheck.conformance.comparison.run_comparison import compare_subjects
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.reports.comparison.run_comparison_page import format_compared
+from pantocheck.conformance.results.comparison_format import ComparedQuantity
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 
@@ -134,12 +135,13 @@ def test_message_names_the_fault(folder: Path, arguments: list[str], message: st
 
 
 def test_a_difference_beyond_the_uncertainty_is_marked() -> None:
-    quantity: dict[str, Any] = {
-        "values": [28.0, 31.0, [1.0, 2.0], None],
-        "uncertainty": [0.5, 0.0, None, None],
-        "difference": [0.0, 3.0, -0.5, None],
-        "beyond_uncertainty": [False, True, None, None],
-    }
+    quantity = ComparedQuantity(
+        name="std_force_N",
+        values=(28.0, 31.0, (1.0, 2.0), None),
+        uncertainty=(0.5, 0.0, None, None),
+        difference=(0.0, 3.0, -0.5, None),
+        beyond_uncertainty=(False, True, None, None),
+    )
     texts = [format_compared(quantity, i) for i in range(4)]
     assert texts == ["28.00 ± 0.50", "31.00 (+3 *)", "2 values (−0.5)", "–"]
 

@@ -17,7 +17,7 @@ from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.step_log import TaskStep
 
 LIMITS = """
-schema = "pantocheck.drop-limits/1"
+schema = "pantocheck.comparison-limits/1"
 [[limit]]
 quantity = "rms_ratio"
 sensors = [1, 2]
@@ -112,7 +112,7 @@ def test_wrong_option_is_named(folder: Path, arguments: list[str], message: str)
     ("old", "new", "message"),
     [
         ("[0.3, 20.0]", "[0.3, 10.0]", "key limit[1].band_Hz: [0.3, 10.0] is not a compared band"),
-        ("[1, 2]", "[1, 1]", "key limit[1].sensors: [1, 1] repeats a sensor"),
+        ("[1, 2]", "[1, 1]", "key limit[1].sensors: [1, 1] repeats a value"),
         ("lower = 0.98", "lower = 1.98", "key limit[1].lower: 1.98 is above upper = 1.02"),
         ("lower = 0.98\nupper = 1.02", "", "the limit of rms_ratio has no bound"),
         ('"rms_ratio"', '"ratio"', "key limit[1].quantity"),

@@ -21,13 +21,22 @@ from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.schemas import build_schema
 
 LIMITS = """
-schema = "pantocheck.response-limits/1"
+schema = "pantocheck.comparison-limits/1"
 [[limit]]
 quantity = "complex_deviation_pct"
 band_Hz = [20.0, 50.0]
 static_forces_N = [70.0]
 upper = 3.0
 source = "plan 3"
+"""
+
+DROP_LIMIT = """
+[[limit]]
+quantity = "correlation"
+sensors = [1]
+window_s = [0.0, 4.0]
+band_Hz = [0.3, 20.0]
+lower = 0.9
 """
 
 
@@ -71,6 +80,8 @@ def test_reports_are_written_and_the_exit_code_follows_the_verdict(folder: Path)
         ("static_forces_N = [70.0]", "", "key limit[1].static_forces_N: missing"),
         ("upper = 3.0", "upper = 0.0", "key limit[1].upper"),
         ('"complex_deviation_pct"', '"deviation"', "key limit[1].quantity"),
+        ('"complex_deviation_pct"', '"elasticity_difference_pct"', "key limit[1].band_Hz: is not a key of a limit of"),
+        (LIMITS[LIMITS.index("[[") :], DROP_LIMIT, "key limit[1].quantity: 'correlation' does not belong to"),
     ],
 )
 def test_wrong_limit_is_named_with_its_file_and_key(folder: Path, old: str, new: str, message: str) -> None:
@@ -92,4 +103,4 @@ def test_response_is_checked(folder: Path) -> None:
     assert done.exit_code == 0, done.output
     valid = "valid response record: apparent mass at 120 frequencies, 0.5 to 50 Hz, in right.csv"
     _, *lines = done.output.splitlines()
-    assert [line.split(": ", 1)[1] for line in lines] == [valid, valid, "valid response-limits file"]
+    assert [line.split(": ", 1)[1] for line in lines] == [valid, valid, "valid comparison-limits file"]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from helpers.recorded_drops import DURATION, RATE, RELEASE, WINDOWS, build_task, read_short_line, record_drop
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.drop_comparison import compare_drop
-from pantocheck.conformance.comparison.drop_comparison_format import DropComparison, ModelAgreement
-from pantocheck.conformance.comparison.drop_limits import DropLimits
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.results.drop_comparison_format import DropComparison, ModelAgreement
 from pantocheck.conformance.simulation.drop_simulation import decimate
 
 ALL = (0.3, 20.0)
@@ -32,8 +32,8 @@ def limit(window: tuple[float, float] = LATE, **changes: Any) -> dict[str, Any]:
     return table | changes
 
 
-def limits(*tables: dict[str, Any]) -> DropLimits:
-    return DropLimits.model_validate({"schema": "pantocheck.drop-limits/1", "limit": list(tables)})
+def limits(*tables: dict[str, Any]) -> tuple[ComparisonLimit, ...]:
+    return tuple(map(ComparisonLimit.model_validate, tables))
 
 
 def find(
@@ -106,7 +106,7 @@ def grade(record: DropRecord, *tables: dict[str, Any], model: float = 0.1) -> Dr
 def test_limits_grade_the_first_model() -> None:
     comparison = grade(record_drop(), limit(), limit(quantity="correlation", lower=0.99, upper=None))
     assert comparison.verdict == "pass"
-    assert [item.sensor for item in comparison.criteria] == [1, 2, 1, 2]
+    assert [item.where.sensor for item in comparison.criteria] == [1, 2, 1, 2]
     assert all(item.discretisation is not None and item.discretisation > 0 for item in comparison.criteria)
     # Elements of 2.25 m: half of them change the late ratio of sensor 2 by more than 2 %.
     assert comparison.criteria[0].close == ()

@@ -60,17 +60,17 @@ def test_bands_of_a_known_difference() -> None:
 
     low, middle, high = compare_force_bands(pair_forces(signals(base, 1000.0), signals(other, 1000.0)))
     root = np.sqrt(2)
-    assert (low.first, low.second, low.difference) == pytest.approx((20 / root, 26 / root, 6 / root), rel=2e-3)
-    assert (middle.first, middle.second) == pytest.approx((8 / root, 8 / root), rel=5e-3)
-    assert middle.difference == pytest.approx(8, rel=5e-3)  # two sines in quadrature: amplitude 8 sqrt 2
-    assert (high.low, high.high) == (20, 50)
-    assert high.difference < 0.02
+    assert (low.first_N, low.other_N, low.difference_N) == pytest.approx((20 / root, 26 / root, 6 / root), rel=2e-3)
+    assert (middle.first_N, middle.other_N) == pytest.approx((8 / root, 8 / root), rel=5e-3)
+    assert middle.difference_N == pytest.approx(8, rel=5e-3)  # two sines in quadrature: amplitude 8 sqrt 2
+    assert (high.low_Hz, high.high_Hz) == (20, 50)
+    assert high.difference_N < 0.02
 
 
 def test_a_force_filtered_at_20_hz_has_no_upper_band() -> None:
     forces = pair_forces(signals(base, 1000.0), signals(base, 1000.0, filtered=20.0))
     assert forces.highest_Hz == 20
-    assert [band.high for band in compare_force_bands(forces)] == [5, 20]
+    assert [band.high_Hz for band in compare_force_bands(forces)] == [5, 20]
 
 
 def test_coherence_is_one_for_a_common_part_and_low_for_independent_noise() -> None:
@@ -106,8 +106,8 @@ def test_differences_along_the_spans() -> None:
     forces = PairedForces(position, first.delivered, second.delivered, 1000.0, 50.0)
     supports = np.arange(150.0, 901.0, SPAN)
     spans = compare_spans(forces, supports)
-    assert [(span.start, span.end) for span in spans][0::11] == [(200.0, 250.0), (750.0, 800.0)]
-    means = {span.start: span.mean for span in spans}
+    assert [(span.start_m, span.end_m) for span in spans][0::11] == [(200.0, 250.0), (750.0, 800.0)]
+    means = {span.start_m: span.mean_difference_N for span in spans}
     assert means[400.0] == pytest.approx(10 + 4 / 3, abs=0.02)  # a sample is 0.075 m of 50 m
     assert means[300.0] == pytest.approx(4 / 3, abs=0.02)
     profile = span_profile(forces, supports)
@@ -124,4 +124,4 @@ def test_sections_without_a_common_stretch_are_not_compared() -> None:
 def test_a_profile_needs_a_complete_span() -> None:
     run = signals(base, 1000.0)
     assert span_profile(pair_forces(run, run), [500.0]) is None
-    assert compare_spans(pair_forces(run, run), [100.0, 500.0]) == []
+    assert compare_spans(pair_forces(run, run), [100.0, 500.0]) == ()

@@ -22,12 +22,11 @@ from helpers.response_records import (
     write_response,
 )
 from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_comparison import compare_responses, model_stiffness
-from pantocheck.conformance.comparison.response_comparison_format import ResponseComparison
-from pantocheck.conformance.comparison.response_deviation import RESPONSE_BANDS, RESPONSE_QUANTITIES
-from pantocheck.conformance.comparison.response_limits import ResponseLimit, ResponseLimits
 from pantocheck.conformance.comparison.response_record import ResponseRecord, read_response
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.comparison_format import RESPONSE_QUANTITIES, ResponseComparison
 from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 PANTOGRAPHS = ["en50318-2018/pantograph.toml", "en50318-2002/pantograph.toml", "pantographs/dsa380.toml"]
@@ -38,10 +37,10 @@ NOISE = {"modulus_uncertainty_pct": 1.96, "phase_uncertainty_deg": 0.98}
 
 def limit(
     upper: float = 3.0, band: tuple[float, float] = (20.0, 50.0), quantity: str = "complex_deviation_pct", **keys: Any
-) -> ResponseLimits:
+) -> tuple[ComparisonLimit, ...]:
     """One limit, under 70 N unless stated otherwise."""
     tables = {"quantity": quantity, "band_Hz": band, "static_forces_N": (70.0,), "upper": upper, **keys}
-    return ResponseLimits(schema="pantocheck.response-limits/1", limit=(ResponseLimit.model_validate(tables),))
+    return (ComparisonLimit.model_validate(tables),)
 
 
 def record(folder: Path, stiffness: Complex, name: str = "measured", **sidecar: Any) -> ResponseRecord:
@@ -84,7 +83,7 @@ def test_matrices_and_modes_give_the_curve_of_the_chain(tmp_path: Path, model: s
     other = describe_otherwise(pantograph, model)
     assert model_stiffness(other, FREQUENCY) == pytest.approx(model_stiffness(pantograph, FREQUENCY), rel=1e-9)
     measured = record(tmp_path, chain_stiffness(REFERENCE))
-    first, second = (compare_responses([measured], each, None).responses[0] for each in (pantograph, other))
+    first, second = (compare_responses([measured], each).responses[0] for each in (pantograph, other))
     assert second.model.modulus == pytest.approx(first.model.modulus, rel=1e-7)
     assert second.model.phase_deg == pytest.approx(first.model.phase_deg, abs=1e-5)
 
@@ -95,7 +94,7 @@ def test_known_deviation_has_the_same_size_in_every_kind(tmp_path: Path, kind: s
     measured = chain_stiffness(REFERENCE) * 1.1 * np.exp(1j * np.radians(5.0))
     columns = apparent_mass_columns(measured) if kind == "apparent_mass" else polar_columns(1 / measured, "m_N")
     response = read_response(write_response(tmp_path, columns, kind=kind))
-    compared = compare_responses([response], REFERENCE, None).responses[0]
+    compared = compare_responses([response], REFERENCE).responses[0]
     percent, degrees = 100 * np.log(1.1), 5.0
     expected = (percent, degrees, np.hypot(percent, 100 * np.radians(degrees)), percent, degrees)
     for band in compared.bands:
@@ -111,7 +110,7 @@ def test_deviation_does_not_depend_on_the_spacing_of_rows(tmp_path: Path) -> Non
     for name, frequency in (("log", FREQUENCY), ("linear", np.arange(0.5, 50.01, 0.05))):
         columns = apparent_mass_columns(chain_stiffness(heavier, frequency), frequency)
         response = read_response(write_response(tmp_path, columns, name))
-        bands = compare_responses([response], REFERENCE, None).responses[0].bands
+        bands = compare_responses([response], REFERENCE).responses[0].bands
         values.append([band.deviations["complex_deviation_pct"] for band in bands])
     assert values[0] == pytest.approx(values[1], rel=0.01)
 
@@ -142,7 +141,7 @@ def test_every_load_level_of_a_limit_must_be_measured(tmp_path: Path) -> None:
 
 def test_heights_of_a_limit_must_be_measured_under_each_force(tmp_path: Path) -> None:
     records = [record(tmp_path, chain_stiffness(REFERENCE), f"at-{h:g}", height_m=h) for h in (0.6, 1.8)]
-    assert [c.height_m for c in compare_responses(records, REFERENCE, limit()).criteria] == [0.6, 1.8]
+    assert [c.where.height_m for c in compare_responses(records, REFERENCE, limit()).criteria] == [0.6, 1.8]
     comparison = compare_responses(records, REFERENCE, limit(heights_m=(0.6, 1.8, 2.4)))
     assert [criterion.verdict for criterion in comparison.criteria] == ["pass", "pass", "skip"]
 
@@ -159,7 +158,7 @@ def test_response_at_a_strip_is_informative(tmp_path: Path) -> None:
 
 
 def test_without_limits_nothing_is_judged(tmp_path: Path) -> None:
-    comparison = compare_responses([record(tmp_path, chain_stiffness(REFERENCE))], REFERENCE, None)
+    comparison = compare_responses([record(tmp_path, chain_stiffness(REFERENCE))], REFERENCE)
     assert (comparison.verdict, comparison.criteria) == ("info", ())
     assert comparison == ResponseComparison.model_validate_json(comparison.model_dump_json(by_alias=True))
 
@@ -226,10 +225,10 @@ def test_stated_uncertainty_marks_a_close_criterion(tmp_path: Path) -> None:
 @pytest.mark.parametrize("factor", [1000.0, 9.80665, 1e-3])
 def test_evident_error_of_unit_is_refused(tmp_path: Path, factor: float) -> None:
     with pytest.raises(InputError, match=re.escape(f"{factor:.3g}") + " times that of the pantograph"):
-        compare_responses([record(tmp_path, factor * chain_stiffness(REFERENCE))], REFERENCE, None)
+        compare_responses([record(tmp_path, factor * chain_stiffness(REFERENCE))], REFERENCE)
 
 
 def test_repeated_record_is_refused(tmp_path: Path) -> None:
     measured = record(tmp_path, chain_stiffness(REFERENCE))
     with pytest.raises(InputError, match=r"'measured\.csv': is given 2 times"):
-        compare_responses([measured, measured], REFERENCE, None)
+        compare_responses([measured, measured], REFERENCE)

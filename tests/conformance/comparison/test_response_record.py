@@ -14,8 +14,8 @@ from helpers.response_records import (
     read_pantograph,
     write_response,
 )
-from pantocheck.conformance.comparison.response_kinds import RESPONSE_FORMS, ResponseKind
 from pantocheck.conformance.comparison.response_record import read_response
+from pantocheck.conformance.comparison.response_sidecar import RESPONSE_FORMS, ResponseKind
 from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 from pantocheck.conformance.input_files.input_error import InputError
 

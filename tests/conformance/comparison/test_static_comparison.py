@@ -10,20 +10,22 @@ from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.comparison.static_comparison import compare_statics
-from pantocheck.conformance.comparison.static_comparison_format import StaticComparison
-from pantocheck.conformance.comparison.static_criteria import grade_tolerance
-from pantocheck.conformance.comparison.static_record import read_static_record
-from pantocheck.conformance.comparison.static_sidecar import StaticSidecar
-from pantocheck.conformance.comparison.value_pair import ValuePair
+from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
+from pantocheck.conformance.comparison.static_differences import ValuePair, grade_tolerance
+from pantocheck.conformance.comparison.static_record import StaticSidecar, read_static_record
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.results.comparison_format import StaticComparison, StaticQuantity
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
 from pantocheck.model.statics.elasticity import rest_height
 
 LINE = read_unequal_line()
 COMPLETE = {"evaluated_spans": [2, 5], "largest_distance_m": SPACING}
-TOLERANCES = {"elasticity_difference_mm_N": 0.05, "contact_wire_height_difference_mm": 5.0}
+Tolerances = dict[StaticQuantity, float | None]
+TOLERANCES: Tolerances = {
+    "elasticity_difference_mm_N": 0.05,
+    "contact_wire_height_difference_mm": 5.0,
+}
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +34,10 @@ def computed() -> dict[str, Array]:
     return measure_line()
 
 
-def compare(folder: Path, columns: dict[str, Array], tolerances: dict[str, float], **sidecar: Any) -> StaticComparison:
+def compare(folder: Path, columns: dict[str, Array], tolerances: Tolerances, **sidecar: Any) -> StaticComparison:
     """Comparison with elements of 0.5 m."""
     path = write_static_record(folder, columns, **sidecar)
-    return compare_statics(read_static_record(path, LINE.geometry), LINE, 0.5, tolerances)
+    return compare_statics(read_static_record(path, LINE.geometry), LINE, 0.5, build_tolerances(tolerances))
 
 
 def change(columns: dict[str, Array], name: str, row: int, change: float) -> dict[str, Array]:
@@ -69,7 +71,7 @@ def test_known_differences_are_found_with_their_place_and_sign(tmp_path: Path, c
     assert elasticity.value == pytest.approx(0.08, rel=1e-4)
     assert height.value == pytest.approx(7.0, rel=1e-4)
     assert percent.value == pytest.approx(100 * 0.08 / measured, rel=1e-4)
-    assert "beyond the tolerance, at 121.5 m" in str(elasticity.reason)
+    assert "beyond the limit, at 121.5 m" in str(elasticity.reason)
     assert comparison.values[0].outlier_rows == (21,)
     assert comparison.values[1].outlier_rows == (31,)
     assert comparison.values[0].spans[1].largest_difference == pytest.approx(-0.08, rel=1e-4)
@@ -83,7 +85,7 @@ def test_common_offset_has_no_outliers_and_shows_the_error_of_the_mesh(
     columns = {name: computed[name] for name in ("position_m", "contact_wire_height_m")}
     columns["contact_wire_height_m"] = columns["contact_wire_height_m"] - 0.004
     record = read_static_record(write_static_record(tmp_path, columns, **COMPLETE), LINE.geometry)
-    comparison = compare_statics(record, LINE, 2.0, {"contact_wire_height_difference_mm": 5.0})
+    comparison = compare_statics(record, LINE, 2.0, build_tolerances({"contact_wire_height_difference_mm": 5.0}))
     assert comparison.values[0].outlier_rows == ()
     assert comparison.values[0].mean_difference == pytest.approx(4.2, abs=0.1)
     (height,) = comparison.criteria
@@ -141,6 +143,18 @@ def test_missing_value_is_named_and_leaves_the_criterion_open(tmp_path: Path, co
     assert comparison.values[0].missing_rows == (30,)
 
 
+def test_values_without_a_tolerance_and_outliers_are_named(tmp_path: Path, computed: dict[str, Array]) -> None:
+    """A verdict on one kind of values must not be taken for one on the other kind."""
+    columns = change(change(computed, "elasticity_mm_N", 21, 0.08), "contact_wire_height_m", 30, np.nan)
+    graded = compare(tmp_path, columns, {"elasticity_difference_mm_N": 0.05}, **COMPLETE)
+    assert graded.warnings == (
+        "elasticity: the differences of row 21 are outliers among those of the record; they count",
+        "contact wire height: no tolerance was given, so that the differences are not graded",
+        "contact wire height: no value in row 30",
+    )
+    assert len(compare(tmp_path, columns, {}, **COMPLETE).warnings) == 2
+
+
 @pytest.mark.parametrize(
     ("name", "factor", "offset", "message"),
     [
@@ -170,7 +184,7 @@ def test_heights_of_a_line_that_counts_from_the_rail_need_no_datum(tmp_path: Pat
     raised = LineFile.model_validate(tables)
     columns = {"position_m": np.array([100.0, 150.0]), "contact_wire_height_m": np.array([5.299, 5.297])}
     record = read_static_record(write_static_record(tmp_path, columns, force_N=None), raised.geometry)
-    (heights,) = compare_statics(record, raised, 0.5, {}).values
+    (heights,) = compare_statics(record, raised, 0.5, ()).values
     catenary = discretise(build_catenary(LINE), 0.5)
     assert heights.model == pytest.approx(5300 + 1e3 * rest_height(catenary, columns["position_m"]), abs=1e-3)
 
@@ -179,14 +193,15 @@ POSITION = np.arange(0.0, 100.1, 5.0)
 SIDECAR = StaticSidecar(schema="pantocheck.static/1", file="a.csv", force_N=(100.0,), largest_distance_m=5.0)
 
 
-def grade(rows: list[int], sidecar: StaticSidecar, name: str = "elasticity_difference_mm_N") -> str:
+def grade(rows: list[int], sidecar: StaticSidecar) -> str:
     """Verdict of a record with these rows, of which row 7 is 0.2 mm/N off, with a tolerance of 0.1 mm/N."""
     measured = np.full(POSITION.size, 5e-4)
     measured[7] += 2e-4
     model = np.full(len(rows), 5e-4)
     index = np.array(rows, dtype=np.int64)
     pair = ValuePair(POSITION[index], measured[index], model, model, index + 1, np.zeros(0, dtype=np.int64))
-    return grade_tolerance(name, 0.1, {"elasticity": pair} if rows else {}, sidecar, (0.0, 100.0)).verdict
+    (limit,) = build_tolerances({"elasticity_difference_mm_N": 0.1})
+    return grade_tolerance(limit, {"elasticity": pair} if rows else {}, sidecar, (0.0, 100.0)).verdict
 
 
 def test_failing_record_fails() -> None:

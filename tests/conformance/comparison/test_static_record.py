@@ -40,6 +40,16 @@ def test_table_of_a_spreadsheet_with_decimal_commas_is_read(tmp_path: Path) -> N
     assert read_static_record(path, GEOMETRY).position.tolist() == [10.0, 20.0, 30.0]
 
 
+def test_columns_of_another_program_are_named_in_the_sidecar(tmp_path: Path) -> None:
+    """Heights in a column with a free name; a column that the sidecar does not name is ignored."""
+    columns = {"x": COLUMNS["position_m"], "z": 1000 * COLUMNS["contact_wire_height_m"], "note": np.ones(3)}
+    names = {"position_m": "x", "contact_wire_height_mm": "z"}
+    layout = {"separator": ",", "decimal": "."}
+    record = read_static_record(write_static_record(tmp_path, columns, columns=names, table=layout), GEOMETRY)
+    assert record.position.tolist() == [10.0, 20.0, 30.0]
+    assert record.values["contact_wire_height"] == pytest.approx([0.0, -0.02, -0.01])
+
+
 def test_positions_may_decrease_along_the_line(tmp_path: Path) -> None:
     columns = COLUMNS | {"position_m": 1000 - COLUMNS["position_m"]}
     path = write_static_record(tmp_path, columns, line_start_m=1000.0, positions="decreasing")

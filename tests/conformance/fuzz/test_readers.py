@@ -1,17 +1,13 @@
-"""A short fuzz of every reader; benchmarks/fuzz.py runs the same rounds for any time."""
+"""A short fuzz of every reader; verification/attacks/fuzz.py runs the same rounds for any time."""
 
-import importlib
 import logging
 import os
-import random
 import signal
-import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -26,8 +22,8 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_samples
 from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.systems.record_folder import open_record_folder
+from verification.attacks import fuzz, fuzz_files, fuzz_uses
 
-BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
 ROUNDS = 12
 
 NAMES = (
@@ -66,66 +62,52 @@ NAMES = (
 
 
 @pytest.fixture(scope="module")
-def fuzz() -> Iterator[SimpleNamespace]:
-    """Modules of the fuzz campaign: `campaign`, `files`, `uses`."""
-    sys.path.insert(0, str(BENCHMARKS))
-    yield SimpleNamespace(
-        campaign=importlib.import_module("fuzz"),
-        files=importlib.import_module("fuzz_files"),
-        uses=importlib.import_module("fuzz_uses"),
-    )
-    sys.path.remove(str(BENCHMARKS))
-
-
-@pytest.fixture(scope="module")
-def targets(fuzz: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+def targets(tmp_path_factory: pytest.TempPathFactory) -> dict[str, fuzz_files.Target]:
     """Readers under fuzz by name; the formats of extras belong to the campaign only."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fuzz.files, "OPTIONAL_FORMATS", {})
-        return {target.name: target for target in fuzz.files.build_targets(tmp_path_factory.mktemp("sound"))}
+        patch.setattr(fuzz_files, "OPTIONAL_FORMATS", {})
+        return {target.name: target for target in fuzz_files.build_targets(tmp_path_factory.mktemp("sound"))}
 
 
-def test_every_reader_is_fuzzed(targets: dict[str, Any]) -> None:
+def test_every_reader_is_fuzzed(targets: dict[str, fuzz_files.Target]) -> None:
     assert sorted(targets) == sorted(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_damaged_file_is_read_or_refused(
-    fuzz: SimpleNamespace, targets: dict[str, Any], name: str, tmp_path: Path
-) -> None:
+def test_damaged_file_is_read_or_refused(targets: dict[str, fuzz_files.Target], name: str, tmp_path: Path) -> None:
     """The sound file is read (or, with a wrong digest, reported); damaged ones end in one message or a result."""
     logging.getLogger("pypdf").setLevel(logging.CRITICAL)
     target = targets[name]
     for file, content in target.files.items():
         (tmp_path / file).write_bytes(content)
-    with pytest.raises(fuzz.uses.Falsehood) if "digest" in name else nullcontext():
+    with pytest.raises(fuzz_uses.Falsehood) if "digest" in name else nullcontext():
         target.use(tmp_path)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # Libraries warn of damaged files.
-        outcomes = [fuzz.campaign.run_round(target, tmp_path, random.Random(f"{name}/{k}")) for k in range(ROUNDS)]
-    assert "refused" in outcomes
+        assert fuzz.fuzz_target(target, ROUNDS, 1, tmp_path / "input")["refused"]
 
 
-def test_fuzzer_detects_a_false_pass(fuzz: SimpleNamespace, targets: dict[str, Any], tmp_path: Path) -> None:
+def test_fuzzer_detects_a_false_pass(targets: dict[str, fuzz_files.Target], tmp_path: Path) -> None:
     """A failing result whose verdict is set to pass is a falsehood."""
     (tmp_path / "a.toml").write_bytes(targets["failing summary record"].files["a.toml"])
     results = run_cases(select_cases(["en50318-2002/250"]), open_record_folder(tmp_path))
     assert results.verdict == "fail"
-    fuzz.uses.check(results)
-    with pytest.raises(fuzz.uses.Falsehood):
-        fuzz.uses.check(results.model_copy(update={"verdict": "pass"}))
+    fuzz_uses.check(results)
+    with pytest.raises(fuzz_uses.Falsehood):
+        fuzz_uses.check(results.model_copy(update={"verdict": "pass"}))
 
 
 def test_campaign_reports_traceback_crash_and_hang(
-    fuzz: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Each kind of failure is counted, its input kept, and the campaign goes on."""
+    """Each kind of failure is counted, its smallest input kept, and the campaign goes on."""
 
     def crash(_: Path) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
-    def fail(_: Path) -> None:
-        raise KeyError("x")
+    def fail(folder: Path) -> None:
+        if len((folder / "a").read_bytes()) > 3:
+            raise KeyError("x")
 
     def hang(_: Path) -> None:
         time.sleep(30)
@@ -134,12 +116,12 @@ def test_campaign_reports_traceback_crash_and_hang(
         pass
 
     uses = {"crash": crash, "fail": fail, "hang": hang, "read": read}
-    targets = [fuzz.files.Target(name, {"a": b"abc"}, "a", use) for name, use in uses.items()]
-    monkeypatch.setattr(fuzz.campaign, "build_targets", lambda folder: targets)
-    monkeypatch.setattr(fuzz.campaign, "SLOWEST_S", 1)
-    assert fuzz.campaign.run_campaign(8, 60.0, 1, tmp_path) == 6
-    assert sorted(folder.name for folder in tmp_path.iterdir()) == [f"{k:06d}" for k in (0, 1, 2, 4, 5, 6)]
-    assert "8 rounds, 6 failures" in capsys.readouterr().out
+    monkeypatch.setattr(fuzz, "SLOWEST_S", 1)
+    targets = [fuzz_files.Target(name, {"a": b"abc"}, "a", use) for name, use in uses.items()]
+    assert fuzz.run_campaign(targets, 20, 1, tmp_path) == 3
+    assert sorted(folder.name for folder in tmp_path.iterdir()) == ["crash", "fail", "hang"]
+    assert len((tmp_path / "fail" / "a").read_bytes()) == 4
+    assert "20 rounds without a failure, 3 of 4 readers failed" in capsys.readouterr().out
 
 
 # Values near the limits of the case, the limits themselves, and a few far outside.

@@ -72,7 +72,7 @@ def test_options_of_the_run_do_not_modify_a_case(case_250: Case) -> None:
 
 
 def test_edition_leaves_the_input_digest_unchanged(case_250: Case) -> None:
-    """An edition is provenance: results of an older version keep their digest."""
+    """An edition is provenance."""
     file = case_250.file.model_copy(update={"edition": None, "superseded_by": None})
     assert replace(case_250, file=file).digest == case_250.digest
     assert (case_250.file.edition, case_250.file.superseded_by) == ("EN 50318:2002", "EN 50318:2018")

@@ -10,9 +10,9 @@ from helpers.section_lines import section_line
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.pantograph_file import MatricesTable, ModesTable
-from pantocheck.conformance.cases.section_tables import SectionTable, SectionWire
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
+from pantocheck.conformance.line.elements.tension_section import SectionTable, SectionWire
 from pantocheck.conformance.quantities.evaluation import Evaluation
 from pantocheck.conformance.results.outcome import Delivered
 

@@ -43,8 +43,8 @@ NEEDS_AN_EXTRA = (
 )
 """Readers and writers that import an optional package on loading."""
 
-COMPUTE_WITH_KERNELS = ("model.dynamics.", "conformance.guide", "conformance.command_line.guide_command")
-"""Compiled time steps, and the guide, which verifies single kernels."""
+COMPUTE_WITH_KERNELS = ("model.dynamics.",)
+"""Compiled time steps."""
 
 
 def run_without_extras(code: str, *arguments: str, folder: Path) -> dict[str, Any]:
@@ -119,7 +119,6 @@ commands = {
     "pdf": run("run", case, "--system", "record:records", "--formats", "pdf", "--out", "report"),
     "builtin": run("run", case),
     "hdf5": run("simulate", case, "--out", "a.h5"),
-    "guide": run("guide", "--out", "guide"),
     "statics": run("show", case),
     "compare": run("compare", "report/results.json", "report/results.json", "--out", "comparison"),
 }
@@ -138,7 +137,7 @@ print(json.dumps({"loaded": loaded, **commands}))
     for document in ("html", "json"):
         assert "Proved" in done[document][1]
         assert "Contradict" not in done[document][1]
-    for command, extra in (("pdf", "pdf"), ("builtin", "simulator"), ("guide", "simulator"), ("hdf5", "massdrop")):
+    for command, extra in (("pdf", "pdf"), ("builtin", "simulator"), ("hdf5", "massdrop")):
         exit_code, _, errors = done[command]
         assert exit_code == 2
         assert errors.endswith(f"Install it: pip install 'pantocheck[{extra}]'\n")

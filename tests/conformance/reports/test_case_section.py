@@ -76,7 +76,7 @@ def test_inputs_of_an_earlier_case_are_named_only(passing: dict[str, Any]) -> No
     assert text == SmallPrint("As in own/first: line.contact_wire.")
 
 
-def test_inputs_of_older_results_have_no_values(passing: dict[str, Any]) -> None:
+def test_inputs_without_values_have_none_on_the_page(passing: dict[str, Any]) -> None:
     case = passing["cases"][0] | {"inputs": [WIRE | {"values": {}}, UNTRACED]}
     table, _ = input_blocks(case, (), "case-1-input-source")
     assert isinstance(table, Table)

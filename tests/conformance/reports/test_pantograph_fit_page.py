@@ -1,12 +1,12 @@
 """Report on a fitted pantograph: parameters with intervals, candidates, caveats."""
 
-from typing import Any
-
+from helpers.page_blocks import find_blocks
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
+from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 
-def build_fit() -> dict[str, Any]:
+def build_fit() -> PantographFit:
     """Two masses, of which the first stiffness is fixed and the second damper is not distinguished from zero."""
     parameters = [
         ("masses_kg", 1, 15.0, 0.06, "determined"), ("masses_kg", 2, 7.2, 0.014, "determined"),
@@ -18,8 +18,13 @@ def build_fit() -> dict[str, Any]:
         "masses": 2, "complex_deviation_pct": 1.2, "variance_ratio": 0.98, "information_criterion": -7.0,
         "free_parameters": 5, "starts": 10, "best_starts": 9,
     }  # fmt: skip
-    return {
-        "suite": {"version": "1", "commit": None, "digest": None}, "title": "Rig 12", "masses": 2,
+    suite = {"version": "1", "commit": None, "digest": "sha256:c"}
+    comparison = {
+        "suite": suite, "model": {"name": "Rig 12", "digest": "a"}, "verdict": "info", "criteria": [], "warnings": [],
+        "responses": [],
+    }  # fmt: skip
+    content = {
+        "suite": suite, "title": "Rig 12", "masses": 2,
         "band_Hz": [0.5, 50.0], "rows": 120, "is_noise_stated": True,
         "parameters": [dict(zip(keys, item, strict=True)) for item in parameters],
         "natural_frequencies_Hz": [0.2386, 4.66],
@@ -27,14 +32,9 @@ def build_fit() -> dict[str, Any]:
         "candidates": [
             candidate, candidate | {"masses": 3, "variance_ratio": None, "information_criterion": 9.0},
         ],
-        "comparison": {"criteria": [], "responses": []}, "warnings": ["a caveat"],
+        "comparison": comparison, "warnings": ["a caveat"],
     }  # fmt: skip
-
-
-def find_tables(blocks: tuple[doc.Block, ...]) -> list[doc.Table]:
-    """Tables at all levels."""
-    inner = [table for block in blocks if isinstance(block, doc.Section) for table in find_tables(block.blocks)]
-    return [block for block in blocks if isinstance(block, doc.Table)] + inner
+    return PantographFit.model_validate(content)
 
 
 def test_page_states_parameters_candidates_and_caveats() -> None:
@@ -42,7 +42,7 @@ def test_page_states_parameters_candidates_and_caveats() -> None:
     assert isinstance(document.header, doc.PlainHeader)
     assert document.header.headline == "Rig 12: chain of 2 masses, RMS deviation 1.20 % from 0.500 to 50.0 Hz."
     assert document.blocks[0] == doc.WarningBox(("a caveat",))
-    parameters, candidates = find_tables(document.blocks)
+    parameters, candidates = find_blocks(document.blocks, doc.Table)
     assert parameters.rows[0] == ("Mass 1 [kg]", "15", "0.06", "0.4", "determined")
     assert parameters.rows[2] == ("Stiffness 1 [N/m]", "50", "–", "–", "fixed")
     assert parameters.rows[3] == ("Stiffness 2 [N/m]", "15580", "240", "1.6", "determined")

@@ -56,7 +56,7 @@ def _label_height(lifted: int) -> float:
 
 
 def test_values_that_are_no_chain_give_no_scheme() -> None:
-    """Long chains are stored as ranges; older results have no values; another program may write anything."""
+    """Long chains are stored as ranges; another program may write anything."""
     stored_range = {"count": 13, "lowest": 1.0, "highest": 2.0}
     for masses in (stored_range, [6.0], ["6", "5"], [True, False], []):
         assert scheme_figures(chain_case(masses_kg=masses), ()) == ()

@@ -208,7 +208,9 @@ def test_long_row_of_a_table_is_divided_rather_than_lost() -> None:
 
 def test_file_name_is_not_divided_before_its_ending() -> None:
     """A file name stands at many places of a line, and some lines end within it."""
-    fillers = tuple(Paragraph("a " * count + "benchmarks/finite_differences.py.") for count in range(60, 180))
+    fillers = tuple(
+        Paragraph("a " * count + "verification/formulations/finite_differences.py.") for count in range(60, 180)
+    )
     lines = "\n".join(_page_texts(Document("File", PlainHeader("File", "Text"), fillers))).splitlines()
     assert "differences.py." in lines
     assert "py." not in lines

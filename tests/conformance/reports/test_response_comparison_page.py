@@ -7,19 +7,21 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from helpers.page_blocks import find_blocks
 from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.comparison.response_comparison_page import (
-    RESPONSE_HEADLINES,
-    build_response_comparison,
-)
+from pantocheck.conformance.reports.comparison.comparison_page import build_comparison
+from pantocheck.conformance.reports.comparison.response_sections import RESPONSE_PAGE
 from pantocheck.conformance.reports.figures.response_figure import draw_response, select_drawn_rows
-from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.results.comparison_format import (
+    RESPONSE_QUANTITIES,
+    ComparedResponse,
+    ComparisonCriterion,
+    ResponseComparison,
+)
 
 FREQUENCY = [1.0, 10.0, 40.0]
-QUANTITIES = (
-    "modulus_deviation_pct", "phase_deviation_deg", "complex_deviation_pct", "largest_modulus_deviation_pct",
-    "largest_phase_deviation_deg",
-)  # fmt: skip
+
+DEVIATIONS = (8.0, 4.0, 10.6, 8.0, 4.0)
 
 
 def build_response(**changes: Any) -> dict[str, Any]:
@@ -29,9 +31,9 @@ def build_response(**changes: Any) -> dict[str, Any]:
         "largest_phase_at_Hz": None, "beyond_uncertainty_pct": None,
     }  # fmt: skip
     full = {
-        "rows": 1, "missing": None, "deviations": dict(zip(QUANTITIES, (8.0, 4.0, 10.6, 8.0, 4.0), strict=True)),
-        "uncertainty": dict.fromkeys(QUANTITIES, 2.0), "largest_modulus_at_Hz": 1.0, "largest_phase_at_Hz": 1.0,
-        "beyond_uncertainty_pct": 100.0,
+        "rows": 1, "missing": None, "deviations": dict(zip(RESPONSE_QUANTITIES, DEVIATIONS, strict=True)),
+        "uncertainty": dict.fromkeys(RESPONSE_QUANTITIES, 2.0), "largest_modulus_at_Hz": 1.0,
+        "largest_phase_at_Hz": 1.0, "beyond_uncertainty_pct": 100.0,
     }  # fmt: skip
     return {
         "name": "at-70N.csv", "digest": "sha256:a", "kind": "apparent_mass", "unit": "kg", "static_force_N": 70.0,
@@ -49,36 +51,40 @@ def build_response(**changes: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def build_results(**changes: Any) -> dict[str, Any]:
+def build_results(**changes: Any) -> ResponseComparison:
     """One response, one limit that fails and one without a response."""
-    common = {"quantity": "complex_deviation_pct", "unit": "%", "upper": 5.0, "source": "plan 3", "close": []}
+    common = {
+        "quantity": "complex_deviation_pct",
+        "unit": "%",
+        "lower": None,
+        "upper": 5.0,
+        "discretisation": None,
+        "source": "plan 3",
+        "close": [],
+    }
     failed = {
-        "band_Hz": [0.5, 5.0], "response": "at-70N.csv", "static_force_N": 70.0, "height_m": 1.2, "value": 10.6,
+        "where": {"band_Hz": [0.5, 5.0], "record": "at-70N.csv", "static_force_N": 70.0, "height_m": 1.2},
+        "value": 10.6,
         "verdict": "fail", "reason": "5.6 % beyond the limit", "margin": -1.12, "measurement": 2.0,
         "close": ["lies near"],
     }  # fmt: skip
     skipped = {
-        "band_Hz": [0.5, 5.0], "response": None, "static_force_N": 90.0, "height_m": None, "value": None,
+        "where": {"band_Hz": [0.5, 5.0], "static_force_N": 90.0}, "value": None,
         "verdict": "skip", "reason": "no response", "margin": None, "measurement": None,
     }  # fmt: skip
-    return {
-        "suite": {"version": "1", "commit": None, "digest": None}, "pantograph": "My pantograph",
-        "pantograph_digest": "sha256:b", "record_state": "unverified", "verdict": "fail",
+    content = {
+        "suite": {"version": "1", "commit": None, "digest": None},
+        "model": {"name": "My pantograph", "digest": "sha256:b"}, "record_state": "unverified", "verdict": "fail",
         "responses": [build_response()], "criteria": [common | failed, common | skipped], "warnings": ["a caveat"],
         **changes,
     }  # fmt: skip
-
-
-def find_blocks(blocks: tuple[doc.Block, ...], kind: type) -> list[Any]:
-    """Blocks of a kind at all levels."""
-    inner = [found for block in blocks if isinstance(block, doc.Section) for found in find_blocks(block.blocks, kind)]
-    return [block for block in blocks if isinstance(block, kind)] + inner
+    return ResponseComparison.model_validate(content)
 
 
 def test_page_states_verdict_caveats_criteria_and_bands() -> None:
-    document = build_response_comparison(build_results())
+    document = build_comparison(build_results())
     assert isinstance(document.header, doc.VerdictHeader)
-    assert (document.header.verdict, document.header.headline) == ("fail", RESPONSE_HEADLINES["fail"])
+    assert (document.header.verdict, document.header.headline) == ("fail", RESPONSE_PAGE.headlines["fail"])
     (warnings,) = find_blocks(document.blocks, doc.WarningBox)
     name = "RMS complex deviation, 0.5 to 5 Hz, 70 N, 1.2 m [%]"
     assert warnings.sentences == ("a caveat", f"{name} lies near")
@@ -93,14 +99,9 @@ def test_page_states_verdict_caveats_criteria_and_bands() -> None:
     assert bands.rows[1] == ("5 to 20", "0", "–", "–", "–", "–", "–", "–", "no value in row 2")
 
 
-@pytest.mark.parametrize("verdict", list(RESPONSE_HEADLINES))
-def test_every_verdict_has_a_headline(verdict: str) -> None:
-    assert RESPONSE_HEADLINES[verdict] in render_html(build_response_comparison(build_results(verdict=verdict)))
-
-
 def test_informative_response_is_marked_in_its_heading() -> None:
     response = build_response(is_graded=False, height_m=None, excited_at="left_strip")
-    document = build_response_comparison(build_results(responses=[response], criteria=[], warnings=[]))
+    document = build_comparison(build_results(responses=[response], criteria=[], warnings=[]))
     assert find_blocks(document.blocks, doc.WarningBox) == []
     headings = [block.heading for block in document.blocks if isinstance(block, doc.Section)]
     assert headings == ["at-70N.csv: 70 N (informative)"]
@@ -108,14 +109,15 @@ def test_informative_response_is_marked_in_its_heading() -> None:
     assert facts["Force and motion"] == "left strip and head centre"
 
 
-def paint(response: dict[str, Any], limits: list[dict[str, Any]]) -> list[Axes]:
-    figure = draw_response.__wrapped__(response, limits)  # type: ignore[attr-defined]
+def paint(content: dict[str, Any], limits: tuple[ComparisonCriterion, ...]) -> list[Axes]:
+    response = ComparedResponse.model_validate(content)
+    figure = draw_response.__wrapped__(response, list(limits))  # type: ignore[attr-defined]
     assert isinstance(figure, Figure)
     return list(figure.axes)
 
 
 def test_figure_shows_error_bars_curve_bands_and_limits() -> None:
-    modulus, phase, deviation = paint(build_response(), [build_results()["criteria"][0]])
+    modulus, phase, deviation = paint(build_response(), build_results().criteria[:1])
     for axes, key, half in ((modulus, "modulus", 0.4), (phase, "phase_deg", 1.0)):
         curve, points = axes.lines[0], axes.containers[0]
         assert list(curve.get_ydata()) == build_response()["model"][key]
@@ -127,7 +129,7 @@ def test_figure_shows_error_bars_curve_bands_and_limits() -> None:
 
 
 def test_figure_without_uncertainty_has_no_error_bars() -> None:
-    modulus, _, _ = paint(build_response(modulus_uncertainty_pct=[], phase_uncertainty_deg=[]), [])
+    modulus, _, _ = paint(build_response(modulus_uncertainty_pct=[], phase_uncertainty_deg=[]), ())
     assert modulus.containers[0].has_yerr is False
 
 

@@ -157,7 +157,7 @@ def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
     assert "superseded by EN 50318:2018" in " ".join(page.split())
 
 
-def test_results_of_an_older_version_have_no_scope(results: dict[str, Any]) -> None:
+def test_results_without_steps_have_no_scope(results: dict[str, Any]) -> None:
     assert results["scope"] == []
     assert "Limits of validity" not in shown_certificate(results)
 

@@ -3,7 +3,8 @@
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.simulation.catenary_model import COARSE, build_catenary
+from pantocheck.conformance.line.elements.dropper import COARSE
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import Kind, discretise
 
 

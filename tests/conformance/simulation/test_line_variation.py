@@ -10,12 +10,11 @@ from helpers.changed_lines import changed_line, changed_tables
 from helpers.section_lines import section_line
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.variation import ListedLengthChanges, Variation
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.line.elements.variation import VARIATION_ELEMENT_M, ListedLengthChanges, Variation
 from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.derived_line import build_derived_line
-from pantocheck.conformance.simulation.line_variation import VARIATION_ELEMENT_M
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.statics.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
 from pantocheck.model.statics.wire_climate import excess_lengths, fixed_tension

@@ -6,7 +6,8 @@ import pytest
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.simulation.catenary_model import COARSE, build_catenary
+from pantocheck.conformance.line.elements.dropper import COARSE
+from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.conformance.simulation.derived_line import build_derived_line
 from pantocheck.model import discretise
 from pantocheck.model.fem import beams

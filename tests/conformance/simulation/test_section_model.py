@@ -9,10 +9,8 @@ from helpers.section_lines import section_line, section_tables
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.simulation.case_run import build_passage
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.derived_values import build_derived
 from pantocheck.model import Catenary, Kind, discretise, simulate_passage
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.statics.string_statics import compute_string_state
@@ -184,8 +182,3 @@ def test_terminations_and_mid_point_anchor_hold_the_messenger_wires() -> None:
     assert line.stretches.stiffness.tolist() == [13.8e6 / 180.0]
     assert line.stretches.row.tolist() == [[line.mesh.row_of["section 1 messenger wire", "z"]]]
     assert line.mesh.position[line.stretches.first[0]] == 0.0
-
-
-def test_program_gets_no_derived_values_of_several_sections(case_250: Case) -> None:
-    with pytest.raises(InputError, match=r"key line.section: the line has 2 tension sections"):
-        build_derived(replace(case_250, line=section_line()))

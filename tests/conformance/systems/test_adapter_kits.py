@@ -27,7 +27,7 @@ def simulate(case):
     force = [[120.0 for _ in time]]
     return Record(time_s=time, position_m=[position], force_N=force, start=START_OF_THE_CASE)
 
-serve("kit", "1", simulate)
+serve("kit", "1", simulate, FEATURES)
 """
 
 OCTAVE = """
@@ -44,17 +44,22 @@ end
 """
 
 
+FEATURES = ["bending_stiffness", "chain", "droppers", "presag", "rayleigh_damping", "steady_arms"]
+
+
 def run_kit(folder: Path, language: str, fails: bool) -> Outcome:
     case: Case = build_short_case()
     if language == "python":
         shutil.copy(EXAMPLES / "string_catenary" / "pantocheck_adapter.py", folder)
-        (folder / "adapter.py").write_text(PYTHON.replace("FAILS", str(fails)))
+        (folder / "adapter.py").write_text(PYTHON.replace("FAILS", str(fails)).replace("FEATURES", repr(FEATURES)))
         return choose_system(f"command:'{sys.executable}' '{folder / 'adapter.py'}'", 60.0).run(case)
     if shutil.which("octave-cli") is None:
         pytest.skip("octave-cli is not installed")
     shutil.copy(EXAMPLES / "octave_catenary" / "pantocheck_serve.m", folder)
     (folder / "simulate.m").write_text(OCTAVE.replace("FAILS", str(fails).lower()))
-    (folder / "adapter.m").write_text(f"addpath('{folder}'); pantocheck_serve('kit', '1', @simulate);")
+    (folder / "adapter.m").write_text(
+        f"addpath('{folder}'); pantocheck_serve('kit', '1', @simulate, {{{str(FEATURES)[1:-1]}}});"
+    )
     return choose_system(f"command:octave-cli --quiet '{folder / 'adapter.m'}'", 60.0).run(case)
 
 

@@ -117,7 +117,7 @@ def test_unsupported_cases_are_skipped(adapter: System, coarse: Case) -> None:
     twin = coarse.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     outcome = adapter.run(replace(coarse, line=coarse.line.model_copy(update={"contact_wire": twin})))
     assert isinstance(outcome, Skipped)
-    assert outcome.reason == "stitch wires, twin contact wires and modal damping are not supported"
+    assert outcome.reason == "the system does not simulate twin_wires"
 
 
 TEXTS = ["", "a" * 55, "b" * 56, "c" * 63, "d" * 64, "e" * 1000, 'quoted "\\" \t\n\x01\x7f', "é Ω 東 🚄 \u2028"]

@@ -17,7 +17,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.listed_spans import list_spans
-from helpers.section_lines import section_line
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
@@ -34,7 +33,6 @@ from pantocheck.conformance.runner import run_cases
 from pantocheck.conformance.schemas import build_schema
 from pantocheck.conformance.systems.command.program_arguments import split_arguments
 from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
-from pantocheck.conformance.systems.command.protocol_versions import find_newer_key
 from pantocheck.conformance.systems.system import System
 from pantocheck.conformance.systems.system_choice import choose_system
 
@@ -42,6 +40,9 @@ from pantocheck.conformance.systems.system_choice import choose_system
 PROGRAM = """
 import hashlib, json, os, shutil, subprocess, sys, time
 how, records, log = sys.argv[1:4]
+FEATURES = ["bending_stiffness", "chain", "droppers", "listed_spans", "presag", "rayleigh_damping", "steady_arms"]
+if how == "no features":
+    FEATURES = None
 def say(**message):
     sys.stdout.write(json.dumps(message) + "\\n")
     sys.stdout.flush()
@@ -63,7 +64,7 @@ for line in sys.stdin:
         if how == "old":
             say(message="started", protocol="pantocheck.command/0", name="p", version="1")
             continue
-        say(message="started", protocol="pantocheck.command/1", name="p", version="1")
+        say(message="started", protocol="pantocheck.command/1", name="p", version="1", features=FEATURES)
         continue
     case, number = message["case"]["id"], message["id"]
     if how == "crash" and case.endswith("250"):
@@ -189,43 +190,39 @@ def test_message_contains_the_whole_case_without_limits(
 
 
 @pytest.mark.parametrize(
-    ("geometry", "key"),
+    ("tables", "feature"),
     [
-        ({"support": [{"number": 2, "encumbrance_m": 1.1}]}, "geometry.support"),
-        (
-            {"schedule": {"a": {"x_m": [9.0], "contact_wire_height_m": [0.0]}}},
-            "geometry.schedule.a.contact_wire_height_m",
-        ),
+        ({"geometry": {"support": [{"number": 2, "encumbrance_m": 1.1}]}}, "single_supports"),
+        ({"geometry": {"schedule": {"a": {"x_m": [9.0], "contact_wire_height_m": [0.0]}}}}, "surveyed_wire_heights"),
+        ({"stitch_wire": {"length_m": 12.0, "tension_N": 2e3, "mass_kg_m": 0.3}}, "stitch_wire"),
     ],
 )
-def test_program_of_the_first_version_does_not_get_a_line_that_it_cannot_read(
-    program: Callable[..., System], case_250: Case, tmp_path: Path, geometry: dict[str, Any], key: str
+def test_program_does_not_get_a_line_that_it_does_not_simulate(
+    program: Callable[..., System], case_250: Case, tmp_path: Path, tables: dict[str, Any], feature: str
 ) -> None:
-    """It would compute another line from the values that it knows. Listed spans alone are a line of version 1."""
-    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
-    assert find_newer_key(LineFile.model_validate(tables)) is None
-    tables["geometry"] |= geometry
-    case = replace(case_250, line=LineFile.model_validate(tables))
-    outcome = program("well").run(case)
-    assert isinstance(outcome, Skipped)
-    assert f"the line has the key {key}, which pantocheck.command/1 does not contain" in outcome.reason
+    """It would compute another line from the values that it knows."""
+    line = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    line |= {key: line.get(key, {}) | table for key, table in tables.items()}
+    outcome = program("well").run(replace(case_250, line=LineFile.model_validate(line)))
+    assert outcome == Skipped(f"the system does not simulate {feature}")
     messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
     assert messages == ["start", "stop"] * 2
 
 
-def test_line_of_several_sections_is_skipped(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
-    """No version of the protocol describes them; the program is not asked."""
-    outcome = program("well").run(replace(case_250, line=section_line()))
+def test_program_without_features_does_not_get_any_case(
+    program: Callable[..., System], case_250: Case, tmp_path: Path
+) -> None:
+    outcome = program("no features").run(case_250)
     assert isinstance(outcome, Skipped)
-    assert "the line has 2 tension sections (key section)" in outcome.reason
+    assert "the system does not list the features that it simulates" in outcome.reason
     messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
-    assert messages == ["start", "stop"]
+    assert messages == ["start", "stop"] * 2
 
 
 def test_answers_follow_their_schema() -> None:
     digest = {"file": "a.toml", "sha256": "0" * 64}
     for message in (
-        {"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": ""},
+        {"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": "", "features": ["chain"]},
         {"message": "delivered", "id": 1, "record": {"sidecar": digest, "table": digest}},
         {"message": "delivered", "id": 1, "static": {"dropper_length_m": [1.0, 0.9]}},
         {"message": "skipped", "id": 1, "reason": "why"},

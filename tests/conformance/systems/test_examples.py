@@ -9,10 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.listed_spans import vary_short_line
+from helpers.section_lines import section_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.wire_changes import PointMassTable
+from pantocheck.conformance.line.elements.point_mass import PointMassTable
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped
@@ -73,22 +74,36 @@ def test_examples_run_a_line_with_listed_spans_and_supports(short: Case, name: s
         assert_allclose(values[quantity], reference[quantity], rtol=tolerance)
 
 
+def test_external_program_runs_a_line_of_several_sections(short: Case) -> None:
+    """The overlap of two sections lies inside the run; the same program gives the same values."""
+    line = section_line(spans=(4, 4))
+    discretisation = short.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
+    file = short.file.model_copy(update={"evaluated_spans": (3,), "discretisation": discretisation})
+    case = replace(short, line=line, file=file)
+    reference = evaluate(ReferenceSimulator().run_unrefined(case), case)
+    command = Path(sysconfig.get_path("scripts"), "pantocheck")
+    values = evaluate(adapter("external_program", f"'{command}'").run(case), case)
+    assert_allclose(values["std_force_N"], reference["std_force_N"], rtol=1e-9)
+    skipped = adapter("string_catenary").run(case)
+    assert skipped == Skipped("the system does not simulate sections")
+
+
 def test_plain_simulator_skips_unsupported_cases(short: Case) -> None:
     twin = short.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     line = short.line.model_copy(update={"contact_wire": twin})
     system = adapter("string_catenary")
     outcome = system.run(replace(short, line=line))
     assert isinstance(outcome, Skipped)
-    assert "twin contact wires" in outcome.reason
+    assert outcome.reason == "the system does not simulate twin_wires"
     assert (system.name, system.version) == ("string catenary", "1.0")
 
 
 def test_plain_simulator_skips_point_masses(short: Case) -> None:
-    """A program of version 2 receives them; one that ignored them would compute another line."""
+    """A program that ignored them would compute another line."""
     mass = PointMassTable(x_m=150.0, wire="contact_wire", mass_kg=5.0, name="section insulator")
     outcome = adapter("string_catenary").run(replace(short, line=short.line.model_copy(update={"point_mass": (mass,)})))
     assert isinstance(outcome, Skipped)
-    assert "point masses are not supported" in outcome.reason
+    assert outcome.reason == "the system does not simulate point_masses"
 
 
 def test_external_program_agrees_with_the_same_program_in_process(short: Case, reference: dict[str, Value]) -> None:

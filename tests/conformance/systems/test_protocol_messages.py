@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -64,6 +65,34 @@ def test_wrong_answer_is_refused_with_its_key(message: dict[str, Any], place: st
     with pytest.raises(AnswerRefused) as caught:
         parse_message(encode(**message))
     assert place in str(caught.value)
+
+
+def test_sizes_of_an_answer_have_bounds() -> None:
+    """A size at its bound is accepted, one more is refused."""
+
+    def start(**keys: Any) -> bytes:
+        return encode(**{"message": "started", "protocol": "p", "name": "p", "version": ""} | keys)
+
+    def deliver(**keys: Any) -> bytes:
+        return encode(message="delivered", id=1, **keys)
+
+    sizes: list[tuple[int, Callable[[int], bytes]]] = [
+        (100, lambda size: start(protocol="x" * size)),
+        (200, lambda size: start(name="x" * size)),
+        (200, lambda size: start(version="x" * size)),
+        (500, lambda size: deliver(record=FILES | {"table": {"file": "x" * size, "sha256": DIGEST}})),
+        (100, lambda size: deliver(static={f"key_{k}": 1.0 for k in range(size)})),
+        (1000, lambda size: deliver(static={"key": [1.0] * size})),
+        (20, lambda size: deliver(notes=["x"] * size)),
+        (2000, lambda size: deliver(notes=["x" * size])),
+    ]
+    for largest, message in sizes:
+        parse_message(message(largest))
+        with pytest.raises(AnswerRefused):
+            parse_message(message(largest + 1))
+    for empty in (start(name=""), deliver(record=FILES | {"table": {"file": "", "sha256": DIGEST}})):
+        with pytest.raises(AnswerRefused):
+            parse_message(empty)
 
 
 @pytest.mark.parametrize("line", [b"[" * 100_000, b"\xff" * 10, b"9" * 5000, b""])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from helpers.lines import overlapping_line, simple_line
-from pantocheck.conformance.guide.verification.passage_balance import measure_balances
 from pantocheck.model import Passage, chain, make_droppers_bilateral
 from pantocheck.model.discretised_line import discretise
+from verification.guide.topics.passage_balance import measure_balances
 
 HEAD = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.0, 0, 50e3)
 """Pantograph of EN 50318:2002 without dampers."""

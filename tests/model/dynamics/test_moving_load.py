@@ -2,11 +2,11 @@
 
 import pytest
 
-from pantocheck.conformance.guide.comparisons import relative_rms
-from pantocheck.conformance.guide.verification.bare_wires import WIRE_BENDING, WIRE_MASS, WIRE_TENSION
-from pantocheck.conformance.guide.verification.closed_forms import moving_load_deflection
-from pantocheck.conformance.guide.verification.moving_load import simulate_moving_load
 from pantocheck.model.fem import beam
+from verification.guide.comparisons import relative_rms
+from verification.guide.topics.bare_wires import WIRE_BENDING, WIRE_MASS, WIRE_TENSION
+from verification.guide.topics.closed_forms import moving_load_deflection
+from verification.guide.topics.moving_load import simulate_moving_load
 
 
 @pytest.mark.parametrize(("share", "tolerance"), [(0.3, 2.5e-4), (0.7, 4e-4), (0.9, 9e-4)])

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from helpers.lines import Array, bare_wire
-from pantocheck.conformance.guide.verification.closed_forms import travelling_pulse
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
@@ -14,6 +13,7 @@ from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem import beam
 from pantocheck.model.pantograph import Pantograph
+from verification.guide.topics.closed_forms import travelling_pulse
 
 TENSION, MASS = 20e3, 1.35
 SPEED_OF_WAVES = beam.wave_speed(TENSION, MASS)

@@ -5,13 +5,13 @@ import pytest
 from scipy.linalg import eigh
 
 from helpers.lines import Array, bare_wire
-from pantocheck.conformance.guide.verification.closed_forms import wire_sag
 from pantocheck.model.catenary import GRAVITY
 from pantocheck.model.discretised_line import discretise
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.fem.beams import weight
 from pantocheck.model.statics.static_solver import StaticSolver
+from verification.guide.topics.closed_forms import wire_sag
 
 SPAN, TENSION, MASS, BENDING = 60.0, 20e3, 1.35, 195.0
 

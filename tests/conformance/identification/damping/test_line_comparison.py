@@ -242,7 +242,7 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
 
 
 def test_modes_without_facts_stay_readable_and_are_not_verified(catenary: Catenary) -> None:
-    """File of an earlier version; its record T1 is from another line, which the fit can only see by its matching."""
+    """Record T1, without facts on the line, is from another line, which the fit can only see by its matching."""
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
     results = build_damping_results(modes, catenary, 1.5, "modes.json")
     assert results.line.state == "unverified"

@@ -1,0 +1,1 @@
+"""Line: its file, its elements, their model, tables and drawing."""

@@ -1,0 +1,305 @@
+"""Droppers: their schedule in every span, and their properties."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import accumulate, pairwise
+from typing import TYPE_CHECKING, Annotated, ClassVar, TypeVar
+
+import numpy as np
+from pydantic import Field
+
+from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NumberList,
+    PositiveList,
+    SourcedTable,
+    is_absent,
+    validation_problem,
+)
+from pantocheck.conformance.line.derived_numbers import (
+    BySpan,
+    MassCoefficient,
+    StiffnessCoefficient,
+    round_numbers,
+    round_positions,
+)
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnConnection, Element
+from pantocheck.conformance.line.elements.steady_arm import ClampMass
+from pantocheck.model import Catenary, Dropper, Kind
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.cases.line_layout import LineLayout
+
+Entry = TypeVar("Entry")
+
+COARSE = 5.0
+"""Element length for the dropper lengths from which the dropper masses follow [m]."""
+
+DROPPERS = Feature("droppers")
+DROPPER_MASS = Feature("dropper_mass", bool)
+
+
+class DropperSchedule(InputTable):
+    """Droppers of one span."""
+
+    x_m: Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
+    presag_m: Annotated[
+        NumberList | None,
+        Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
+        Feature("presag", lambda heights: any(heights or ())),
+    ] = None
+    contact_wire_height_m: Annotated[
+        NumberList | None,
+        Field(
+            description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place "
+            "of presag_m [m]",
+            exclude_if=is_absent,
+        ),
+        Feature("surveyed_wire_heights"),
+    ] = None
+    length_m: Annotated[
+        PositiveList | None, Field(description="published length of each dropper, for comparison [m]"), NO_FEATURE
+    ] = None
+
+    @cross_check
+    def _check_schedule(self) -> Problems:
+        """Positions increase, every list has one value per position, and heights are given once."""
+        if self.presag_m is not None and self.contact_wire_height_m is not None:
+            yield validation_problem(
+                "contact_wire_height_m",
+                "the height of the contact wire is given twice",
+                "Give either presag_m or contact_wire_height_m.",
+            )
+        for i, (before, x) in enumerate(pairwise(self.x_m), 2):
+            if x <= before:
+                yield validation_problem(
+                    f"x_m[{i}]",
+                    f"{x:g} m is not greater than the preceding {before:g} m",
+                    "List the droppers in the direction of travel.",
+                )
+        for key in ("presag_m", "contact_wire_height_m", "length_m"):
+            values, droppers = getattr(self, key), len(self.x_m)
+            if values is not None and len(values) != droppers:
+                found = f"{len(values)} values for {droppers} droppers"
+                yield validation_problem(key, found, "Give one value per dropper of x_m.")
+
+    def prescribed_heights(self, chord: RealArray) -> RealArray:
+        """Heights of the contact wire at the droppers [m], above the datum.
+
+        Parameters
+        ----------
+        chord : (n,) ndarray
+            Heights of the straight line between the supports at the droppers [m].
+        """
+        if self.contact_wire_height_m is not None:
+            return np.array(self.contact_wire_height_m)
+        return np.asarray(chord - np.array(self.presag_m or (0.0,) * len(self.x_m)))
+
+
+class DropperTable(DropperSchedule, SourcedTable):
+    """Droppers: bars that carry tension, but no compression; their schedule holds for spans without another one."""
+
+    stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]"), DROPPERS] = (
+        None
+    )
+    axial_stiffness_EA_N: Annotated[
+        float | None,
+        Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]"),
+        DROPPERS,
+    ] = None
+    mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of a dropper [kg]"), DROPPER_MASS] = None
+    mass_kg_m: Annotated[
+        float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]"), DROPPER_MASS
+    ] = None
+    clamp_on_messenger_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
+    clamp_on_contact_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
+
+    @cross_check
+    def _check_stiffness(self) -> Problems:
+        if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
+            yield validation_problem(
+                "stiffness_N_m",
+                "the stiffness of the droppers is missing or given twice",
+                "Give either stiffness_N_m or axial_stiffness_EA_N.",
+            )
+
+    @cross_check
+    def _check_mass(self) -> Problems:
+        if self.mass_kg is not None and self.mass_kg_m is not None:
+            yield validation_problem(
+                "mass_kg", "the mass of the droppers is given twice", "Give either mass_kg or mass_kg_m."
+            )
+
+    @property
+    def schedule(self) -> DropperSchedule:
+        """Schedule of the spans that name no other."""
+        return DropperSchedule.model_construct(**{key: getattr(self, key) for key in DropperSchedule.model_fields})
+
+
+class DerivedDroppers(InputTable):
+    """Droppers at rest. A taut dropper is a spring and a damper along its direction at rest.
+
+    Its tension is max(0, tension + stiffness elongation + damping elongation rate). Across its direction it is a spring
+    without damping, taut or slack.
+    """
+
+    position_m: Annotated[BySpan, Field(description="position [m]")]
+    contact_wire: Annotated[
+        tuple[Annotated[tuple[int, ...], Field(strict=False)], ...],
+        Field(strict=False, description="number of the contact wire, from 1"),
+    ]
+    on_stitch_wire: Annotated[
+        tuple[tuple[bool, ...], ...],
+        Field(strict=False, description="true: the upper end is on a stitch wire; false: on the messenger wire"),
+    ]
+    contact_wire_height_m: Annotated[
+        BySpan,
+        Field(
+            description="prescribed height of the contact wire at rest [m]: the straight line between supports, less "
+            "the pre-sag"
+        ),
+    ]
+    length_m: Annotated[BySpan, Field(description="length at rest, between the axes of the wires [m]")]
+    height_m: Annotated[BySpan, Field(description="vertical part of the length [m]")]
+    width_m: Annotated[BySpan, Field(description="lateral part of the length, upper minus lower end [m]")]
+    vertical_force_N: Annotated[
+        BySpan,
+        Field(description="vertical force at rest, at mid-length of the dropper; tension = force length / height [N]"),
+    ]
+    stiffness_N_m: Annotated[BySpan, Field(description="stiffness of a taut dropper [N/m]")]
+    transverse_stiffness_N_m: Annotated[
+        BySpan | None,
+        Field(description="stiffness across the dropper: tension / length [N/m]; null: vertical plane only"),
+    ]
+    mass_kg: Annotated[BySpan, Field(description="mass of a dropper without clamps, half of it at each end [kg]")]
+    upper_clamp_kg: Annotated[float, Field(description="mass of the clamp at the upper end [kg]")]
+    lower_clamp_kg: Annotated[float, Field(description="mass of the clamp at the lower end [kg]")]
+    mass_coefficient_1_s: MassCoefficient
+    stiffness_coefficient_s: StiffnessCoefficient
+
+
+class Droppers(Element):
+    """Droppers of all spans."""
+
+    derived: ClassVar[DerivedKeys] = {"droppers": (DerivedDroppers, ...)}
+
+    droppers: DropperTable
+
+    @property
+    def dropper_schedules(self) -> tuple[DropperSchedule, ...]:
+        """Dropper schedule of every span."""
+        return self.line.geometry.choose_schedules(self.droppers.schedule)
+
+    @cross_check
+    def _droppers_lie_in_their_spans(self) -> Problems:
+        geometry = self.line.geometry
+        spans = enumerate(zip(geometry.span_lengths, self.dropper_schedules, strict=True), 1)
+        # Spans of one length with one schedule have the same problems.
+        schedules = {(geometry.schedule_key(number), span): schedule for number, (span, schedule) in spans}
+        for (key, span), schedule in schedules.items():
+            for i, x in enumerate(schedule.x_m, 1):
+                if x >= span:
+                    yield validation_problem(
+                        f"{key}.x_m[{i}]",
+                        f"{x:g} m is not inside the span of {span:g} m",
+                        f"Give positions between 0 and {span:g} m, from the start of the span.",
+                    )
+
+    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+        """Add the droppers of every span; those within a stitch wire hang on it."""
+        droppers = [
+            dropper
+            for span in layout.spans
+            for place in zip(span.dropper_position.tolist(), span.contact_wire_height.tolist(), strict=True)
+            for dropper in self._build_droppers(catenary, *place)
+        ]
+        return replace(catenary, droppers=(*catenary.droppers, *droppers))
+
+    def _build_droppers(self, catenary: Catenary, position: float, height: float) -> Iterator[Dropper]:
+        """Droppers of all parallel wires at a position with a height of the contact wire [m]."""
+        table, messengers = self.droppers, self.line.wire_names(Kind.MESSENGER_WIRE)
+        stitched = {
+            clamp.upper: clamp.lower
+            for clamp in catenary.clamps
+            if (wire := catenary.wire(clamp.lower)).start < position < wire.end
+        }
+        for i, contact in enumerate(self.line.wire_names(Kind.CONTACT_WIRE)):
+            messenger = messengers[min(i, len(messengers) - 1)]
+            yield Dropper(
+                position,
+                stitched.get(messenger, messenger),
+                contact,
+                stiffness=table.stiffness_N_m,
+                axial_stiffness=table.axial_stiffness_EA_N,
+                mass=table.mass_kg or 0.0,
+                upper_clamp_mass=table.clamp_on_messenger_kg,
+                lower_clamp_mass=table.clamp_on_contact_kg,
+                contact_wire_height=height,
+            )
+
+    def complete_line(self, catenary: Catenary) -> Catenary:
+        """Masses of the droppers from their lengths, if a mass per length is given."""
+        from pantocheck.model import discretise  # loads the solvers, which reading a line does not need
+
+        if not self.droppers.mass_kg_m:
+            return catenary
+        # The lengths depend slightly on the weights: after two passes they are accurate to 0.1 mm.
+        for _ in range(2):
+            masses = self.droppers.mass_kg_m * discretise(catenary, COARSE).state.dropper_length
+            droppers = zip(catenary.droppers, masses, strict=True)
+            catenary = replace(catenary, droppers=tuple(replace(part, mass=float(mass)) for part, mass in droppers))
+        return catenary
+
+    def derive(self, section: BuiltSection) -> dict[str, object]:
+        """Droppers at rest, span by span."""
+        return {"droppers": _derive_droppers(section)}
+
+    @staticmethod
+    def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
+        """Droppers."""
+        return (DrawnConnection(part.position, part.lower, part.upper) for part in catenary.droppers)
+
+
+def _derive_droppers(section: BuiltSection) -> DerivedDroppers:
+    line = section.line
+    catenary, state, droppers = line.catenary, line.state, line.catenary.droppers
+    length, direction = state.dropper_length, state.dropper_direction
+    spans, rayleigh = _count_by_span(section), catenary.rayleigh(Kind.DROPPER)
+    contact = {wire.name: n for n, wire in enumerate(catenary.contact_wires, 1)}
+
+    def by_span(values: Sequence[float] | RealArray) -> tuple[tuple[float, ...], ...]:
+        return _split(round_numbers(values), spans)
+
+    stiffness = [d.taut_stiffness(float(rest)) for d, rest in zip(droppers, length, strict=True)]
+    stitched = [catenary.wire(dropper.upper).kind is Kind.STITCH_WIRE for dropper in droppers]
+    return DerivedDroppers(
+        position_m=_split(round_positions(dropper.position for dropper in droppers), spans),
+        contact_wire=_split([contact[dropper.lower] for dropper in droppers], spans),
+        on_stitch_wire=_split(stitched, spans),
+        contact_wire_height_m=by_span([dropper.contact_wire_height or 0.0 for dropper in droppers]),
+        length_m=by_span(length),
+        height_m=by_span(length * direction[:, 1]),
+        width_m=by_span(length * direction[:, 0]),
+        vertical_force_N=by_span(state.dropper_tension * direction[:, 1]),
+        stiffness_N_m=by_span(stiffness),
+        transverse_stiffness_N_m=by_span(state.dropper_tension / length) if catenary.has_lateral_field else None,
+        mass_kg=by_span([dropper.mass for dropper in droppers]),
+        upper_clamp_kg=droppers[0].upper_clamp_mass,
+        lower_clamp_kg=droppers[0].lower_clamp_mass,
+        mass_coefficient_1_s=rayleigh.mass_coefficient,
+        stiffness_coefficient_s=rayleigh.stiffness_coefficient,
+    )
+
+
+def _count_by_span(section: BuiltSection) -> list[int]:
+    """Number of droppers of every span."""
+    positions = [dropper.position for dropper in section.line.catenary.droppers]
+    return [int(count) for count in np.histogram(positions, section.limits)[0]]
+
+
+def _split(values: Sequence[Entry], counts: Sequence[int]) -> tuple[tuple[Entry, ...], ...]:
+    """Values in consecutive parts with given numbers of entries."""
+    return tuple(tuple(values[end - count : end]) for count, end in zip(counts, accumulate(counts), strict=True))

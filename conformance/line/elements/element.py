@@ -1,0 +1,159 @@
+"""Element of a line: base class of the declarations in this folder.
+
+An element is a class. Its fields are keys of the line file. Its methods say what the element does wherever the suite
+uses a line: each of them has a default for elements that do nothing there. `element_registry.ELEMENTS` lists all
+elements, and a new one needs no change outside this folder.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
+
+from pydantic import Field
+from pydantic_core import PydanticCustomError
+
+from pantocheck.conformance.input_files.cross_checks import Problems
+from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent, validation_problem
+from pantocheck.model import Catenary, Kind, Wire
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.cases.line_file import LineFile
+    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.model import DiscretisedLine
+
+MOST_LINE_PARTS = 1000
+"""Largest number of changes of a wire, and of parts at single positions."""
+
+DerivedKeys = dict[str, tuple[Any, Any]]
+"""Type and default of every key of the derived values, by name; the default ... marks a required key."""
+
+Symbol = Literal["anchor", "messenger support", "steady arm", "sensor", "mass"]
+"""Kind of a point in a drawing."""
+
+KINDS: dict[str, Kind] = {"contact_wire": Kind.CONTACT_WIRE, "messenger_wire": Kind.MESSENGER_WIRE}
+"""Kind of wire of each table."""
+
+
+@dataclass(frozen=True)
+class BuiltSection:
+    """Tension section of a line with its part of the finite elements."""
+
+    file: "LineFile"
+    """Line file with the wires of the section."""
+    limits: tuple[float, ...]
+    """Positions of its anchors, and of the supports between them [m]."""
+    line: "DiscretisedLine"
+    """Finite elements of the line, with the parts of this section only in catenary and state."""
+
+    def wires(self, kind: Kind) -> list[Wire]:
+        """Wires of a kind."""
+        return [wire for wire in self.line.catenary.wires if wire.kind is kind]
+
+
+@dataclass(frozen=True)
+class DrawnMark:
+    """Point on a wire in a drawing."""
+
+    symbol: Symbol
+    """Kind of the point."""
+    wire: str
+    """Name of the wire."""
+    position: float
+    """Position along the line [m]."""
+    text: str = ""
+    """Text beside the point; empty for the fixed points of every support and anchor."""
+
+
+@dataclass(frozen=True)
+class DrawnConnection:
+    """Straight line between two wires in a drawing."""
+
+    position: float
+    """Position along the line [m]."""
+    lower: str
+    """Name of the lower wire."""
+    upper: str
+    """Name of the upper wire."""
+
+
+def list_key(table: type[InputTable], description: str) -> tuple[Any, Any]:
+    """Type and default of a key of the derived values that lists tables, and that is left out without any."""
+    return GenericAlias(tuple, (table, ...)), Field((), strict=False, exclude_if=is_absent, description=description)
+
+
+class Element(InputTable):
+    """Keys of a line file that describe one element, and all that the element does."""
+
+    derived: ClassVar[DerivedKeys] = {}
+    """Keys of the derived values that programs receive, see `derive`."""
+
+    @property
+    def line(self) -> "LineFile":
+        """Line file of the element: every line file is an instance of all elements."""
+        return cast("LineFile", self)
+
+    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+        """Add the parts of one tension section, before its wires rise over the overlaps.
+
+        Args:
+            catenary: Section with the elements that precede this one.
+            layout: Spans and supports of the section.
+        """
+        return catenary
+
+    def add_to_line(self, catenary: Catenary) -> Catenary:
+        """Add parts by their positions to the line of all sections."""
+        return catenary
+
+    def complete_line(self, catenary: Catenary) -> Catenary:
+        """Change the line with all of its parts, where the change follows from its state at rest."""
+        return catenary
+
+    def derive(self, section: BuiltSection) -> dict[str, object]:
+        """Values of the keys of `derived` for one tension section."""
+        return {}
+
+    def measure(self, built: "DiscretisedLine") -> dict[str, float]:
+        """Quantities of the line at rest that exist because of the element, by name."""
+        return {}
+
+    @staticmethod
+    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+        """Points of the element in a drawing."""
+        return iter(())
+
+    @staticmethod
+    def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
+        """Lines between two wires in a drawing."""
+        return iter(())
+
+
+def find_position_problems(line: "LineFile", key: str, positions: list[float]) -> Problems:
+    """Problems of the key `x_m` of parts on wires: outside of the line, or in an overlap.
+
+    Args:
+        line: Line of the parts.
+        key: Key of the list of parts.
+        positions: Their positions along the track [m].
+
+    Yields:
+        One problem.
+    """
+    for number, x in enumerate(positions, 1):
+        if not 0.0 < x < line.geometry.length:
+            yield beyond_end(f"{key}[{number}].x_m", x, line)
+        for start, end in line.overlaps:
+            if start < x < end:
+                yield validation_problem(
+                    f"{key}[{number}].x_m",
+                    f"{x:g} m lies in the overlap from {start:g} m to {end:g} m, where two sections have wires",
+                    "Give a position outside of the overlaps.",
+                )
+
+
+def beyond_end(key: str, position: float, line: "LineFile") -> PydanticCustomError:
+    """Problem of a position [m] that is not on the line."""
+    length = line.geometry.length
+    found = f"{position:g} m is not on the line, which ends at {length:g} m"
+    return validation_problem(key, found, f"Give a position between 0 and {length:g} m.")

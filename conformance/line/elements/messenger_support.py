@@ -1,0 +1,128 @@
+"""Supports of the messenger wire."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import Feature
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    NonNegative,
+    Positive,
+    SourcedTable,
+    validation_problem,
+)
+from pantocheck.conformance.line.derived_numbers import BySupport, Numbers, join_equal, round_positions
+from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
+from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
+from pantocheck.model import Catenary, Kind, MessengerSupport
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.cases.line_layout import LineLayout
+
+HELD = Feature("messenger_wire_held_along_track")
+SupportStiffness = Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
+SupportDamper = Annotated[NonNegative, Field(description="vertical damper [N s/m]"), Feature("support_dampers")]
+AlongTrack = Annotated[
+    Literal["free", "fixed"],
+    Field(
+        description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
+        "fixed: its tension changes with its elongation between two supports"
+    ),
+    HELD,
+]
+
+
+class MessengerSupportTable(SourcedTable):
+    """Support of the messenger wire: a vertical spring and damper."""
+
+    stiffness_N_m: SupportStiffness
+    damping_N_s_m: SupportDamper = 0.0
+    along_track: AlongTrack = "free"
+
+
+class MessengerSupportChanges(InputTable):
+    """Values of the messenger support at one support that differ from the table messenger_support of the line."""
+
+    stiffness_N_m: Annotated[SupportStiffness | None, SINGLE_SUPPORTS] = None
+    damping_N_s_m: Annotated[SupportDamper | None, Feature("support_dampers")] = None
+    along_track: Annotated[AlongTrack | None, HELD] = None
+
+
+class DerivedMessengerSupports(InputTable):
+    """Supports of the messenger wires: springs and dampers to the ground, whose force is zero at rest."""
+
+    position_m: Annotated[Numbers, Field(description="position [m]")]
+    height_m: Annotated[BySupport, Field(description="height of the messenger wire at rest [m]")]
+    vertical_stiffness_N_m: Annotated[BySupport, Field(description="vertical spring [N/m]")]
+    lateral_stiffness_N_m: Annotated[
+        BySupport | None, Field(description="lateral spring [N/m]; null: vertical plane only")
+    ]
+    vertical_damper_N_s_m: Annotated[BySupport, Field(description="vertical damper [N s/m]")]
+    lateral_damper_N_s_m: Annotated[
+        BySupport | None, Field(description="lateral damper [N s/m]; null: vertical plane only")
+    ]
+    held_along_track: Annotated[
+        bool | tuple[bool, ...],
+        Field(description="whether a support holds the wire along the track, so that its tension is not constant"),
+    ]
+    mass_kg: Annotated[float, Field(description="moving mass of a support [kg]")] = 0.0
+
+
+class MessengerSupports(Element):
+    """Supports of the messenger wires at all supports of the line."""
+
+    derived: ClassVar[DerivedKeys] = {"messenger_supports": (DerivedMessengerSupports, ...)}
+
+    messenger_support: MessengerSupportTable
+
+    @cross_check
+    def _check_axial_stiffness(self) -> Problems:
+        holding = self.line.layout.supports_fixed_along_track
+        if holding and self.line.messenger_wire.axial_stiffness_EA_N is None:
+            yield validation_problem(
+                "messenger_wire.axial_stiffness_EA_N",
+                f"support {holding[0]} holds the messenger wire along the track, but its axial stiffness is not given",
+                "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
+            )
+
+    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+        """Add a support to every messenger wire at every support of the line."""
+        supports = (
+            MessengerSupport(
+                support.limit.position,
+                messenger,
+                support.limit.messenger_wire_height,
+                support.messenger_support.stiffness_N_m,
+                support.messenger_support.damping_N_s_m,
+                support.messenger_support.along_track,
+            )
+            for support in layout.supports
+            for messenger in self.line.wire_names(Kind.MESSENGER_WIRE)
+        )
+        return replace(catenary, messenger_supports=tuple(supports))
+
+    def derive(self, section: BuiltSection) -> dict[str, object]:
+        """Supports of the first messenger wire; those of the others are equal."""
+        first, lateral = section.wires(Kind.MESSENGER_WIRE)[0].name, section.line.catenary.has_lateral_field
+        supports = [support for support in section.line.catenary.messenger_supports if support.wire == first]
+        stiffness = join_equal(support.stiffness for support in supports)
+        damper = join_equal(support.damping for support in supports)
+        derived = DerivedMessengerSupports(
+            position_m=round_positions(support.position for support in supports),
+            height_m=join_equal(support.height for support in supports),
+            vertical_stiffness_N_m=stiffness,
+            lateral_stiffness_N_m=stiffness if lateral else None,
+            vertical_damper_N_s_m=damper,
+            lateral_damper_N_s_m=damper if lateral else None,
+            held_along_track=join_equal(support.along_track == "fixed" for support in supports),
+        )
+        return {"messenger_supports": derived}
+
+    @staticmethod
+    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+        """Supports."""
+        return (DrawnMark("messenger support", part.wire, part.position) for part in catenary.messenger_supports)

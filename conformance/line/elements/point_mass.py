@@ -1,0 +1,91 @@
+"""Point masses on the wires, such as section insulators and clamps."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
+from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, SourcedTable, is_absent
+from pantocheck.conformance.line.derived_numbers import MassCoefficient, round_number, round_position
+from pantocheck.conformance.line.elements.element import (
+    KINDS,
+    MOST_LINE_PARTS,
+    BuiltSection,
+    DerivedKeys,
+    DrawnMark,
+    Element,
+    find_position_problems,
+    list_key,
+)
+from pantocheck.model import Catenary, Kind, PointMass
+
+
+class PointMassTable(SourcedTable):
+    """Mass on a wire, such as a section insulator or a clamp; on parallel wires, on each of them."""
+
+    x_m: Annotated[NonNegative, Field(description="position along the track [m]")]
+    wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="wire that carries the mass")]
+    mass_kg: Annotated[float, Field(gt=0, le=200, description="mass on one wire [kg]")]
+    name: Annotated[str | None, Field(description="name in reports", max_length=100), NO_FEATURE] = None
+
+
+class DerivedPointMass(InputTable):
+    """Mass on a wire; it hangs on the wire at rest, and moves with it in both directions."""
+
+    position_m: Annotated[float, Field(description="position [m]")]
+    wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="kind of wire")]
+    number: Annotated[int, Field(description="number of the wire among the parallel ones, from 1")]
+    mass_kg: Annotated[float, Field(description="mass [kg]")]
+    mass_coefficient_1_s: MassCoefficient
+
+
+class PointMasses(Element):
+    """Masses on the wires."""
+
+    derived: ClassVar[DerivedKeys] = {"point_masses": list_key(DerivedPointMass, "masses on the wires; absent: none")}
+
+    point_mass: Annotated[
+        tuple[PointMassTable, ...],
+        Field(strict=False, max_length=MOST_LINE_PARTS, description="masses on the wires", exclude_if=is_absent),
+        Feature("point_masses"),
+    ] = ()
+
+    @cross_check
+    def _check_point_masses(self) -> Problems:
+        yield from find_position_problems(self.line, "point_mass", [mass.x_m for mass in self.point_mass])
+
+    def add_to_line(self, catenary: Catenary) -> Catenary:
+        """Add the masses, each to every parallel wire."""
+        masses = (
+            PointMass(mass.x_m, wire.name, mass.mass_kg)
+            for mass in self.point_mass
+            for wire in catenary.wires
+            if wire.kind is KINDS[mass.wire] and wire.start < mass.x_m < wire.end
+        )
+        return replace(catenary, point_masses=tuple(masses))
+
+    def derive(self, section: BuiltSection) -> dict[str, object]:
+        """Masses with the numbers of their wires."""
+        return {
+            "point_masses": tuple(_derive(section.line.catenary, mass) for mass in section.line.catenary.point_masses)
+        }
+
+    @staticmethod
+    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+        """Masses with their sizes."""
+        return (DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+
+
+def _derive(catenary: Catenary, mass: PointMass) -> DerivedPointMass:
+    wire = catenary.wire(mass.wire)
+    parallel = [other.name for other in catenary.wires if other.kind is wire.kind]
+    return DerivedPointMass(
+        position_m=round_position(mass.position),
+        wire="contact_wire" if wire.kind is Kind.CONTACT_WIRE else "messenger_wire",
+        number=1 + parallel.index(wire.name),
+        mass_kg=round_number(mass.mass),
+        mass_coefficient_1_s=catenary.rayleigh(wire.kind).mass_coefficient,
+    )

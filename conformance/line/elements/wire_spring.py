@@ -1,0 +1,104 @@
+"""Springs between messenger and contact wire, such as stiff electrical connections."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated, ClassVar
+
+from pydantic import Field
+
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
+from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, SourcedTable, is_absent
+from pantocheck.conformance.line.derived_numbers import round_position
+from pantocheck.conformance.line.elements.element import (
+    MOST_LINE_PARTS,
+    BuiltSection,
+    DerivedKeys,
+    DrawnConnection,
+    Element,
+    find_position_problems,
+    list_key,
+)
+from pantocheck.model import Catenary, Kind, Spring
+
+WIRE_SPRINGS = Feature("wire_springs")
+
+
+class WireSpringTable(SourcedTable):
+    """Vertical spring and damper between messenger and contact wire; of parallel wires, between each pair."""
+
+    x_m: Annotated[NonNegative, Field(description="position along the track [m]")]
+    stiffness_N_m: Annotated[float, Field(gt=0, le=1e6, description="stiffness of one spring [N/m]")]
+    damping_N_s_m: Annotated[float, Field(ge=0, le=1e5, description="damping of one spring [N s/m]"), WIRE_SPRINGS] = (
+        0.0
+    )
+    name: Annotated[str | None, Field(description="name in reports", max_length=100), NO_FEATURE] = None
+
+
+class DerivedWireSpring(InputTable):
+    """Vertical spring and damper between a messenger and a contact wire; its force is zero at rest."""
+
+    position_m: Annotated[float, Field(description="position [m]")]
+    contact_wire: Annotated[int, Field(description="number of the contact wire among the parallel ones, from 1")]
+    messenger_wire: Annotated[int, Field(description="number of the messenger wire among the parallel ones, from 1")]
+    stiffness_N_m: Annotated[float, Field(description="stiffness [N/m]")]
+    damping_N_s_m: Annotated[float, Field(description="damping [N s/m]")]
+
+
+class WireSprings(Element):
+    """Springs between messenger and contact wire."""
+
+    derived: ClassVar[DerivedKeys] = {
+        "wire_springs": list_key(DerivedWireSpring, "springs between the wires; absent: none")
+    }
+
+    wire_spring: Annotated[
+        tuple[WireSpringTable, ...],
+        Field(strict=False, max_length=MOST_LINE_PARTS, description="springs between the wires", exclude_if=is_absent),
+        WIRE_SPRINGS,
+    ] = ()
+
+    @cross_check
+    def _check_wire_springs(self) -> Problems:
+        yield from find_position_problems(self.line, "wire_spring", [spring.x_m for spring in self.wire_spring])
+
+    def add_to_line(self, catenary: Catenary) -> Catenary:
+        """Add the springs between the parallel wires at each position."""
+        springs = (
+            Spring(table.x_m, upper, lower, table.stiffness_N_m, table.damping_N_s_m)
+            for table in self.wire_spring
+            for upper, lower in _find_pairs(catenary, table.x_m)
+        )
+        return replace(catenary, springs=(*catenary.springs, *springs))
+
+    def derive(self, section: BuiltSection) -> dict[str, object]:
+        """Springs with the numbers of their wires."""
+        contact, messenger = (
+            [wire.name for wire in section.wires(kind)] for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
+        )
+        springs = (
+            DerivedWireSpring(
+                position_m=round_position(spring.position),
+                contact_wire=1 + contact.index(spring.lower),
+                messenger_wire=1 + messenger.index(spring.upper),
+                stiffness_N_m=spring.stiffness,
+                damping_N_s_m=spring.damping,
+            )
+            for spring in section.line.catenary.springs
+        )
+        return {"wire_springs": tuple(springs)}
+
+    @staticmethod
+    def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
+        """Springs, drawn as droppers are."""
+        return (DrawnConnection(part.position, part.lower, part.upper) for part in catenary.springs)
+
+
+def _find_pairs(catenary: Catenary, position: float) -> Iterator[tuple[str, str]]:
+    """Names of the messenger and the contact wire of each parallel pair at a position [m]."""
+    contact, messenger = (
+        [wire.name for wire in catenary.wires if wire.kind is kind and wire.start < position < wire.end]
+        for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
+    )
+    for i, lower in enumerate(contact):
+        yield messenger[min(i, len(messenger) - 1)], lower

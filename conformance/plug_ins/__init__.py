@@ -1,1 +1,0 @@
-"""Extensions by other installed distributions: cases, readers, quantities and systems, found by entry points."""

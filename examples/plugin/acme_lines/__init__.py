@@ -1,1 +1,0 @@
-"""Example of an extension of Pantocheck."""

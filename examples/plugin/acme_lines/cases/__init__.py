@@ -1,1 +1,0 @@
-"""Case files of the package."""

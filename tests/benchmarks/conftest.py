@@ -1,6 +1,0 @@
-"""Make the modules of benchmarks/ importable."""
-
-import sys
-from pathlib import Path
-
-sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))

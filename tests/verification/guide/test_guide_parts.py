@@ -1,0 +1,118 @@
+"""Parts of the guide beside the closed forms: peers, self-test, computing times and limitations."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.identification.identify import identify_modes
+from pantocheck.conformance.self_test.bench import MutantResult
+from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
+from pantocheck.conformance.self_test.numerical_faults import FAULTS, NumericalResult
+from verification.guide import peers
+from verification.guide.guide_building import list_effects
+from verification.guide.guide_tasks import list_tasks, list_timings
+from verification.guide.known_limitations import LIMITATIONS_FILE, read_limitations
+from verification.guide.part_durations import DURATIONS_S
+from verification.guide.peers.peer_list import PEERS
+from verification.guide.peers.peer_package import Peer, run_peer
+from verification.guide.peers.salib_indices import evaluate_ishigami
+from verification.guide.peers.subspace_modes import KNOWN_MODES, build_known_drop
+from verification.guide.performance import measure_passage, name_processor
+from verification.guide.self_test_summary import describe_fault, describe_mutant
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_peer_that_is_not_installed_is_not_run() -> None:
+    def fail() -> list[object]:
+        raise AssertionError("run without its package")
+
+    result = run_peer(Peer("pantocheck-no-such-package", "title", "setting", fail))  # type: ignore[arg-type]
+    assert (result.version, result.comparisons) == (None, [])
+
+
+@pytest.mark.parametrize(
+    ("name", "module"), [("exudyn", "exudyn"), ("scikit-fem", "skfem"), ("pyOMA-2", "pyoma2"), ("SALib", "SALib")]
+)
+def test_peer_agrees_where_it_is_installed(name: str, module: str) -> None:
+    pytest.importorskip(module, reason=f"{name} is optional: pip install 'pantocheck[peers]'")
+    result = run_peer(PEERS[name])
+    assert result.version is not None
+    assert result.comparisons
+    assert [(row.key, row.deviation) for row in result.comparisons if not row.agrees] == []
+
+
+def test_synthetic_drop_has_its_known_modes() -> None:
+    """The suite alone, as in the comparison with pyOMA-2: within 1e-5 in frequency and 1e-3 in damping."""
+    (found,) = identify_modes((build_known_drop(),))
+    values = np.array([(mode.frequency_Hz, mode.damping_ratio) for mode in found.modes])
+    np.testing.assert_allclose(values[:, 0], list(KNOWN_MODES), rtol=1e-5)
+    np.testing.assert_allclose(values[:, 1], list(KNOWN_MODES.values()), rtol=1e-3)
+
+
+def test_ishigami_function_at_known_points() -> None:
+    """sin x1 = 1, sin^2 x2 = 1, x3 = 2: 1 + 7 + 0.1 * 16."""
+    points = np.array([[np.pi / 2, np.pi / 2, 2.0], [0.0, 0.0, 3.0]])
+    assert evaluate_ishigami(points) == pytest.approx([9.6, 0.0])
+
+
+def test_packages_of_peers_are_imported_when_they_are_compared() -> None:
+    for path in Path(peers.__file__).parent.glob("*.py"):
+        if path.name != "exudyn_engine.py":
+            lines = path.read_text("utf-8").splitlines()
+            assert not [
+                line for line in lines if line.startswith(("import skfem", "from skfem", "from SALib", "from pyoma2"))
+            ]
+
+
+def _mutant_result(number: int, verdict: Verdict, detected: bool, optional: bool = False) -> MutantResult:
+    mutant = (MILD if optional else MUTANTS)[number]
+    return MutantResult(mutant, "case", verdict, "pass", (), ("content",), detected, "reason")
+
+
+def test_fault_of_a_record_is_detected_by_the_expected_check_or_not_at_all() -> None:
+    found, missed = describe_mutant(_mutant_result(0, "error", True)), describe_mutant(_mutant_result(0, "pass", False))
+    assert (found.detected, found.must_be_detected, found.detected_by) == (True, True, MUTANTS[0].expected_check)
+    assert (missed.detected, missed.detected_by) == (False, "content")
+    mild = describe_mutant(_mutant_result(0, "pass", True, optional=True))
+    assert (mild.detected, mild.must_be_detected) == (False, False)
+
+
+@pytest.mark.parametrize(("verification", "detected"), [("fail", True), ("pass", False), ("info", False)])
+def test_numerical_fault_is_detected_by_a_failed_verification(verification: Verdict, detected: bool) -> None:
+    described = describe_fault(NumericalResult(FAULTS[0], "case", "pass", verification, ("std_force_N",)))
+    assert (described.detected, described.must_be_detected, described.verdict) == (detected, True, verification)
+
+
+def test_timing_states_the_ratio_to_the_simulated_time() -> None:
+    """From 60 m to the end of the run at 250 km/h."""
+    timing = measure_passage("en50318-2002/250")
+    (case,) = select_cases(["en50318-2002/250"])
+    assert timing.simulated_s == pytest.approx((case.end - case.start) / case.speed)
+    assert timing.ratio == pytest.approx(timing.process_s / timing.simulated_s)
+    assert timing.process_s > 0
+    assert name_processor()
+
+
+def test_limitations_have_one_home_to_which_the_documentation_leads() -> None:
+    limitations = read_limitations()
+    assert len(limitations) >= 5
+    assert all(part.title and part.sentences for part in limitations)
+    file = ROOT / "docs" / LIMITATIONS_FILE
+    assert sum(len(part.sentences) for part in limitations) == file.read_text("utf-8").count("\n* ")
+    for page in ("README.md", "docs/guide.md"):
+        assert LIMITATIONS_FILE in (ROOT / page).read_text("utf-8")
+
+
+def test_effects_of_the_exact_model_are_those_of_the_library() -> None:
+    free, fixed = list_effects()
+    assert (free.relative_pct["max_uplift_at_support_mm"], free.absolute["min_force_N"]) == (2.5, 4.6)
+    assert (fixed.relative_pct["max_uplift_at_support_mm"], fixed.absolute["min_force_N"]) == (4.3, 1.4)
+
+
+def test_long_parts_of_the_guide_are_parts() -> None:
+    """A duration of a part that is renamed would be lost."""
+    assert DURATIONS_S.keys() <= {task.name for task in (*list_tasks(), *list_timings())}

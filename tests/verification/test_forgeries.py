@@ -1,0 +1,75 @@
+"""Forgeries: each kind is found in results.json, a few in PDF and HTML; `.ci/thorough forgeries` tries all of them."""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.runner import run_cases
+from verification.attacks.forged_pages import HTML_FORGERIES
+from verification.attacks.forged_pdfs import PDF_FORGERIES
+from verification.attacks.forged_results import CHANGES
+from verification.attacks.forgeries import (
+    OUTSIDE,
+    SEED,
+    Genuine,
+    attempt,
+    build_genuine,
+    list_forgeries,
+    list_result_forgeries,
+)
+from verification.tables.__main__ import TABLES
+
+PDF_KINDS = [
+    "heading painted over",
+    "note over the heading, as update",
+    "further attachment",
+    "script",
+    "written again",
+]
+HTML_KINDS = ["every word of a verdict", "coordinate of a curve", "rows hidden by style", "script", "embedded verdict"]
+
+
+@pytest.fixture(scope="module")
+def genuine() -> Genuine:
+    """Documents of a run whose statistical maximum fails, with criteria close to their limits."""
+    case = load_case(library_folder() / "en50318-2002" / "250.toml")
+    return build_genuine(run_cases([case], Wave(mean=119.9, sigma=30.9)).to_dict())
+
+
+@pytest.mark.parametrize("kind", CHANGES)
+def test_forged_results_are_found(genuine: Genuine, tmp_path: Path, kind: str) -> None:
+    """A forged results.json is consistent only for the kinds that need a record, a new run or a signature."""
+    carrier, content, suffix = next(list_result_forgeries(genuine, kind, SEED))
+    outcome = attempt(kind, carrier, content, suffix, tmp_path).outcome
+    assert (outcome == "consistent") == (kind in OUTSIDE), outcome
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("carrier", "kind"), [*(("PDF", kind) for kind in PDF_KINDS), *(("HTML", kind) for kind in HTML_KINDS)]
+)
+def test_forged_files_are_found(genuine: Genuine, tmp_path: Path, carrier: str, kind: str) -> None:
+    [item] = [item for item in list_forgeries(genuine, kind, SEED) if item[0] == carrier]
+    assert {"pages", "appended bytes"} & set(attempt(kind, *item, tmp_path).outcome.split(", "))
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("carrier", ["PDF, attachment alone", "HTML, data alone"])
+def test_pages_beside_other_results_are_found(genuine: Genuine, tmp_path: Path, carrier: str) -> None:
+    """Results that are consistent in themselves contradict the genuine pages."""
+    kind = "name of the system"
+    [item] = [item for item in list_result_forgeries(genuine, kind, SEED) if item[0] == carrier]
+    assert attempt(kind, *item, tmp_path).outcome == "pages"
+
+
+def test_tables_list_every_kind() -> None:
+    texts = [path.read_text("utf-8") for path in TABLES.glob("forged-*.csv")]
+    rows = [row for text in texts for row in csv.reader(text.splitlines())]
+    kinds = {*CHANGES, *PDF_FORGERIES, *HTML_FORGERIES}
+    assert len(kinds) >= 60
+    assert kinds <= {row[0] for row in rows}
+    assert {row[0] for row in rows if "consistent" in row} <= set(OUTSIDE)

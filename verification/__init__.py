@@ -1,0 +1,1 @@
+"""Evidence about the product; not part of the wheel."""

@@ -1,0 +1,1 @@
+"""Attacks on documents, records, readers and tests: forgeries, manipulations, damaged files and mutants."""

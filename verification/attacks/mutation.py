@@ -1,0 +1,352 @@
+"""Mutation sample of the product with the operators of cosmic-ray: share of changed places that related tests detect.
+
+    python -m verification.attacks.mutation OUT [--mutants 60] [--folders conformance/grading ...] [--jobs 2]
+
+OUT is a folder outside the checkout; the same command continues an ended run. Method and settings: docs/mutation.md.
+"""
+
+import argparse
+import ast
+import contextlib
+import difflib
+import hashlib
+import json
+import math
+import os
+import queue
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+import tomllib
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from cosmic_ray.ast import ast_nodes, get_ast
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.plugins import get_operator
+
+CHECKOUT = Path(__file__).parents[2]
+ROOTS = ("model", "conformance")
+TESTED = ("tests/model", "tests/conformance")
+COPIED = ("conformance", "model", "pantocheck", "reference_cases", "templates", "tests", "verification", "docs")
+COPIED += ("examples", "pyproject.toml", "pytest_pantocheck.py", "README.md", "CHANGELOG.md")
+SEED = 20261122
+SUFFICIENT = 0.9
+"""Share of killed mutants that every folder needs."""
+Z_95 = 1.959964
+SLOWER, EXTRA_S = 3.0, 30.0
+"""A mutant whose tests take longer than this multiple of their time, and this time [s], counts as killed."""
+OPERATORS = tuple(
+    f"core/{name}"
+    for name in (
+        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Lt_LtE", "LtE_Lt", "Gt_GtE", "GtE_Gt", "Lt_Gt", "Gt_Lt")),
+        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is")),
+        *(f"ReplaceBinaryOperator_{pair}" for pair in ("Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul")),
+        *("ReplaceUnaryOperator_Delete_USub", "ReplaceUnaryOperator_Delete_Not", "AddNot", "NumberReplacer"),
+        *("ReplaceTrueWithFalse", "ReplaceFalseWithTrue", "ReplaceAndWithOr", "ReplaceOrWithAnd"),
+        *("ReplaceBreakWithContinue", "ReplaceContinueWithBreak", "ZeroIterationForLoop"),
+    )
+)
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file."""
+
+    file: str
+    operator: str
+    occurrence: int
+    """Number of the place among those of the operator in the file, from 0."""
+
+    @property
+    def order(self) -> str:
+        """Place in the sample: a digest, so that a change of one file leaves the sample of the others as it is."""
+        return hashlib.sha256(f"{SEED} {self.file} {self.operator} {self.occurrence}".encode()).hexdigest()
+
+    def mutate(self, source: str) -> str:
+        """Source of the file with the change."""
+        changed = mutate_code(source, get_operator(self.operator)(), self.occurrence)
+        if changed is None:
+            raise ValueError(f"{self.file} has no place {self.occurrence} of {self.operator}")
+        return str(changed)
+
+
+@dataclass
+class Worker:
+    """Private copy of the checkout, importable as the installed packages are."""
+
+    place: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def create(cls, snapshot: Path, place: Path) -> "Worker":
+        """Copy the snapshot, and link its folders below the names of the packages."""
+        if not place.exists():
+            shutil.copytree(snapshot, place, symlinks=True)
+        names = place / ".names"
+        names.mkdir(exist_ok=True)
+        folders = tomllib.loads((place / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]["package-dir"]
+        for package, folder in folders.items():
+            link = names / package.replace(".", "/")
+            link.parent.mkdir(exist_ok=True)
+            if "." in package and not link.is_symlink():
+                link.symlink_to(place / folder, target_is_directory=True)
+        path = os.pathsep.join([str(names), str(place)])
+        settings = {"PYTHONPATH": path, "HYPOTHESIS_STORAGE_DIRECTORY": str(place / ".hypothesis")}
+        return cls(place, {**os.environ, **settings})
+
+    def run_tests(self, files: list[str], limit_s: float | None) -> int | None:
+        """Exit code of pytest on test files; None if it takes longer than the limit [s]."""
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
+        process = subprocess.Popen(
+            command, cwd=self.place, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )  # fmt: skip
+        try:
+            return process.wait(limit_s)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def write(self, file: str, source: str) -> None:
+        """Write a source, and remove its compiled files, which Python compares by the second only."""
+        path = self.place / file
+        path.write_text(source, "utf-8")
+        for compiled in (path.parent / "__pycache__").glob(f"{path.stem}.*"):
+            compiled.unlink()
+
+
+class RelatedTests:
+    """Test files by their distance from a file of the product in the graph of imports."""
+
+    def __init__(self, root: Path) -> None:
+        files = [path for folder in (*ROOTS, "tests", "verification") for path in sorted((root / folder).rglob("*.py"))]
+        names = {_module_name(path.relative_to(root)): path.relative_to(root).as_posix() for path in files}
+        self.importers: dict[str, set[str]] = {}
+        for path in files:
+            for name in names.keys() & set(_list_imports(path)):
+                self.importers.setdefault(names[name], set()).add(path.relative_to(root).as_posix())
+
+    def select(self, file: str) -> Iterator[str]:
+        """Test files that import a file, the nearest first, those of the same folder before others."""
+        seen, waiting = {file}, deque([file])
+        folder = f"tests/{Path(file).parent.as_posix()}"
+        while waiting:
+            level = [importer for name in waiting for importer in self.importers.get(name, ()) if importer not in seen]
+            waiting = deque(dict.fromkeys(level))
+            seen.update(waiting)
+            tests = [name for name in waiting if name.startswith(TESTED) and Path(name).name.startswith("test_")]
+            yield from sorted(tests, key=lambda name: (not name.startswith(folder), name))
+
+
+def _module_name(path: Path) -> str:
+    parts = path.with_suffix("").parts
+    parts = parts[:-1] if parts[-1] == "__init__" else parts
+    if parts[0] in ROOTS:
+        return ".".join(("pantocheck", *parts))
+    return ".".join(parts[1:] if parts[:2] == ("tests", "helpers") else parts)
+
+
+def _list_imports(path: Path) -> Iterator[str]:
+    """Names of imported modules, and of names that may be modules, anywhere in a file."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def list_folders(root: Path) -> dict[str, list[str]]:
+    """Files with code of every folder below `model` and `conformance`, subfolders included; no compiled kernels."""
+    folders: dict[str, list[str]] = {}
+    for top in ROOTS:
+        for path in sorted((root / top).rglob("*.py")):
+            parts = path.relative_to(root).parts
+            imports = set(_list_imports(path))
+            if "numba" not in imports and "llvmlite" not in imports:
+                folders.setdefault("/".join(parts[:2]) if len(parts) > 2 else top, []).append("/".join(parts))
+    return folders
+
+
+def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
+    """All mutants of a file; annotations of types hold none of these operators but numbers of a literal."""
+    nodes = list(ast_nodes(get_ast((root / file).read_text("utf-8"))))
+    for name in OPERATORS:
+        operator = get_operator(name)()
+        places = sum(len(list(operator.mutation_positions(node))) for node in nodes)
+        yield from (Mutant(file, name, occurrence) for occurrence in range(places))
+
+
+def draw_sample(root: Path, files: list[str], size: int) -> list[Mutant]:
+    """Mutants of a folder in the order of their digests."""
+    mutants = (mutant for file in files for mutant in list_mutants(root, file))
+    return sorted(mutants, key=lambda mutant: mutant.order)[:size]
+
+
+def wilson_interval(killed: int, total: int) -> tuple[float, float]:
+    """95 % interval of a share by Wilson's score.
+
+    Args:
+        killed: Number of killed mutants.
+        total: Number of mutants, at least 1.
+
+    Returns:
+        Lower and upper end of the share [-].
+    """
+    share, spread = killed / total, Z_95**2 / total
+    half = Z_95 * math.sqrt(share * (1 - share) / total + spread / (4 * total))
+    return (share + spread / 2 - half) / (1 + spread), (share + spread / 2 + half) / (1 + spread)
+
+
+@dataclass
+class Run:
+    """Mutation run: snapshot, times of the test files without a mutant, and outcomes, all stored in OUT."""
+
+    out: Path
+    tests: int
+    budget_s: float
+
+    def __post_init__(self) -> None:
+        self.snapshot = self.out / "snapshot"
+        if not self.snapshot.exists():
+            partial = self.out / "snapshot.partial"
+            shutil.rmtree(partial, ignore_errors=True)
+            partial.mkdir(parents=True)
+            skipped = shutil.ignore_patterns("__pycache__", ".*", "generated", "gallery")
+            for name in COPIED:
+                if (CHECKOUT / name).is_dir():
+                    shutil.copytree(CHECKOUT / name, partial / name, ignore=skipped)
+                else:
+                    shutil.copyfile(CHECKOUT / name, partial / name)
+            partial.rename(self.snapshot)
+        self.related = RelatedTests(self.snapshot)
+        self.lock = threading.Lock()
+        self.times = {row["file"]: row for row in _read_rows(self.out / "tests.jsonl")}
+        self.outcomes = {row["order"]: row for row in _read_rows(self.out / "outcomes.jsonl")}
+
+    def judge(self, mutant: Mutant, worker: Worker) -> None:
+        """Run the related tests of a mutant, and store its outcome."""
+        tests, spent = [], 0.0
+        for file in self.related.select(mutant.file):
+            seconds = self._time_tests(file, worker)
+            if seconds is not None and spent + seconds <= self.budget_s:
+                tests.append(file)
+                spent += seconds
+            if len(tests) == self.tests:
+                break
+        source = (self.snapshot / mutant.file).read_text("utf-8")
+        changed = mutant.mutate(source)
+        worker.write(mutant.file, changed)
+        try:
+            code = worker.run_tests(tests, SLOWER * spent + EXTRA_S) if tests else 0
+        finally:
+            worker.write(mutant.file, source)
+        diff = [
+            line
+            for line in difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
+            if not line.startswith(("---", "+++"))
+        ]
+        outcome = "untested" if not tests else "timeout" if code is None else "survived" if code == 0 else "killed"
+        row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": tests}
+        with self.lock:
+            self.outcomes[mutant.order] = row
+            _append_row(self.out / "outcomes.jsonl", row)
+
+    def _time_tests(self, file: str, worker: Worker) -> float | None:
+        """Time of a test file without a mutant [s]; None if it fails, has no test, or exceeds the budget."""
+        if file not in self.times:
+            begin = time.perf_counter()
+            code = worker.run_tests([file], 2 * self.budget_s + EXTRA_S)
+            row = {"file": file, "seconds": time.perf_counter() - begin, "passed": code == 0}
+            with self.lock:
+                self.times[file] = row
+                _append_row(self.out / "tests.jsonl", row)
+        row = self.times[file]
+        return row["seconds"] if row["passed"] else None
+
+
+def _read_rows(path: Path) -> list[dict[str, Any]]:
+    """Whole lines of a file; a last line that an interruption cut is removed."""
+    text = path.read_text("utf-8") if path.exists() else ""
+    whole = text[: text.rfind("\n") + 1]
+    path.write_text(whole, "utf-8")
+    return [json.loads(line) for line in whole.splitlines()]
+
+
+def _append_row(path: Path, row: dict[str, Any]) -> None:
+    with path.open("a", encoding="utf-8") as file:
+        file.write(f"{json.dumps(row)}\n")
+
+
+def is_equivalent(row: dict[str, Any], known: list[dict[str, str]]) -> bool:
+    """Whether a survivor is listed as a change that no test can notice."""
+    old, new = ([line[1:].strip() for line in row["diff"] if line.startswith(sign)] for sign in "-+")
+    return any([item["line"]] == old and [item["mutant"]] == new and item["file"] == row["file"] for item in known)
+
+
+def report(folder: str, rows: list[dict[str, Any]]) -> bool:
+    """Print the share of a folder and its survivors; whether enough mutants are killed."""
+    killed = sum(row["outcome"] in {"killed", "timeout"} for row in rows)
+    low, high = wilson_interval(killed, len(rows))
+    share = killed / len(rows)
+    print(f"{folder}: {killed} of {len(rows)} killed, {share:.0%} (95 % interval {low:.0%} to {high:.0%})", flush=True)
+    for row in rows:
+        if row["outcome"] in {"survived", "untested"}:
+            print(f"  {row['outcome']} {row['file']} {row['operator']} {row['occurrence']}")
+            print("\n".join(f"    {line}" for line in row["diff"]), flush=True)
+    return share >= SUFFICIENT
+
+
+def main() -> int:
+    """Run the open mutants of all folders; exit code 1 if a folder has too few killed ones."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--mutants", type=int, default=60, help="size of the sample of each folder")
+    parser.add_argument("--folders", nargs="*", help="default: all")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--tests", type=int, default=4, help="largest number of test files of a mutant")
+    parser.add_argument("--budget", type=float, default=45.0, help="largest time of the tests of a mutant [s]")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    run = Run(options.out.resolve(), options.tests, options.budget)
+    known = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text("utf-8"))["equivalent"]
+    workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+    for number in range(options.jobs):
+        workers.put(Worker.create(run.snapshot, run.out / f"worker-{number}"))
+    end = time.monotonic() + options.seconds
+
+    def judge(mutant: Mutant) -> None:
+        if time.monotonic() < end and mutant.order not in run.outcomes:
+            worker = workers.get()
+            try:
+                run.judge(mutant, worker)
+            finally:
+                workers.put(worker)
+
+    sufficient = True
+    for folder, files in list_folders(run.snapshot).items():
+        if options.folders and folder not in options.folders:
+            continue
+        sample = draw_sample(run.snapshot, files, options.mutants)
+        with ThreadPoolExecutor(options.jobs) as pool:
+            list(pool.map(judge, sample))
+        rows = [run.outcomes[mutant.order] for mutant in sample if mutant.order in run.outcomes]
+        rows = [row for row in rows if not is_equivalent(row, known)]
+        sufficient = (not rows or report(folder, rows)) and sufficient
+    return 0 if sufficient else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

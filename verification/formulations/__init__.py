@@ -1,0 +1,1 @@
+"""Second formulations of the same equations: finite differences and geometrically exact points."""

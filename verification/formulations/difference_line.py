@@ -1,0 +1,156 @@
+"""Line of the second formulation: wires, droppers, arms, supports and clamps from the case that a program receives.
+
+The case is the JSON object `case` of the message `run`, see docs/systems.md: inputs and the derived values beside them.
+Everything else is solved again, and nothing of the reference simulator is used.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verification.formulations.difference_strands import Floats, Wire
+
+CaseData = dict[str, Any]
+"""Case of a message `run`."""
+
+FEATURES = frozenset(
+    (
+        "applied_forces", "bending_stiffness", "chain", "dropper_mass", "droppers", "gradients", "line_at_rest",
+        "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs", "single_supports",
+        "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers",
+        "surveyed_wire_heights", "uplift_force_tuning", "wire_height",
+    )
+)  # fmt: skip
+"""Features of a case that the second formulation has."""
+
+
+@dataclass(frozen=True)
+class Dropper:
+    """Dropper at a position [m] under a wire, the height of the contact wire there [m], and its mass [kg]."""
+
+    position: float
+    upper: str
+    height: float
+    mass: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """Line of a case: its wires, the places of its parts, and the tables of the inputs and of the derived values."""
+
+    inputs: CaseData
+    derived: CaseData
+    wires: tuple[Wire, ...]
+    droppers: tuple[Dropper, ...]
+    clamps: tuple[tuple[float, str], ...]
+
+    @property
+    def staggered(self) -> bool:
+        """Whether the line moves sideways as well."""
+        return self.derived["contact_wire"]["lateral_position_m"] is not None
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m/s2]."""
+        return float(self.derived["gravity_m_s2"])
+
+    @property
+    def span_limits(self) -> tuple[float, ...]:
+        """Positions of anchors and supports [m]."""
+        return tuple(self.derived["span_limits_m"])
+
+    @property
+    def supports(self) -> tuple[float, ...]:
+        """Positions of the supports [m]."""
+        return tuple(self.derived["steady_arms"]["position_m"])
+
+    @property
+    def arms(self) -> list[CaseData]:
+        """Steady arm of every support: that of the line, with the values of the support in place of its own."""
+        own = {support["number"]: support["steady_arm"] or {} for support in self._own_supports}
+        given = [own.get(number, {}).items() for number in range(1, len(self.supports) + 1)]
+        return [self.inputs["steady_arm"] | {key: value for key, value in arm if value is not None} for arm in given]
+
+    @property
+    def contact_heights(self) -> Floats:
+        """Prescribed height of the contact wire at anchors and supports [m]."""
+        geometry, last = self.inputs["geometry"], len(self.span_limits) - 1
+        own = {support["number"]: support["contact_wire_height_m"] for support in self._own_supports}
+        heights = []
+        for number, x in enumerate(self.span_limits):
+            neighbour = min(max(number, 1), last - 1)
+            given = [own.get(number), own.get(neighbour), geometry.get("contact_wire_height_m", 0.0)]
+            rise = (
+                g["slope"] * (min(max(x, g["from_m"]), g["to_m"]) - g["from_m"]) for g in geometry.get("gradient", [])
+            )
+            heights.append(next(height for height in given if height is not None) + sum(rise))
+        return np.array(heights)
+
+    @property
+    def _own_supports(self) -> list[CaseData]:
+        own: list[CaseData] = self.inputs["geometry"].get("support", [])
+        return own
+
+    def by_support(self, table: str, key: str) -> Floats:
+        """Derived value of every arm or messenger support; a program receives one number if all are equal."""
+        return np.broadcast_to(self.derived[table][key], len(self.supports))
+
+    @property
+    def staggers(self) -> dict[str, tuple[tuple[float, float], ...]]:
+        """Lateral positions (x, y) at anchors and supports by wire [m]."""
+        return {
+            name: tuple(zip(self.span_limits, self.derived[f"{name}_wire"]["lateral_position_m"][0], strict=True))
+            for name in ("contact", "messenger")
+        }
+
+
+def build_line(case: CaseData) -> Line:
+    """Line of a case with one contact wire and one messenger wire."""
+    inputs, derived = case["line"], case["derived"]["line"]
+    if missing := sorted(set(case["features"]) - FEATURES):
+        raise ValueError(f"the second formulation does not have {', '.join(missing)}")
+    messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]
+    stretches = [] if stitch is None else list(zip(stitch["start_m"], stitch["end_m"], strict=True))
+    change = 0.0 if stitch is None else stitch["messenger_tension_N"] - messenger["tension_N"]
+    wires = [
+        _wire(inputs, "contact", derived["contact_wire"]["start_m"], derived["contact_wire"]["end_m"]),
+        _wire(
+            inputs,
+            "messenger",
+            derived["messenger_wire"]["start_m"],
+            derived["messenger_wire"]["end_m"],
+            tuple((start, end, change) for start, end in stretches),
+        ),
+        *(_wire(inputs, f"stitch {i}", start, end) for i, (start, end) in enumerate(stretches)),
+    ]
+    clamps = [(x, f"stitch {i}") for i, stretch in enumerate(stretches) for x in stretch]
+    return Line(inputs, derived, tuple(wires), tuple(_droppers(derived, wires)), tuple(clamps))
+
+
+def _droppers(derived: CaseData, wires: list[Wire]) -> list[Dropper]:
+    keys = ("position_m", "on_stitch_wire", "contact_wire_height_m", "mass_kg")
+    columns = [[value for span in derived["droppers"][key] for value in span] for key in keys]
+    droppers = []
+    for x, stitched, height, mass in zip(*columns, strict=True):
+        name = next(wire.name for wire in wires[2:] if wire.start < x < wire.end) if stitched else "messenger"
+        droppers.append(Dropper(x, name, height, mass))
+    return droppers
+
+
+def _wire(
+    inputs: CaseData, name: str, start: float, end: float, relief: tuple[tuple[float, float, float], ...] = ()
+) -> Wire:
+    key = name.split(maxsplit=1)[0] + "_wire"
+    table, damping = inputs[key], inputs["damping"][key]
+    return Wire(
+        name,
+        start,
+        end,
+        table["tension_N"],
+        table["bending_stiffness_N_m2"],
+        table["mass_kg_m"],
+        damping["mass_coefficient_1_s"],
+        damping["stiffness_coefficient_s"],
+        relief,
+    )

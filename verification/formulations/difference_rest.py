@@ -1,0 +1,117 @@
+"""State of rest of the second formulation: heights, dropper tensions and lengths, and the linearised bars.
+
+1. The contact wire is held at its prescribed heights; the holding forces are the dropper tensions.
+2. Messenger and stitch wires hang between the supports under weights and dropper tensions.
+3. Staggers are prescribed in plan view; a dropper with vertical force V and height z is a lateral spring V / z.
+4. Distances between the wires are dropper lengths. Dropper masses are those of the case.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from verification.formulations.difference_line import Line
+from verification.formulations.difference_parts import dropper_ends, ties
+from verification.formulations.difference_statics import HeldStructure, rows
+from verification.formulations.difference_strands import Floats, Strands, Weights, size
+
+
+@dataclass(frozen=True)
+class Rest:
+    """State of rest.
+
+    Parameters
+    ----------
+    shape : (size,) ndarray
+        Height above the contact wire at the supports or lateral position of every point [m].
+    dropper_force : (droppers,) ndarray
+        Vertical force at mid-length [N].
+    dropper_extent : (droppers, 2) ndarray
+        Upper minus lower end, y and z [m].
+    arm_force : (supports, 2) ndarray
+        Force of each steady arm on the contact wire, y and z [N].
+    """
+
+    shape: Floats
+    dropper_force: Floats
+    dropper_extent: Floats
+    arm_force: Floats
+
+    @property
+    def dropper_length(self) -> Floats:
+        """Lengths between the axes of the wires [m]."""
+        return np.hypot(*self.dropper_extent.T)
+
+
+def compute_rest(line: Line, strands: Strands) -> Rest:
+    """State of rest of a line."""
+    n, table, supports, gravity = size(strands), line.derived["droppers"], line.supports, line.gravity
+    mass = np.array([dropper.mass for dropper in line.droppers])
+    contact = strands["contact", "z"]
+    below, above = dropper_ends(line, strands, "z")
+    # 1. Contact wire.
+    level = np.array([arm["static_share"] == "level" for arm in line.arms], dtype=bool)
+    at_limits = line.contact_heights
+    held = [contact.weights(0.0), contact.weights(contact.wire.end), *below]
+    held += [contact.weights(x) for x, carries in zip(supports, level, strict=True) if carries]
+    heights = np.array([*at_limits[[0, -1]], *(d.height for d in line.droppers), *at_limits[1:-1][level]])
+    shape, force = _hang(strands, ["contact"], gravity, np.zeros(n), held, heights)
+    holding, arm_force = force[2 : 2 + len(below)], np.zeros((len(supports), 2))
+    arm_force[level, 1] = force[2 + len(below) :]
+    vertical = holding + gravity * (table["lower_clamp_kg"] + mass / 2)
+    # 2. Messenger and stitch wires.
+    upper = [wire.name for wire in line.wires if wire.name != "contact"]
+    load = -(rows(above, n).T @ (vertical + gravity * (table["upper_clamp_kg"] + mass / 2)))
+    messenger = strands["messenger", "z"]
+    for x, _ in line.clamps:
+        load[messenger.point(x)] -= gravity * line.derived["stitch_wires"]["clamp_mass_kg"]
+    held = [messenger.weights(x) for x in line.span_limits] + ties(line, strands, "z")
+    heights = np.append(line.derived["messenger_wire"]["height_m"], np.zeros(len(line.clamps)))
+    shape += _hang(strands, upper, gravity, load, held, heights)[0]
+    extent = np.zeros((len(line.droppers), 2))
+    extent[:, 1] = (rows(above, n) - rows(below, n)) @ shape
+    # 3. Plan view.
+    if line.staggered:
+        lateral, arm_force[:, 0] = _plan_view(line, strands, vertical / extent[:, 1])
+        shape += lateral
+        below, above = dropper_ends(line, strands, "y")
+        extent[:, 0] = (rows(above, n) - rows(below, n)) @ shape
+    return Rest(shape, vertical, extent, arm_force)
+
+
+def _hang(
+    strands: Strands, names: list[str], gravity: float, load: Floats, held: list[Weights], values: Floats
+) -> tuple[Floats, Floats]:
+    """Heights and holding forces of some wires under their weights and a load."""
+    n, parts = size(strands), [strands[name, "z"] for name in names]
+    load = load.copy()
+    for part in parts:
+        load[part.first : part.first + part.count] += part.weight(gravity)
+    return _solve_part(sp.csc_array(sum(part.stiffness(n) for part in parts)), rows(held, n), load, values)
+
+
+def _solve_part(stiffness: sp.csc_array, held: sp.csr_array, load: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """Solve for the unknowns that have stiffness; all others are zero."""
+    part = np.flatnonzero(stiffness.diagonal())
+    shape, used = np.zeros(load.size), stiffness[part][:, part]
+    solution, force = HeldStructure(sp.csc_array(used), held[:, part]).solve(load[part], values)
+    shape[part] = solution
+    return shape, force
+
+
+def _plan_view(line: Line, strands: Strands, spring: Floats) -> tuple[Floats, Floats]:
+    """Lateral shape, and lateral force of every steady arm on the contact wire."""
+    n = size(strands)
+    below, above = dropper_ends(line, strands, "y")
+    elongation = rows(above, n) - rows(below, n)
+    stiffness = sum(strands[wire.name, "y"].stiffness(n) for wire in line.wires)
+    stiffness += elongation.T @ sp.diags_array(spring) @ elongation
+    held, values = [], []
+    for name, stagger in line.staggers.items():
+        held += [strands[name, "y"].weights(x) for x, _ in stagger]
+        values += [y for _, y in stagger]
+    held += ties(line, strands, "y")
+    values += [0.0] * len(line.clamps)
+    shape, force = _solve_part(sp.csc_array(stiffness), rows(held, n), np.zeros(n), np.array(values))
+    return shape, force[1 : 1 + len(line.supports)]

@@ -1,0 +1,154 @@
+"""Time step of the second formulation: explicit central differences in time (leapfrog).
+
+    v[n+1/2] = v[n-1/2] + dt M^-1 f(w[n], v[n-1/2]),    w[n+1] = w[n] + dt v[n+1/2]
+
+f takes the velocity half a step late, except for dampers to the ground and mass-proportional damping, which are
+centred. All masses are lumped at points. Arms are rigid along their length: the velocity of their clamps has no
+component in that direction.
+"""
+
+import numpy as np
+from numba import njit
+
+from verification.formulations.difference_contact import move_pantograph, push_wire
+from verification.formulations.difference_data import Heads, Lines
+from verification.formulations.difference_strands import Floats, Indices
+
+
+@njit(cache=True, fastmath=True)
+def _move(w: Floats, v: Floats, p: Floats, dt: float, delay: float, first: int, end: int) -> None:
+    """Displacements w of the next time level, and p = w + delay v, with which wires are damped."""
+    for i in range(first, end):
+        w[i] += dt * v[i]
+        p[i] = w[i] + delay * v[i]
+
+
+@njit(cache=True, fastmath=True)
+def _accelerate(
+    v: Floats, p: Floats, keep: float, gain: float, string: float, bending: float, first: int, end: int
+) -> None:
+    """Velocities of the inner points of a strand from the second and fourth differences."""
+    for i in range(first, end):
+        second = p[i - 1] - 2 * p[i] + p[i + 1]
+        fourth = p[i - 2] - 4 * p[i - 1] + 6 * p[i] - 4 * p[i + 1] + p[i + 2]
+        v[i] = keep * v[i] + gain * (string * second - bending * fourth)
+
+
+@njit(cache=True)
+def _force_near_end(p: Floats, i: int, inward: int, string: float, bending: float) -> float:
+    """Force on the point next to an end without moment; `inward` is +1 or -1."""
+    curvature = p[i - inward] - 2 * p[i] + p[i + inward]
+    following = p[i] - 2 * p[i + inward] + p[i + 2 * inward]
+    return string * curvature - bending * (following - 2 * curvature)
+
+
+@njit(cache=True)
+def _force_at_end(p: Floats, i: int, inward: int, string: float, bending: float) -> float:
+    """Force of a strand on its end point."""
+    curvature = p[i] - 2 * p[i + inward] + p[i + 2 * inward]
+    return string * (p[i + inward] - p[i]) - bending * curvature
+
+
+@njit(cache=True)
+def _stretch_bars(line: Lines, w: Floats, v: Floats, tension: Floats) -> None:
+    """Change of the tension of every bar from the state of rest."""
+    for b in range(tension.size):
+        d, rate = 0.0, 0.0
+        for j in range(line.bar_first[b], line.bar_first[b + 1]):
+            d += line.bar_coefficient[j] * w[line.bar_point[j]]
+            rate += line.bar_coefficient[j] * v[line.bar_point[j]]
+        tension[b] = max(line.bar_stiffness[b] * d + line.bar_damping[b] * rate, -line.bar_preload[b])
+
+
+@njit(cache=True)
+def _move_strands(line: Lines, v: Floats, p: Floats, before: Floats) -> None:
+    """Velocities of all points from the forces of the wires; points with other masses are computed again."""
+    for j in range(line.special.size):
+        before[j] = v[line.special[j]]
+    for g in range(line.first.size):
+        first, end = line.first[g], line.first[g] + line.count[g]
+        keep, gain = line.strand_keep[g], line.strand_gain[g]
+        _accelerate(v, p, keep, gain, line.string[g], line.bending[g], first + 2, end - 2)
+    for j in range(line.special.size):
+        i, g = line.special[j], line.special_strand[j]
+        first, last = line.first[g], line.first[g] + line.count[g] - 1
+        if i == first + 1 or i == last - 1:
+            pull = _force_near_end(p, i, 1 if i == first + 1 else -1, line.string[g], line.bending[g])
+        else:
+            pull = (v[i] - line.strand_keep[g] * before[j]) / line.strand_gain[g]
+        v[i] = line.keep[i] * before[j] + line.gain[i] * pull
+
+
+@njit(cache=True)
+def _apply_bars(line: Lines, v: Floats, p: Floats, tension: Floats) -> None:
+    """Forces of the bars, and of the changed tension along the stretches between clamps."""
+    for b in range(tension.size):
+        for j in range(line.bar_first[b], line.bar_first[b + 1]):
+            i = line.bar_point[j]
+            v[i] -= line.gain[i] * line.bar_coefficient[j] * tension[b]
+    for r in range(line.relief.shape[0]):
+        for i in range(line.relief[r, 0], line.relief[r, 1]):
+            pull = line.relief_string[r] * (p[i + 1] - p[i])
+            v[i] += line.gain[i] * pull
+            v[i + 1] -= line.gain[i + 1] * pull
+
+
+@njit(cache=True)
+def _join_parts(line: Lines, v: Floats, p: Floats) -> None:
+    """Clamps: a stitch wire pulls the messenger and moves with it. Arms: no velocity along their length."""
+    for c in range(line.tie.shape[0]):
+        i, end, inward = line.tie[c]
+        g = line.tie_strand[c]
+        v[i] += line.gain[i] * _force_at_end(p, end, inward, line.string[g], line.bending[g])
+        v[end] = v[i]
+    for a in range(line.arm.shape[0]):
+        y, z = line.arm[a]
+        along = line.arm_direction[a, 0] * v[y] + line.arm_direction[a, 1] * v[z]
+        v[y] -= line.arm_direction[a, 0] * along
+        v[z] -= line.arm_direction[a, 1] * along
+
+
+@njit(cache=True)
+def march(
+    line: Lines,
+    heads: Heads,
+    w: Floats,
+    v: Floats,
+    force: Floats,
+    uplift: Floats,
+    watched: Indices,
+    every: int,
+) -> None:
+    """Advance line and pantographs by force.shape[1] steps.
+
+    Parameters
+    ----------
+    line : Lines
+        Arrays of the line.
+    heads : Heads
+        Pantographs; positions, heights and velocities are advanced in place.
+    w, v : (N,) ndarray
+        Displacement from the state of rest and velocity, advanced in place [m, m/s].
+    force : (P, T) ndarray
+        Filled with the contact force at the start of every step [N].
+    uplift : (U, (T - 1) // every + 1) ndarray
+        Filled with the displacement of the watched points at every `every`-th step [m].
+    watched : (U,) int ndarray
+        Watched points.
+    every : int
+        Steps between two recorded displacements.
+    """
+    p, before, tension = w.copy(), np.zeros(line.special.size), np.zeros(line.bar_stiffness.size)
+    for t in range(force.shape[1]):
+        if t % every == 0:
+            for j in range(watched.size):
+                uplift[j, t // every] = w[watched[j]]
+        _stretch_bars(line, w, v, tension)
+        _move_strands(line, v, p, before)
+        _apply_bars(line, v, p, tension)
+        for k in range(force.shape[0]):
+            force[k, t] = push_wire(line, heads, k, w, v)
+            move_pantograph(heads, k, force[k, t], line.step)
+        _join_parts(line, v, p)
+        for g in range(line.first.size):
+            _move(w, v, p, line.step, line.delay[g], line.first[g], line.first[g] + line.count[g])

@@ -1,0 +1,1 @@
+"""Contents and lowest versions of the packages."""
