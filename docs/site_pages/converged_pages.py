@@ -1,6 +1,7 @@
 """Converged values of the library, from their files: both formulations and their difference."""
 
-from pantocheck.conformance.cases.converged_file import ConvergedFile, ConvergedValue, converged_path
+from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, ConvergedValue
+from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.input_files.toml_file import read_model
 from site_pages.markdown_table import build_markdown_table, escape_text
 
@@ -15,7 +16,7 @@ def build_converged_page() -> str:
         "which shares no code with it. Forces in N, uplift in mm, elasticity in mm/N. The difference of an extreme is "
         "relative to its distance from the mean contact force.",
     ]
-    folder = converged_path("").parent
+    folder = library_folder() / FOLDER
     for path in sorted(folder.rglob("*.toml")):
         parts += _build_case(read_model(path, ConvergedFile, "converged values"))
     return "\n\n".join(parts) + "\n"

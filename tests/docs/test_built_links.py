@@ -34,10 +34,10 @@ def test_sound_links_are_accepted(built_links: ModuleType, site: Path) -> None:
     assert built_links.list_external_links(site) == ["https://semver.org"]
 
 
-@pytest.mark.parametrize("target", ["c.html", "folder/b.html#there", "#nowhere", "https://no domain", "https://host"])
-def test_each_kind_of_fault_is_found(built_links: ModuleType, site: Path, target: str) -> None:
-    (site / "a.html").write_text(f'{SOUND}<a href="{target}">x</a>')
-    assert built_links.find_broken_links(site) == [f"a.html: {target}"]
+def test_each_kind_of_fault_is_found(built_links: ModuleType, site: Path) -> None:
+    for target in ("c.html", "folder/b.html#there", "#nowhere", "https://no domain", "https://host"):
+        (site / "a.html").write_text(f'{SOUND}<a href="{target}">x</a>')
+        assert built_links.find_broken_links(site) == [f"a.html: {target}"]
 
 
 def test_missing_picture_is_found(built_links: ModuleType, site: Path) -> None:

@@ -4,7 +4,6 @@ import tomllib
 from pathlib import Path
 from typing import get_args
 
-import pytest
 import yaml
 
 from pantocheck.conformance.input_files.trust import Trust
@@ -21,11 +20,11 @@ def test_citation_has_version_and_licence_of_the_project() -> None:
     assert {"cff-version", "message", "title", "authors"} <= citation.keys()
 
 
-@pytest.mark.parametrize("path", FORMS, ids=lambda p: p.name)
-def test_issue_template_asks_for_evidence(path: Path) -> None:
-    form = yaml.safe_load(path.read_text(encoding="utf-8"))
-    assert {"name", "description", "body"} <= form.keys()
-    assert any(part.get("validations", {}).get("required") for part in form["body"])
+def test_issue_templates_ask_for_evidence() -> None:
+    for path in FORMS:
+        form = yaml.safe_load(path.read_text(encoding="utf-8"))
+        assert {"name", "description", "body"} <= form.keys(), path
+        assert any(part.get("validations", {}).get("required") for part in form["body"]), path
 
 
 def test_trust_levels_of_the_guide_are_those_of_the_suite() -> None:

@@ -5,8 +5,6 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
 from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
 
 ROOT = Path(__file__).parents[2]
@@ -15,10 +13,10 @@ TEMPLATES = sorted((ROOT / "templates").glob("new-*.toml"))
 FILE = re.compile(r"docs/[a-z-]+\.md")
 
 
-@pytest.mark.parametrize("page", DocumentationPage)
-def test_pages_have_the_titles_of_their_files(page: DocumentationPage) -> None:
-    assert TITLES[page.name.lower().replace("_", "-")] == page.value
-    assert f"See {page}." == f"See the page '{page.value}' of the documentation."
+def test_pages_have_the_titles_of_their_files() -> None:
+    for page in DocumentationPage:
+        assert TITLES[page.name.lower().replace("_", "-")] == page.value
+        assert f"See {page}." == f"See the page '{page.value}' of the documentation."
 
 
 def test_drafts_name_pages_by_their_titles() -> None:

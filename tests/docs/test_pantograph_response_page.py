@@ -1,13 +1,11 @@
-"""Page on measured responses: sidecar, limits and units follow the formats, the options are those of the command."""
+"""Page on measured responses: sidecar, limits and units follow the formats."""
 
 import re
 import tomllib
 from pathlib import Path
 
 from jsonschema import validate
-from typer.testing import CliRunner
 
-from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.comparison.response_record import read_response
 from pantocheck.conformance.comparison.response_sidecar import RESPONSE_FORMS, ResponseSidecar, list_response_columns
@@ -42,15 +40,3 @@ def test_units_of_the_page_are_those_of_each_kind() -> None:
     for kind, units in rows:
         for unit in re.findall(r"`_(\w+)`", units):
             assert convert_key(f"modulus_{unit}", list_response_columns(kind)) is not None, (kind, unit)
-
-
-def test_options_of_the_fit_are_those_of_its_command() -> None:
-    rows = set(re.findall(r"^\| `(--[a-zA-Z-]+)", TEXT, re.MULTILINE))
-    help_text = CliRunner().invoke(app, ["pantograph", "fit", "--help"], env={"COLUMNS": "200"}).output
-    assert rows == set(re.findall(r"(--[a-zA-Z-]+)", help_text)) - {"--help", "--out"}
-
-
-def test_options_of_the_page_are_those_of_the_command() -> None:
-    options = set(re.findall(r"(--[a-z-]+)", re.search(r"```sh\npantocheck pantograph compare(.*?)```", TEXT, re.S)[1]))
-    help_text = CliRunner().invoke(app, ["pantograph", "compare", "--help"], env={"COLUMNS": "200"}).output
-    assert options == set(re.findall(r"(--[a-z-]+)", help_text)) - {"--help"}

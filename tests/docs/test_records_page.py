@@ -12,7 +12,6 @@ from typer.testing import CliRunner
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_record
-from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
 
@@ -77,8 +76,3 @@ def test_messages_of_the_page_are_those_that_are_printed(written: Path) -> None:
         with pytest.raises(InputError) as caught:
             read_record(sidecar)
         assert str(caught.value) in messages
-
-
-def test_tables_name_every_key_of_the_sidecar() -> None:
-    for name, field in RecordSidecar.model_fields.items():
-        assert f"`{field.alias or name}`" in PAGE or f"`[{name}]`" in PAGE
