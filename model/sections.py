@@ -32,21 +32,11 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
 
     Every prescribed height rises alike: anchors, arms, supports and the contact wire at the droppers.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Section that begins at 0.
-    name : str
-        Name of the section, unique within the line.
-    start : float
-        Position of its start along the line [m].
-    rise : callable
-        Rise at a position along the line [m].
-
-    Returns
-    -------
-    Catenary
-        Section in its place.
+    Args:
+        catenary: Section that begins at 0.
+        name: Name of the section, unique within the line.
+        start: Position of its start along the line [m].
+        rise: Rise at a position along the line [m].
     """
 
     def rename(wire: str) -> str:
@@ -103,20 +93,11 @@ def _default_end_heights(catenary: Catenary, wire: Wire) -> tuple[float, float]:
 def join_sections(sections: Sequence[Catenary]) -> Catenary:
     """Join sections in their places to one line.
 
-    Parameters
-    ----------
-    sections : sequence of Catenary
-        Sections in running order, with the same damping and with different names of wires.
+    Args:
+        sections: Sections in running order, with the same damping and with different names of wires.
 
-    Returns
-    -------
-    Catenary
-        Line of all sections.
-
-    Raises
-    ------
-    ValueError
-        The sections differ in their damping, or a name of a wire occurs twice.
+    Raises:
+        ValueError: The sections differ in their damping, or a name of a wire occurs twice.
     """
     first = sections[0]
     if any((s.damping, s.modal_damping) != (first.damping, first.modal_damping) for s in sections):

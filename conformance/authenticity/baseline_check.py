@@ -16,14 +16,7 @@ def list_graded(case: CaseResult) -> list[Criterion]:
 def check_baseline(case: CaseResult) -> Iterator[str]:
     """Find contradictions between a comparison with a baseline and the criteria of drift.
 
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-
-    Yields
-    ------
-    str
+    Yields:
         One line per contradiction.
     """
     comparison = case.baseline

@@ -18,21 +18,14 @@ NumberTree: TypeAlias = "Mapping[str, NumberTree] | Sequence[NumberTree] | Leaf"
 
 @dataclass(frozen=True)
 class NumberComparison:
-    """Comparison of the numbers of two trees.
-
-    Parameters
-    ----------
-    count : int
-        Number of compared leaves.
-    largest : float
-        Largest relative difference of two numbers within the tolerance.
-    differences : tuple of str
-        Leaves that differ by more, one sentence each.
-    """
+    """Comparison of the numbers of two trees."""
 
     count: int
+    """Number of compared leaves."""
     largest: float
+    """Largest relative difference of two numbers within the tolerance."""
     differences: tuple[str, ...]
+    """Leaves that differ by more, one sentence each."""
 
 
 def compare_numbers(stated: NumberTree, computed: NumberTree, tolerance: float) -> NumberComparison:
@@ -41,14 +34,10 @@ def compare_numbers(stated: NumberTree, computed: NumberTree, tolerance: float) 
     A number may differ by the tolerance relative to the largest number of its list, or to itself outside of a list: a
     curve passes through zero.
 
-    Parameters
-    ----------
-    stated : nested dict and list
-        Content of a document.
-    computed : nested dict and list
-        Content that was computed again.
-    tolerance : float
-        Largest relative difference; 0: all bits are equal.
+    Args:
+        stated: Content of a document.
+        computed: Content that was computed again.
+        tolerance: Largest relative difference; 0: all bits are equal.
     """
     ours, theirs = dict(_leaves(stated, ())), dict(_leaves(computed, ()))
     scales = _scales(theirs)

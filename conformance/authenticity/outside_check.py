@@ -24,12 +24,9 @@ def check_outside_cases(results: Results, catalogue: Catalogue) -> list[Document
     A source is written by its author, so that a proved comparison shows the origin of inputs and limits, not their
     quality.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
-    catalogue : Catalogue
-        Folders of the user; installed distributions are searched for the ids of the results.
+    Args:
+        results: Results of a document.
+        catalogue: Folders of the user; installed distributions are searched for the ids of the results.
     """
     return [_check(case, case.origin, catalogue) for case in results.cases if case.origin is not None]
 

@@ -30,38 +30,26 @@ from pantocheck.conformance.reports.words import read_words
 
 @dataclass(frozen=True)
 class PageDifferences:
-    """Differences of a document from the one that its results give.
-
-    Parameters
-    ----------
-    same : bool
-        Whether all bytes are equal.
-    all : tuple of str
-        Differences of any kind; at least one if the bytes differ.
-    texts : tuple of str
-        Differences of the texts alone.
-    foreign : tuple of str
-        Parts that no version of Pantocheck writes.
-    """
+    """Differences of a document from the one that its results give."""
 
     same: bool
+    """Whether all bytes are equal."""
     all: tuple[str, ...] = ()
+    """Differences of any kind; at least one if the bytes differ."""
     texts: tuple[str, ...] = ()
+    """Differences of the texts alone."""
     foreign: tuple[str, ...] = ()
+    """Parts that no version of Pantocheck writes."""
 
 
 def check_pages(document: Certificate) -> DocumentCheck:
     """Check the pages of a document against its results.
 
-    Parameters
-    ----------
-    document : Certificate
-        Document with its results.
+    Args:
+        document: Document with its results.
 
-    Raises
-    ------
-    InputError
-        The date of a PDF cannot be read.
+    Raises:
+        InputError: The date of a PDF cannot be read.
     """
     proved, contradicted = _statements(document)
     try:

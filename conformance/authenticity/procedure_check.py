@@ -15,18 +15,12 @@ def check_procedure(
 ) -> Iterator[str]:
     """Find contradictions in the procedure of a dossier.
 
-    Parameters
-    ----------
-    stated, decided : Procedure or None
-        Procedure of the results, and the same with the verdicts that follow.
-    cases : list of CaseResult
-        Cases of the results.
-    check_grade : callable
-        Check of the verdict and margin of one criterion.
+    Args:
+        stated, decided: Procedure of the results, and the same with the verdicts that follow.
+        cases: Cases of the results.
+        check_grade: Check of the verdict and margin of one criterion.
 
-    Yields
-    ------
-    str
+    Yields:
         One line per contradiction.
     """
     if stated is None or decided is None:

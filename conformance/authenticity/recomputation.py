@@ -31,14 +31,10 @@ from pantocheck.model.statics.wave_factors import amplification_coefficient, dop
 def find_discrepancies(results: Results) -> list[str]:
     """Find contradictions between the numbers and verdicts of results.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
+    Args:
+        results: Results of a document.
 
-    Returns
-    -------
-    list of str
+    Returns:
         One line per contradiction.
     """
     discrepancies = [text for case in results.cases for text in _check_case(case, results.trust)]

@@ -43,19 +43,13 @@ class RecomputedRecord:
 def check_record_quantities(results: Results, path: Path, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
     """Compute the quantities of a record again and compare them with the results.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
-    path : Path
-        Record: its sidecar, its table, or a summary record.
-    catalogue : Catalogue
-        Cases at hand.
+    Args:
+        results: Results of a document.
+        path: Record: its sidecar, its table, or a summary record.
+        catalogue: Cases at hand.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read, or belongs to no case of the results.
+    Raises:
+        InputError: The record cannot be read, or belongs to no case of the results.
     """
     opened = open_record(path)
     result = _find_result(results, opened.case, path)

@@ -49,17 +49,12 @@ class Rerun:
 def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
     """Run the cases of results again and compare all computed numbers.
 
-    Parameters
-    ----------
-    results : Results
-        Results of the built-in simulator.
-    catalogue : Catalogue
-        Cases at hand; others are named and not run.
+    Args:
+        results: Results of the built-in simulator.
+        catalogue: Cases at hand; others are named and not run.
 
-    Raises
-    ------
-    InputError
-        Another system made the results.
+    Raises:
+        InputError: Another system made the results.
     """
     simulator = ReferenceSimulator()
     if (results.system.kind, results.system.name) != (simulator.kind, simulator.name):

@@ -23,16 +23,11 @@ UPLIFT = "max_uplift_at_support_mm"
 def check_trace(quantities: Mapping[str, float], trace: Traces) -> Iterator[str]:
     """Contradictions between the curves of a pantograph and its quantities.
 
-    Parameters
-    ----------
-    quantities : mapping of str to float
-        Quantities of the pantograph.
-    trace : Traces
-        Curves of the pantograph.
+    Args:
+        quantities: Quantities of the pantograph.
+        trace: Curves of the pantograph.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per contradiction.
     """
     for drawn, name in ((trace.mean_N, "mean_force_N"), (trace.std_N, "std_force_N")):

@@ -14,18 +14,12 @@ def check_components(
 ) -> Iterator[str]:
     """The components of a criterion must be those of its quantity; a drift and a missing limit have none.
 
-    Parameters
-    ----------
-    row : Criterion
-        Criterion.
-    components : UncertaintyComponents
-        Components of all quantities of the case.
-    names : collection of ComponentName
-        Components that count for the criterion.
+    Args:
+        row: Criterion.
+        components: Components of all quantities of the case.
+        names: Components that count for the criterion.
 
-    Yields
-    ------
-    str
+    Yields:
         One line if they differ.
     """
     if row.is_drift or (row.lower is None and row.upper is None):

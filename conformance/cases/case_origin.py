@@ -1,8 +1,6 @@
 """Origin of a case from outside the library: a file, a folder of the user, or an installed distribution."""
 
-from typing import Annotated, Literal
-
-from pydantic import Field
+from typing import Literal
 
 from pantocheck.conformance.input_files.sourced_table import InputTable
 
@@ -15,10 +13,10 @@ class CaseOrigin(InputTable):
 
     kind: OriginKind
     name: str
-    version: Annotated[str, Field(description="version of the distribution; empty for a file or folder")]
-    digest: Annotated[
-        str, Field(description="SHA-256 of the case file, or of all TOML files of the folder or distribution")
-    ]
+    version: str
+    """Version of the distribution; empty for a file or folder."""
+    digest: str
+    """SHA-256 of the case file, or of all TOML files of the folder or distribution."""
 
     @property
     def text(self) -> str:

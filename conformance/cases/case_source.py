@@ -20,33 +20,23 @@ MOST_FILES = 10_000
 
 @dataclass(frozen=True, eq=False)
 class CaseSource:
-    """Folder of cases from outside.
-
-    Parameters
-    ----------
-    origin : CaseOrigin
-        Name, version and digest of the folder or distribution.
-    cases : dict of str to Path
-        File of every case by its id.
-    """
+    """Folder of cases from outside."""
 
     origin: CaseOrigin
+    """Name, version and digest of the folder or distribution."""
     cases: dict[str, Path]
+    """File of every case by its id."""
 
 
 def open_case_folder(folder: Path) -> CaseSource:
     """Find the cases of a folder and of the folders below it.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder with TOML files; files and folders whose name begins with a dot are left out.
+    Args:
+        folder: Folder with TOML files; files and folders whose name begins with a dot are left out.
 
-    Raises
-    ------
-    InputError
-        There is no such folder or no case in it, an id does not begin with `own/`, or a file has a name of the library.
-        The error lists all problems.
+    Raises:
+        InputError: There is no such folder or no case in it, an id does not begin with `own/`, or a file has a name of
+            the library. The error lists all problems.
     """
     return _open_source(
         folder, CaseOrigin(kind="folder", name=folder.resolve().name, version="", digest=""), OUTSIDE_PREFIX
@@ -56,15 +46,12 @@ def open_case_folder(folder: Path) -> CaseSource:
 def list_case_sources(pattern: str) -> list[CaseSource]:
     """Folders of cases of installed distributions; the ids of their cases begin with `own/DISTRIBUTION/`.
 
-    Parameters
-    ----------
-    pattern : str
-        Id or pattern. Distributions none of whose ids can match it are left out, so that they cannot cause an error.
+    Args:
+        pattern: Id or pattern. Distributions none of whose ids can match it are left out, so that they cannot cause an
+            error.
 
-    Raises
-    ------
-    InputError
-        An entry point names no folder, or its cases are refused as by `open_case_folder`.
+    Raises:
+        InputError: An entry point names no folder, or its cases are refused as by `open_case_folder`.
     """
     packages = list_case_packages()
     matching = (each for each in packages if _may_match(pattern, id_prefix(each.distribution)))

@@ -14,17 +14,12 @@ from pantocheck.conformance.reports.mass_drop.population_report import build_pop
 def write_population(population: Population, out: Path) -> tuple[tuple[str, ...], list[Path]]:
     """Write population.json, .html and .pdf to a folder.
 
-    Returns
-    -------
-    tuple of str
+    Returns:
         Lines for the terminal.
-    list of Path
         Written files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     content = analyse_population(population)
     document = build_population_document(content)

@@ -51,16 +51,11 @@ def build_results_output(
 ) -> CommandOutput:
     """Verdict, criteria and values of each case, and remarks.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    files : sequence of Path
-        Written files.
-    exit_code : int
-        Exit code of the command.
-    remarks : sequence of str
-        Remarks on the files.
+    Args:
+        results: Results of a run.
+        files: Written files.
+        exit_code: Exit code of the command.
+        remarks: Remarks on the files.
     """
     system = f"{results.system.name} {results.system.version}".strip()
     headline = f"{build_headline(results)} System: {system}"

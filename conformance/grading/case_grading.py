@@ -46,14 +46,10 @@ _EMPTY: dict[str, object] = {
 def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     """Grade the outcome of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Case with its limits.
-    outcome : Outcome
-        Outcome of the case on a system.
-    lowest_trust : Trust
-        Lowest trust of the limits that count.
+    Args:
+        case: Case with its limits.
+        outcome: Outcome of the case on a system.
+        lowest_trust: Lowest trust of the limits that count.
     """
     match outcome:
         case Skipped(reason):

@@ -78,12 +78,9 @@ def list_limit_changes(case: Case) -> list[str]:
 def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     """Change of a limit by the limit that replaces it; None if it is as strict and of the same trust.
 
-    Parameters
-    ----------
-    stated : Limit
-        Limit of the case or profile.
-    limit : Limit or None
-        Limit of the user that replaces it; None if it was removed.
+    Args:
+        stated: Limit of the case or profile.
+        limit: Limit of the user that replaces it; None if it was removed.
     """
     name = name_value(stated.quantity, stated.item) + (f" of pantograph {stated.owner}" if stated.owner else "")
     bounds = format_bounds(stated.lower, stated.upper)

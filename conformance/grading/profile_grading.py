@@ -43,25 +43,16 @@ def assess_record(
 ) -> Results:
     """Grade a record by a profile.
 
-    Parameters
-    ----------
-    subject : AssessedRecord
-        Graded record.
-    profile : Profile
-        Profile with the rules.
-    trust : Trust
-        Lowest trust of the rules that count.
-    measured : AssessedRecord or None
-        Measured record, for a profile that compares.
-    limits : sequence of Limit
-        The user's own limits, which replace the rules of the same quantity.
-    participation : Participation
-        Accepted unverified records.
+    Args:
+        subject: Graded record.
+        profile: Profile with the rules.
+        trust: Lowest trust of the rules that count.
+        measured: Measured record, for a profile that compares.
+        limits: The user's own limits, which replace the rules of the same quantity.
+        participation: Accepted unverified records.
 
-    Raises
-    ------
-    InputError
-        A measured record is missing, not needed, or does not fit the record.
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
     """
     check_pair(subject, measured, profile)
     case = grade_record(subject, profile, trust, measured, limits)
@@ -134,10 +125,8 @@ def grade_record(
 def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
     """Check that a measured record belongs to a record, and is not a copy of it; parameters as in `assess_record`.
 
-    Raises
-    ------
-    InputError
-        A measured record is missing, not needed, or does not fit the record.
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
     """
     where = f"profile '{profile.name}'"
     if measured is None:

@@ -33,19 +33,13 @@ def is_observable(frequency: float, rate: float) -> bool:
 def check_observable(frequency: float, rate: float, purpose: str) -> None:
     """Refuse a sampling rate that is too low for a frequency.
 
-    Parameters
-    ----------
-    frequency : float
-        Highest frequency that is needed [Hz].
-    rate : float
-        Sampling rate [Hz].
-    purpose : str
-        Filter or band that needs the frequency, for the message.
+    Args:
+        frequency: Highest frequency that is needed [Hz].
+        rate: Sampling rate [Hz].
+        purpose: Filter or band that needs the frequency, for the message.
 
-    Raises
-    ------
-    BandNotObservable
-        The rate is too low.
+    Raises:
+        BandNotObservable: The rate is too low.
     """
     if not is_observable(frequency, rate):
         raise BandNotObservable(
@@ -62,23 +56,16 @@ class LowPass:
     forwards and backwards. One run of order m has the gain 1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with
     W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear transform. The cut-off f0 of a single run is therefore
     raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both runs together have -3 dB at the cut-off.
-
-    Parameters
-    ----------
-    kind : {'butterworth'}
-        Family of the filter.
-    order : int
-        Total order; even for zero phase.
-    cutoff_Hz : float
-        Frequency at which the whole filter has -3 dB [Hz].
-    phase : {'zero', 'causal'}
-        `zero` (forwards and backwards) or `causal` (forwards only, like an instrument).
     """
 
     kind: Literal["butterworth"] = "butterworth"
+    """Family of the filter."""
     order: int = 6
+    """Total order; even for zero phase."""
     cutoff_Hz: float = 20.0
+    """Frequency at which the whole filter has -3 dB [Hz]."""
     phase: Literal["zero", "causal"] = "zero"
+    """`zero` (forwards and backwards) or `causal` (forwards only, like an instrument)."""
 
     def __post_init__(self) -> None:
         if self.order < 1 or (self.phase == "zero" and self.order % 2):
@@ -90,10 +77,8 @@ class LowPass:
     def sections(self, rate: float) -> RealArray:
         """Second-order sections of a single run, for a sampling rate [Hz].
 
-        Raises
-        ------
-        BandNotObservable
-            The cut-off is too high for the rate.
+        Raises:
+            BandNotObservable: The cut-off is too high for the rate.
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         order, cutoff = self.single_run(rate)
@@ -115,17 +100,12 @@ class LowPass:
     def __call__(self, signal: RealArray, rate: float) -> RealArray:
         """Filter a signal; the transients at its ends decay within a few periods of the cut-off.
 
-        Parameters
-        ----------
-        signal : (n,) ndarray
-            Samples of the whole record, so that the transients lie outside the analysis section.
-        rate : float
-            Sampling rate [Hz].
+        Args:
+            signal: Samples of the whole record, so that the transients lie outside the analysis section, (n,).
+            rate: Sampling rate [Hz].
 
-        Returns
-        -------
-        (n,) ndarray
-            Filtered samples.
+        Returns:
+            Filtered samples, (n,).
         """
         sections = self.sections(rate)
         if self.phase == "causal":
@@ -150,22 +130,15 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
 
     A second filter with the same cut-off would attenuate the force by another 3 dB at the cut-off.
 
-    Parameters
-    ----------
-    low_pass : LowPass
-        Filter of the graded force.
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+    Args:
+        low_pass: Filter of the graded force.
+        filter_applied_Hz: Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
-    Returns
-    -------
-    bool
+    Returns:
         False if the force was filtered with the same cut-off before delivery.
 
-    Raises
-    ------
-    AlreadyFiltered
-        The force was filtered with a lower cut-off.
+    Raises:
+        AlreadyFiltered: The force was filtered with a lower cut-off.
     """
     if filter_applied_Hz is None or filter_applied_Hz > (1 + CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         return True
@@ -180,12 +153,14 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
 class Filter(InputTable):
     """Filter of the graded contact force."""
 
-    kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
-    order: Annotated[int, Field(ge=1, le=12, description="total order, over both passes of a zero-phase filter")] = 6
-    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
-    phase: Annotated[
-        Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
-    ] = "zero"
+    kind: Literal["butterworth"] = "butterworth"
+    """Filter type."""
+    order: Annotated[int, Field(ge=1, le=12)] = 6
+    """Total order, over both passes of a zero-phase filter."""
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    """Frequency of -3 dB of the whole filter [Hz]."""
+    phase: Literal["zero", "causal"] = "zero"
+    """zero: forward and backward pass; causal: forward only."""
 
     @cross_check
     def _exists(self) -> Problems:

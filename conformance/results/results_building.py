@@ -80,20 +80,13 @@ def build_results(
 ) -> Results:
     """Combine the results of cases.
 
-    Parameters
-    ----------
-    cases : sequence of CaseResult
-        Results of the cases, in the order of reports.
-    system : SystemIdentity
-        Graded system.
-    trust : Trust
-        Lowest trust of the limits that count.
-    started : str
-        Start of the run, from `utc_now`.
-    participation : Participation
-        Cases and verdicts that decide the verdict of the run, and accepted unverified records.
-    procedure : Procedure or None
-        Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
+    Args:
+        cases: Results of the cases, in the order of reports.
+        system: Graded system.
+        trust: Lowest trust of the limits that count.
+        started: Start of the run, from `utc_now`.
+        participation: Cases and verdicts that decide the verdict of the run, and accepted unverified records.
+        procedure: Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
     """
     results = Results(
         suite=build_suite(),

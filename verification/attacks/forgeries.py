@@ -108,10 +108,8 @@ def build_genuine(results: dict[str, Any]) -> Genuine:
 def run_failing(folder: Path) -> dict[str, Any]:
     """Results of a record that fails: another start of the train, where the standard deviation is below its limit.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the record, `run.h5`.
+    Args:
+        folder: Folder of the record, `run.h5`.
     """
     path = library_folder() / f"{CASE}.toml"
     simulated = ReferenceSimulator().run_unrefined(load_case(path, parse_changes(["start_m=120"]))).record

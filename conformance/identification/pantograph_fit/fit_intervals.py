@@ -22,18 +22,12 @@ changes of five percent and more."""
 
 @dataclass(frozen=True)
 class FitIntervals:
-    """Intervals of the parameters.
-
-    Parameters
-    ----------
-    half_width : (3, n) ndarray
-        Half-widths of the 95 % intervals of masses [kg], stiffnesses [N/m] and dampings [N s/m]; 0: fixed.
-    correlation : (p, p) ndarray
-        Correlations of the free parameters, in the order of their mask.
-    """
+    """Intervals of the parameters."""
 
     half_width: RealArray
+    """Half-widths of the 95 % intervals of masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); 0: fixed."""
     correlation: RealArray
+    """Correlations of the free parameters, in the order of their mask, (p, p)."""
 
 
 def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
@@ -42,17 +36,12 @@ def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
     The deviations of the rows are taken as independent. If they are larger than the stated noise, they count with their
     own size, because the chain is then no exact model.
 
-    Parameters
-    ----------
-    fit : ChainFit
-        Fitted chain.
-    is_noise_stated : bool
-        Whether the weights are the inverse standard deviations of the measurement; otherwise, the size of the noise
-        follows from the residuals.
+    Args:
+        fit: Fitted chain.
+        is_noise_stated: Whether the weights are the inverse standard deviations of the measurement; otherwise, the size
+            of the noise follows from the residuals.
 
-    Returns
-    -------
-    FitIntervals
+    Returns:
         Half-widths and correlations.
     """
     jacobian = fit.problem.value_jacobian(fit.values)

@@ -28,14 +28,10 @@ LISTED_SUPPORTS = 3
 def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift.
 
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-    number : int
-        Index of the case in the results.
-    anchor : str
-        Anchor of the section of the case.
+    Args:
+        case: The case.
+        number: Index of the case in the results.
+        anchor: Anchor of the section of the case.
     """
     yield from _chart_figures(case.charts)
     limited = [row for row in case.criteria if not row.is_drift]

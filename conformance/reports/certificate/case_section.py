@@ -31,24 +31,15 @@ from pantocheck.conformance.results.results_format import CaseResult
 
 @dataclass(frozen=True)
 class ShownCase:
-    """Case with a section of its own.
-
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-    number : int
-        Index of the case in the results.
-    anchor : str
-        Anchor of its section.
-    earlier : tuple of CaseResult
-        Cases whose sections stand before it.
-    """
+    """Case with a section of its own."""
 
     case: CaseResult
     number: int
+    """Index of the case in the results."""
     anchor: str
+    """Anchor of its section."""
     earlier: tuple[CaseResult, ...]
+    """Cases whose sections stand before it."""
 
 
 def list_shown_cases(cases: Sequence[CaseResult]) -> list[ShownCase]:

@@ -40,12 +40,9 @@ def build_certificate(results: Results) -> doc.Document:
 def build_dated_certificate(results: Results, date: int) -> doc.Document:
     """The certificate of a run with a given date.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    date : int
-        Date of the document [s since 1970]; 0: not known.
+    Args:
+        results: Results of a run.
+        date: Date of the document [s since 1970]; 0: not known.
     """
     prepared = prepare_results(results)
     header = build_header(prepared)

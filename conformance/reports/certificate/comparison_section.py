@@ -27,14 +27,10 @@ from pantocheck.conformance.results.results_part import select_single
 def comparison_blocks(case: CaseResult, number: int, anchor: str) -> tuple[doc.Block, ...]:
     """Blocks on the measured run of a case; empty if nothing is compared.
 
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-    number : int
-        Index of the case in the results.
-    anchor : str
-        Anchor of the section of the case.
+    Args:
+        case: The case.
+        number: Index of the case in the results.
+        anchor: Anchor of the section of the case.
     """
     comparison = case.comparison
     if comparison is None:

@@ -15,13 +15,7 @@ SHOWN_DIGITS = 5
 
 
 def derived_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Table of derived values, and by whom they were computed; nothing if there are none.
-
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-    """
+    """Table of derived values, and by whom they were computed; nothing if there are none."""
     if not case.derived:
         return ()
     rows = tuple(

@@ -24,14 +24,10 @@ VERIFICATION = "pantocheck verify FILE, with the name of this file"
 def build_document_section(results: Results, digest: str, date: int) -> Section:
     """Section on the identity of a report.
 
-    Parameters
-    ----------
-    results : Results
-        Results from `prepare_results`.
-    digest : str
-        Digest of the results before their preparation; it covers the administrative data, and not the page.
-    date : int
-        Date of the document [s since 1970]; 0: not known.
+    Args:
+        results: Results from `prepare_results`.
+        digest: Digest of the results before their preparation; it covers the administrative data, and not the page.
+        date: Date of the document [s since 1970]; 0: not known.
     """
     pairs = (
         *list_administration(results.administration),

@@ -9,12 +9,9 @@ from pantocheck.conformance.results.results_format import CaseResult
 def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Figure, ...]:
     """Drawing of the line at rest; none without its shape, or if an earlier case has the same drawing.
 
-    Parameters
-    ----------
-    case : CaseResult
-        The case.
-    earlier : tuple of CaseResult
-        Cases that stand before it in the report.
+    Args:
+        case: The case.
+        earlier: Cases that stand before it in the report.
     """
     shape = case.line_shape
     if shape is None or _find_equal(case, earlier) is not None:

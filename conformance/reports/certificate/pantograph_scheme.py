@@ -15,12 +15,9 @@ DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
 def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Figure, ...]:
     """Scheme of every chain of a case that no earlier case has.
 
-    Parameters
-    ----------
-    case : CaseResult
-        The case. Older results have no values of inputs, and no scheme.
-    earlier : tuple of CaseResult
-        Cases that stand before it in the report.
+    Args:
+        case: The case. Older results have no values of inputs, and no scheme.
+        earlier: Cases that stand before it in the report.
     """
     known = {chain for other in earlier for chain in _read_chains(other)}
     return tuple(_describe(chain, names) for chain, names in _read_chains(case).items() if chain not in known)

@@ -129,12 +129,9 @@ def _kind(case: CaseResult) -> str:
 def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
     """Table of the steps of the procedure with the verdicts of their cases.
 
-    Parameters
-    ----------
-    results : Results
-        Results from `prepare_results`.
-    anchors : dict of str to str
-        Anchor of the section of each case, by its name; empty: no links.
+    Args:
+        results: Results from `prepare_results`.
+        anchors: Anchor of the section of each case, by its name; empty: no links.
     """
     if not results.scope:
         return ()

@@ -41,18 +41,12 @@ def build_step_section(
 ) -> doc.Section:
     """Section of one step; the sections of its cases follow it.
 
-    Parameters
-    ----------
-    number : int
-        Number of the step in the order of the procedure, from 1.
-    step : ProcedureStep
-        The step.
-    procedure : Procedure
-        Its procedure, with prepared texts.
-    cases : sequence of CaseResult
-        Cases of the run.
-    index : tuple of Table
-        List of the cases of the step; empty if it has none.
+    Args:
+        number: Number of the step in the order of the procedure, from 1.
+        step: The step.
+        procedure: Its procedure, with prepared texts.
+        cases: Cases of the run.
+        index: List of the cases of the step; empty if it has none.
     """
     word = f"\N{EN SPACE}{step.reason or step.unverified or ''}"
     blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step.verdict), word))]

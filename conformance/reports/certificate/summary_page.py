@@ -39,16 +39,11 @@ from pantocheck.conformance.results.results_format import CaseResult, Results
 def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Document:
     """Verdict, reasons and criteria of a run.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    certificates : sequence of str
-        Names of the certificates in the same folder, which the page links.
+    Args:
+        results: Results of a run.
+        certificates: Names of the certificates in the same folder, which the page links.
 
-    Returns
-    -------
-    Document
+    Returns:
         The page.
     """
     results = prepare_results(results)

@@ -44,14 +44,10 @@ REFERENCE_STYLE: PlotStyle = {
 def draw_force(trace: Traces, limited: Sequence[Criterion], reference: list[float]) -> Figure:
     """Contact force of one pantograph; on the right, its limits.
 
-    Parameters
-    ----------
-    trace : Traces
-        Entry of `traces` in results.json.
-    limited : sequence of Criterion
-        Criteria of `select_limited`.
-    reference : list of float
-        Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
+    Args:
+        trace: Entry of `traces` in results.json.
+        limited: Criteria of `select_limited`.
+        reference: Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
     """
     figure = Figure(figsize=(FULL, 2.25))
     if limited:

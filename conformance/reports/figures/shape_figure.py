@@ -47,12 +47,9 @@ class ShapeColumn:
 def draw_shapes(columns: Sequence[ShapeColumn], supports: Sequence[float]) -> Figure:
     """Mode shapes of several groups of modes side by side.
 
-    Parameters
-    ----------
-    columns : sequence of ShapeColumn
-        Groups of modes.
-    supports : sequence of float
-        Positions of the supports [m]; empty: unknown.
+    Args:
+        columns: Groups of modes.
+        supports: Positions of the supports [m]; empty: unknown.
     """
     count = max(len(column.rows) for column in columns)
     grid = PanelGrid(

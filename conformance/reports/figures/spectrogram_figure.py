@@ -25,14 +25,10 @@ SCALE_WIDTH, SCALE_GAP = 0.12, 0.12
 def draw_spectrogram(data: Spectrogram, marks: dict[str, float], limits: tuple[float, float]) -> Figure:
     """Levels over time and frequency.
 
-    Parameters
-    ----------
-    data : Spectrogram
-        Entry `spectrogram` of a line.
-    marks : dict of str to float
-        Times after the release that are marked, by their names [s].
-    limits : tuple of float
-        Start and end of the record after the release [s].
+    Args:
+        data: Entry `spectrogram` of a line.
+        marks: Times after the release that are marked, by their names [s].
+        limits: Start and end of the record after the release [s].
     """
     grid = PanelGrid(FULL, 1.6, columns=2, right=0.85, between_columns=0.5)
     figure, panels = add_panels(grid)

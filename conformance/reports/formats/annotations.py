@@ -23,42 +23,28 @@ WORKSPACE_VARIABLES = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
 @dataclass(frozen=True)
 class Annotation:
-    """Remark at a line of a file.
-
-    Parameters
-    ----------
-    severity : str
-        `error` or `warning`.
-    group : str
-        Id of the case, or step of the procedure.
-    name : str
-        Name of the criterion in its group.
-    text : str
-        Value, limits and reason.
-    place : FilePlace or None
-        File and line; None: not known.
-    """
+    """Remark at a line of a file."""
 
     severity: Severity
+    """`error` or `warning`."""
     group: str
+    """Id of the case, or step of the procedure."""
     name: str
+    """Name of the criterion in its group."""
     text: str
+    """Value, limits and reason."""
     place: FilePlace | None
+    """File and line; None: not known."""
 
 
 def list_annotations(results: Results, places: ReportPlaces) -> list[Annotation]:
     """Annotations of a run, errors first.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    places : ReportPlaces
-        Places of the cases and limits in the files of the user.
+    Args:
+        results: Results of a run.
+        places: Places of the cases and limits in the files of the user.
 
-    Returns
-    -------
-    list of Annotation
+    Returns:
         One per criterion, case, record or step that keeps the run from passing. If there is none, and the run does not
         pass, one with the headline.
     """

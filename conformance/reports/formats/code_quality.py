@@ -17,16 +17,11 @@ GITLAB_SEVERITIES: dict[Severity, str] = {"error": "critical", "warning": "minor
 def render_code_quality(annotations: Sequence[Annotation], fallback: Path) -> bytes:
     """Code quality report.
 
-    Parameters
-    ----------
-    annotations : sequence of Annotation
-        Annotations.
-    fallback : Path
-        File that stands for an unknown place, because the service requires one: results.json.
+    Args:
+        annotations: Annotations.
+        fallback: File that stands for an unknown place, because the service requires one: results.json.
 
-    Returns
-    -------
-    bytes
+    Returns:
         JSON in UTF-8.
     """
     issues = [_issue(annotation, annotation.place or FilePlace(fallback)) for annotation in annotations]

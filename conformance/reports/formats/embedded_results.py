@@ -46,10 +46,8 @@ def encode_data_block(results: Results) -> str:
 def find_date(results: Results) -> int:
     """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
 
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    Raises:
+        InputError: `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     date = read_source_date()
     if date is not None:

@@ -17,27 +17,18 @@ TEST_ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info":
 
 @dataclass(frozen=True)
 class GradedTest:
-    """Test with its verdict.
-
-    Parameters
-    ----------
-    group : str
-        Id of the case, or `step/` with the name of a step of the procedure.
-    name : str
-        Name of the test in its group.
-    verdict : str
-        Verdict; `info` if the test has no influence.
-    text : str
-        Value, limits and reason.
-    criterion : Criterion or None
-        Graded criterion; None: a case, a record, a step or a claim.
-    """
+    """Test with its verdict."""
 
     group: str
+    """Id of the case, or `step/` with the name of a step of the procedure."""
     name: str
+    """Name of the test in its group."""
     verdict: str
+    """Verdict; `info` if the test has no influence."""
     text: str
+    """Value, limits and reason."""
     criterion: Criterion | None = None
+    """Graded criterion; None: a case, a record, a step or a claim."""
 
     @property
     def element(self) -> str:
@@ -53,16 +44,11 @@ class GradedTest:
 def list_case_tests(case: CaseResult, results: Results) -> list[GradedTest]:
     """Tests of a case: its criteria and its record.
 
-    Parameters
-    ----------
-    case : CaseResult
-        Case of the results.
-    results : Results
-        Results from `prepare_results`.
+    Args:
+        case: Case of the results.
+        results: Results from `prepare_results`.
 
-    Returns
-    -------
-    list of GradedTest
+    Returns:
         At least one test, so that a count of tests includes a case without criteria.
     """
     graded = [test for name in NAMES for test in _list_criterion_tests(case, results, name)]

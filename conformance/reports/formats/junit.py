@@ -16,16 +16,11 @@ COUNTERS = ("tests", "failures", "errors", "skipped")
 def render_junit(results: Results, certificates: Sequence[str] = ()) -> bytes:
     """JUnit XML of a run.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    certificates : sequence of str
-        Names of the certificates in the same folder, which the properties of each case name.
+    Args:
+        results: Results of a run.
+        certificates: Names of the certificates in the same folder, which the properties of each case name.
 
-    Returns
-    -------
-    bytes
+    Returns:
         Content of junit.xml.
     """
     results = prepare_results(results)

@@ -12,10 +12,8 @@ LATEST = 253402300799
 def read_source_date() -> int | None:
     """`SOURCE_DATE_EPOCH` [s since 1970]; None if the environment does not set it.
 
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    Raises:
+        InputError: `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     if epoch is None:

@@ -27,12 +27,9 @@ Run = tuple[PublishedResults, CaseResult]
 def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.Document:
     """Page of a case.
 
-    Parameters
-    ----------
-    case_id : str
-        Id of the case.
-    published : sequence of PublishedResults
-        Results from the oldest to the latest.
+    Args:
+        case_id: Id of the case.
+        published: Results from the oldest to the latest.
     """
     runs = [(run, case) for run in published for case in run.results.cases if case.id == case_id]
     titles = clean_text(runs[-1][1].title)

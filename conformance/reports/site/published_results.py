@@ -12,21 +12,14 @@ LONGEST_FILE_NAME = 60
 
 @dataclass(frozen=True)
 class PublishedResults:
-    """Results of one run on a site.
-
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    discrepancies : tuple of str
-        Contradictions between its numbers and verdicts; none if it is consistent.
-    folder : str
-        Folder of the certificate in the site.
-    """
+    """Results of one run on a site."""
 
     results: Results
+    """Results of a run."""
     discrepancies: tuple[str, ...]
+    """Contradictions between its numbers and verdicts; none if it is consistent."""
     folder: str
+    """Folder of the certificate in the site."""
 
     @property
     def system(self) -> str:
@@ -51,14 +44,10 @@ class PublishedResults:
 def publish_results(contents: Iterable[tuple[Results, tuple[str, ...]]]) -> list[PublishedResults]:
     """Order results by date and name their folders.
 
-    Parameters
-    ----------
-    contents : iterable of tuple
-        Content of each results.json with its contradictions.
+    Args:
+        contents: Content of each results.json with its contradictions.
 
-    Returns
-    -------
-    list of PublishedResults
+    Returns:
         Results from the oldest to the latest; equal dates keep their order.
     """
     ordered = sorted(contents, key=lambda content: content[0].started or "")

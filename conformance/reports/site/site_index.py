@@ -19,14 +19,10 @@ CONTRADICTION = "contradicts itself: {count} discrepancies, first: {first}"
 def build_site_index(title: str, published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Document:
     """First page of a site.
 
-    Parameters
-    ----------
-    title : str
-        Title of the site.
-    published : sequence of PublishedResults
-        Results from the oldest to the latest.
-    pages : mapping of str to str
-        Page of each case by its id.
+    Args:
+        title: Title of the site.
+        published: Results from the oldest to the latest.
+        pages: Page of each case by its id.
     """
     systems = list(dict.fromkeys(run.system for run in published))
     counted = ((systems, "system"), (pages, "case"), (published, "run"))
