@@ -1,0 +1,46 @@
+"""Size of the project: four numbers that only fall.
+
+Lines are counted in every language that a maintainer edits by hand: Python, JavaScript, C++, Octave and the templates
+of pages. Data (TOML, JSON, CSV), translated texts and unmodified files of other packages do not count.
+"""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
+FOREIGN = {"uplot"}
+
+LARGEST = {
+    ("model", "conformance", "templates"): 56_000,
+    ("verification",): 14_000,
+    ("tests",): 42_000,
+}
+"""Largest number of lines by folders. Later work may add what its issue states; a lower number replaces these."""
+
+MOST_WORDS = 70_000
+"""Largest number of words in the pages of `docs/`."""
+
+
+def list_files(*folders: str) -> list[Path]:
+    """Files of the repository, also those that are not committed yet."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard", "--", *folders],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return [path for name in listed.stdout.splitlines() if (path := ROOT / name).is_file()]
+
+
+@pytest.mark.parametrize("folders", LARGEST)
+def test_lines_of_code_do_not_grow(folders: tuple[str, ...]) -> None:
+    files = [path for path in list_files(*folders) if path.suffix in CODE and not FOREIGN & set(path.parts)]
+    assert files
+    assert sum(path.read_text(encoding="utf-8").count("\n") for path in files) <= LARGEST[folders]
+
+
+def test_words_of_the_documentation_do_not_grow() -> None:
+    pages = [path for path in list_files("docs") if path.suffix == ".md"]
+    assert pages
+    assert sum(len(path.read_text(encoding="utf-8").split()) for path in pages) <= MOST_WORDS
