@@ -37,91 +37,70 @@ Names = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 class Plan(InputTable):
     """Options of `pantocheck run`; an option of the command line replaces that of the plan."""
 
-    cases: Annotated[
-        Names,
-        Field(
-            description="ids, globs or paths of cases; default: cases whose limits count, and with verification cases "
-            "that have converged values"
-        ),
-    ] = ()
-    case_folders: Annotated[
-        Names,
-        Field(
-            description="folders with further cases, whose ids begin with own/; they take part without a list of cases"
-        ),
-    ] = ()
-    set: Annotated[
-        Names,
-        Field(description='changed inputs of the cases, e.g. "speed_km_h=300" or "line.contact_wire.tension_N=22e3"'),
-    ] = ()
-    system: Annotated[str, Field(description="builtin, record:DIR or command:PROGRAM ARGUMENTS")] = "builtin"
-    information: Annotated[
-        Names, Field(description="ids or globs of cases that are shown, but do not take part in the verdict")
-    ] = ()
-    accept_unverified: Annotated[Names, Field(description="names of systems whose unverified records may pass")] = ()
-    timeout_s: Annotated[float, Field(gt=0, description="time limit of a program for a case [s]")] = TIMEOUT_S
-    out: Annotated[str, Field(description="folder of the results")] = "report"
-    formats: Annotated[
-        Names | None,
-        Field(
-            description="formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality; "
-            "default: the first six, pdf only if the extra `pdf` is installed"
-        ),
-    ] = None
-    trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
-    verdicts: Annotated[
-        VerdictChoice | None,
-        Field(description="verdicts that decide; default: criteria for the builtin system, both for any other"),
-    ] = None
-    limits: Annotated[str | None, Field(description="file of limits that replace or extend those of the cases")] = None
-    baseline: Annotated[str | None, Field(description="earlier results.json; a value that drifts from it fails")] = None
-    drift_pct: Annotated[float, Field(gt=0, le=100, description="largest drift of a value from its baseline [%]")] = 1.0
-    jobs: Annotated[int, Field(ge=1, le=256, description="number of cases that run in parallel")] = 1
-    damping_study: Annotated[
-        bool, Field(description="run every case also with the benchmark, initial and updated damping models")
-    ] = False
-    administration: Annotated[
-        Administration | None, Field(description="issuer, number and other administrative data of the report")
-    ] = None
+    cases: Names = ()
+    """Ids, globs or paths of cases; default: cases whose limits count, and with verification cases that have
+    converged values.
+    """
+    case_folders: Names = ()
+    """Folders with further cases, whose ids begin with own/; they take part without a list of cases."""
+    set: Names = ()
+    """Changed inputs of the cases, e.g. "speed_km_h=300" or "line.contact_wire.tension_N=22e3"."""
+    system: str = "builtin"
+    """Builtin, record:DIR or command:PROGRAM ARGUMENTS."""
+    information: Names = ()
+    """Ids or globs of cases that are shown, but do not take part in the verdict."""
+    accept_unverified: Names = ()
+    """Names of systems whose unverified records may pass."""
+    timeout_s: Annotated[float, Field(gt=0)] = TIMEOUT_S
+    """Time limit of a program for a case [s]."""
+    out: str = "report"
+    """Folder of the results."""
+    formats: Names | None = None
+    """Formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality; default: the first
+    six, pdf only if the extra `pdf` is installed.
+    """
+    trust: Trust = "secondary"
+    """Lowest trust of the limits that count."""
+    verdicts: VerdictChoice | None = None
+    """Verdicts that decide; default: criteria for the builtin system, both for any other."""
+    limits: str | None = None
+    """File of limits that replace or extend those of the cases."""
+    baseline: str | None = None
+    """Earlier results.json; a value that drifts from it fails."""
+    drift_pct: Annotated[float, Field(gt=0, le=100)] = 1.0
+    """Largest drift of a value from its baseline [%]."""
+    jobs: Annotated[int, Field(ge=1, le=256)] = 1
+    """Number of cases that run in parallel."""
+    damping_study: bool = False
+    """Run every case also with the benchmark, initial and updated damping models."""
+    administration: Administration | None = None
+    """Issuer, number and other administrative data of the report."""
 
 
 @dataclass(frozen=True)
 class PreparedPlan:
-    """Plan whose files are read and checked, ready to run.
-
-    Parameters
-    ----------
-    plan : Plan
-        Options of the run.
-    cases : tuple of Case
-        Selected cases with the limits and studies of the plan.
-    formats : tuple of str
-        Formats of the report in the order they are written.
-    out : Path
-        Folder of the results.
-    baseline : Results or None
-        Earlier results that values are compared with.
-    participation : Participation
-        Cases shown for information, and accepted unverified records.
-    added : dict of str to tuple of str
-        Cases that are not named themselves, each with the cases that require it.
-    """
+    """Plan whose files are read and checked, ready to run."""
 
     plan: Plan
+    """Options of the run."""
     cases: tuple[Case, ...]
+    """Selected cases with the limits and studies of the plan."""
     formats: tuple[str, ...]
+    """Formats of the report in the order they are written."""
     out: Path
+    """Folder of the results."""
     baseline: Results | None
+    """Earlier results that values are compared with."""
     participation: Participation
+    """Cases shown for information, and accepted unverified records."""
     added: dict[str, tuple[str, ...]]
+    """Cases that are not named themselves, each with the cases that require it."""
 
     def start_system(self) -> System:
         """System under test; a program is started once to learn its name.
 
-        Raises
-        ------
-        InputError
-            There is no such system, or the folder of the results cannot be written.
+        Raises:
+            InputError: There is no such system, or the folder of the results cannot be written.
         """
         system = choose_system(self.plan.system, self.plan.timeout_s)
         check_writable(self.out)
@@ -137,10 +116,8 @@ class PreparedPlan:
 def prepare_plan(plan: Plan) -> PreparedPlan:
     """Select and read the cases of a plan, and check its options.
 
-    Raises
-    ------
-    InputError
-        A case, the limits, the baseline or a format is wrong.
+    Raises:
+        InputError: A case, the limits, the baseline or a format is wrong.
     """
     if plan.set and not plan.cases:
         raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
@@ -199,10 +176,8 @@ def _list_information(cases: Sequence[Case], plan: Plan, selection: CaseSelectio
 def read_plan(path: Path) -> Plan:
     """Read a plan; paths in it are relative to its file.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or is wrong.
+    Raises:
+        InputError: The file cannot be read or is wrong.
     """
     plan, folder = read_model(path, Plan, "plan"), path.parent
     if "system" not in plan.model_fields_set:

@@ -18,22 +18,15 @@ from pantocheck.conformance.results.file_places import CasePlaces, FilePlace, Li
 def locate_plan(plan: Plan, file: Path | None) -> ReportPlaces:
     """Places of the cases and limits of a plan that is read and checked.
 
-    Parameters
-    ----------
-    plan : Plan
-        Options of a run.
-    file : Path or None
-        File of the plan; None: the options come from the command line.
+    Args:
+        plan: Options of a run.
+        file: File of the plan; None: the options come from the command line.
 
-    Returns
-    -------
-    ReportPlaces
+    Returns:
         A limit lies in the limits file or in the case file; an installed case, and a drift, in the plan.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read.
+    Raises:
+        InputError: A file cannot be read.
     """
     default = None if file is None else _locate_key(file, "cases")
     baseline = None if file is None or plan.baseline is None else _locate_key(file, "baseline")
@@ -53,24 +46,16 @@ def locate_plan(plan: Plan, file: Path | None) -> ReportPlaces:
 def locate_record(record: Path, profile: str, limits: Path | None) -> ReportPlaces:
     """Places of an assessment: limits in the limits file or in the user's profile; anything else in the record.
 
-    Parameters
-    ----------
-    record : Path
-        Assessed record.
-    profile : str
-        Name of a profile of the library, or path of the user's own.
-    limits : Path or None
-        Limits file.
+    Args:
+        record: Assessed record.
+        profile: Name of a profile of the library, or path of the user's own.
+        limits: Limits file.
 
-    Returns
-    -------
-    ReportPlaces
+    Returns:
         Places for the only case of the results.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read.
+    Raises:
+        InputError: A file cannot be read.
     """
     own = [] if limits is None else [limit for _, limit in _list_limits(limits, "limit")]
     rules = [limit for _, limit in _list_limits(Path(profile), "rule")] if profile.endswith(".toml") else []

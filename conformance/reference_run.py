@@ -12,26 +12,15 @@ from pantocheck.conformance.systems.reference_simulator import ReferenceSimulato
 def add_reference(results: Results, cases: Sequence[Case], jobs: int, progress: Progress | None = None) -> Results:
     """Run the cases on the reference simulator, and add its values to the results of another system.
 
-    Parameters
-    ----------
-    results : Results
-        Results of the system under test; their verdicts stay.
-    cases : sequence of Case
-        The cases of these results.
-    jobs : int
-        Number of parallel processes.
-    progress : Progress or None
-        Callback for each result of the reference simulator.
+    Args:
+        results: Results of the system under test; their verdicts stay.
+        cases: The cases of these results.
+        jobs: Number of parallel processes.
+        progress: Callback for each result of the reference simulator.
 
-    Returns
-    -------
-    Results
-        Results with the values of the reference.
-
-    Raises
-    ------
-    RunInterrupted
-        The user stopped the run; the exception holds the results of the system, with the values of the finished cases.
+    Raises:
+        RunInterrupted: The user stopped the run; the exception holds the results of the system, with the values of the
+            finished cases.
     """
     try:
         reference = run_cases(cases, ReferenceSimulator(), results.trust, jobs, progress)

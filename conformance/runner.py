@@ -33,12 +33,9 @@ Progress = Callable[[CaseResult], None]
 class RunInterrupted(Exception):
     """The user stopped a run; the results of the finished cases are kept.
 
-    Parameters
-    ----------
-    results : Results
-        Results of all cases; unfinished cases are skipped with this reason.
-    exit_code : int
-        128 and the number of the signal.
+    Args:
+        results: Results of all cases; unfinished cases are skipped with this reason.
+        exit_code: 128 and the number of the signal.
     """
 
     def __init__(self, results: Results, exit_code: int) -> None:
@@ -56,30 +53,19 @@ def run_cases(
 ) -> Results:
     """Run cases on a system and grade them.
 
-    Parameters
-    ----------
-    cases : sequence of Case
-        Cases with unique ids.
-    system : System
-        System under test.
-    trust : Trust
-        Lowest trust of the limits that count.
-    jobs : int
-        Number of parallel processes; 1 runs all cases in this process.
-    progress : Progress or None
-        Callback for each result.
-    participation : Participation
-        Cases shown for information, and accepted unverified records.
+    Args:
+        cases: Cases with unique ids.
+        system: System under test.
+        trust: Lowest trust of the limits that count.
+        jobs: Number of parallel processes; 1 runs all cases in this process.
+        progress: Callback for each result.
+        participation: Cases shown for information, and accepted unverified records.
 
-    Returns
-    -------
-    Results
+    Returns:
         Results in the order of `cases`.
 
-    Raises
-    ------
-    RunInterrupted
-        Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results.
+    Raises:
+        RunInterrupted: Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results.
     """
     started = utc_now()
     finished: dict[str, CaseResult] = {}

@@ -114,14 +114,10 @@ class ReadSchema(WrittenSchema):
 def build_schema(name: str) -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of a format.
 
-    Parameters
-    ----------
-    name : str
-        One of `FORMAT_NAMES`.
+    Args:
+        name: One of `FORMAT_NAMES`.
 
-    Returns
-    -------
-    dict
+    Returns:
         The schema; it refers to nothing outside itself.
     """
     if name in READ_FORMATS:

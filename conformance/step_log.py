@@ -23,33 +23,23 @@ def ignore_progress(share: float) -> None:
 def follow_part(progress: ShareCallback, begin: float, end: float) -> ShareCallback:
     """Callback of a part of a computation.
 
-    Parameters
-    ----------
-    progress : callable
-        Callback of the whole computation.
-    begin, end : float
-        Completed shares of the whole before and after the part, 0 to 1.
+    Args:
+        progress: Callback of the whole computation.
+        begin, end: Completed shares of the whole before and after the part, 0 to 1.
     """
     return lambda share: progress(begin + (end - begin) * share)
 
 
 @dataclass(frozen=True)
 class TaskStep:
-    """Position in a task.
-
-    Parameters
-    ----------
-    task : str
-        Task, such as the id of a case.
-    name : str
-        TaskStep that runs.
-    completed : float
-        Completed share of the task, 0 to 1.
-    """
+    """Position in a task."""
 
     task: str
+    """Task, such as the id of a case."""
     name: str
+    """TaskStep that runs."""
     completed: float
+    """Completed share of the task, 0 to 1."""
 
 
 _PART: ContextVar[tuple[float, float]] = ContextVar("part_of_task", default=(0.0, 1.0))
@@ -60,10 +50,8 @@ _PART: ContextVar[tuple[float, float]] = ContextVar("part_of_task", default=(0.0
 def use_part(begin: float, end: float) -> Iterator[None]:
     """Count the steps inside as one part of a task.
 
-    Parameters
-    ----------
-    begin, end : float
-        Completed shares of the task before and after the part, 0 to 1.
+    Args:
+        begin, end: Completed shares of the task before and after the part, 0 to 1.
     """
     token = _PART.set((begin, end))
     try:
@@ -74,21 +62,14 @@ def use_part(begin: float, end: float) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class StepSequence:
-    """Steps of a task in their order.
-
-    Parameters
-    ----------
-    logger : logging.Logger
-        Logger of the module that executes the steps.
-    task : str
-        Task, such as the id of a case.
-    weights : mapping of str to float
-        Estimated duration of every step, in any unit.
-    """
+    """Steps of a task in their order."""
 
     logger: logging.Logger
+    """Logger of the module that executes the steps."""
     task: str
+    """Task, such as the id of a case."""
     weights: Mapping[str, float]
+    """Estimated duration of every step, in any unit."""
 
     def begin(self, name: str) -> ShareCallback:
         """Report the begin of a step; returns a function that reports its completed share, 0 to 1."""

@@ -9,33 +9,23 @@ from pantocheck.model.arrays import Array
 
 @dataclass(frozen=True)
 class TrackCurve:
-    """Curve of the track. Lateral positions count from the centre line of the track, which curves with it.
-
-    Parameters
-    ----------
-    start, end : float
-        Ends of the curve, with its transitions [m].
-    radius : float
-        Radius; positive: the centre of the curve lies at positive y [m].
-    transition : float
-        Length at either end over which curvature and cant rise in proportion to the distance [m].
-    cant : float
-        Height of the outer rail above the inner rail [m].
-    """
+    """Curve of the track. Lateral positions count from the centre line of the track, which curves with it."""
 
     start: float
     end: float
+    """Ends of the curve, with its transitions [m]."""
     radius: float
+    """Radius; positive: the centre of the curve lies at positive y [m]."""
     transition: float = 0.0
+    """Length at either end over which curvature and cant rise in proportion to the distance [m]."""
     cant: float = 0.0
+    """Height of the outer rail above the inner rail [m]."""
 
     def share(self, position: Array) -> Array:
         """Curvature and cant as a share of those of the full curve; 0 outside of the curve.
 
-        Parameters
-        ----------
-        position : (n,) ndarray
-            Positions along the track [m].
+        Args:
+            position: Positions along the track, (n,) [m].
         """
         inside = (self.start < position) & (position < self.end)
         to_end = np.minimum(position - self.start, self.end - position)
@@ -52,21 +42,14 @@ def head_shift(curves: tuple[TrackCurve, ...], position: Array, rail_distance: f
 
     The head is shifted by the height of the wire times cant over rail distance. Suspension and wind are left out.
 
-    Parameters
-    ----------
-    curves : tuple of TrackCurve
-        Curves of the track.
-    position : (n,) ndarray
-        Positions along the track [m].
-    rail_distance : float
-        Distance between the centre lines of both rails [m].
-    wire_height : float
-        Height of the contact wire above the rails [m].
+    Args:
+        curves: Curves of the track.
+        position: Positions along the track, (n,) [m].
+        rail_distance: Distance between the centre lines of both rails [m].
+        wire_height: Height of the contact wire above the rails [m].
 
-    Returns
-    -------
-    (n,) ndarray
-        Lateral position from the vertical plane of the centre line [m].
+    Returns:
+        Lateral position from the vertical plane of the centre line, (n,) [m].
     """
     leaning = (np.copysign(curve.cant, curve.radius) * curve.share(position) for curve in curves)
     return np.asarray(wire_height / rail_distance * sum(leaning, np.zeros_like(position)))

@@ -17,36 +17,22 @@ from pantocheck.model.statics.initial_state import InitialState, compute_initial
 
 @dataclass(frozen=True)
 class DiscretisedLine:
-    """Finite elements of a line in its initial state.
-
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line.
-    mesh : Mesh
-        Stations and rows.
-    beams : Beams
-        Rows of beams with lumped parts.
-    connectors : Connectors
-        Droppers and clamps.
-    state : InitialState
-        Line at rest.
-    stretches : HeldStretches
-        Stretches of wires that are held along the track.
-
-    Attributes
-    ----------
-    kept : dict
-        Results that the simulations of the line share (`kept_results`); a changed line begins without any.
-    """
+    """Finite elements of a line in its initial state."""
 
     catenary: Catenary
+    """Description of the line."""
     mesh: Mesh
+    """Stations and rows."""
     beams: Beams
+    """Rows of beams with lumped parts."""
     connectors: Connectors
+    """Droppers and clamps."""
     state: InitialState
+    """Line at rest."""
     stretches: HeldStretches
+    """Stretches of wires that are held along the track."""
     kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """Results that the simulations of the line share (`kept_results`); a changed line begins without any."""
 
     @property
     def contact_rows(self) -> list[int]:
@@ -57,24 +43,16 @@ class DiscretisedLine:
 def discretise(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> DiscretisedLine:
     """Divide a line into finite elements and compute its initial state.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line.
-    element_length : float
-        Largest length of an element [m].
-    places : tuple of float
-        Positions of additional stations, for example for loads and sensors [m].
+    Args:
+        catenary: Description of the line.
+        element_length: Largest length of an element [m].
+        places: Positions of additional stations, for example for loads and sensors [m].
 
-    Returns
-    -------
-    DiscretisedLine
+    Returns:
         Line at rest.
 
-    Raises
-    ------
-    NoInitialState
-        The prescribed geometry has no equilibrium.
+    Raises:
+        NoInitialState: The prescribed geometry has no equilibrium.
     """
     mesh = build_mesh(catenary, element_length, places)
     beams = build_beams(catenary, mesh)
@@ -104,10 +82,8 @@ def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> Dis
 def make_droppers_bilateral(line: DiscretisedLine) -> DiscretisedLine:
     """Make the droppers bilateral, so that they push as well as pull: the difference is the effect of slackening.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line with unilateral droppers; it is not changed.
+    Args:
+        line: Line with unilateral droppers; it is not changed.
     """
     connectors = line.connectors._replace(unilateral=np.zeros_like(line.connectors.unilateral))
     return replace(line, connectors=connectors)

@@ -15,12 +15,9 @@ class NoInitialState(SimulationError):
 class ImpossibleDropper(NoInitialState):
     """A dropper would have to push, or its wires cross.
 
-    Parameters
-    ----------
-    message : str
-        Description of the cause.
-    position : float
-        Position of the dropper along the line [m].
+    Args:
+        message: Description of the cause.
+        position: Position of the dropper along the line [m].
     """
 
     def __init__(self, message: str, position: float) -> None:

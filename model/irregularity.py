@@ -17,33 +17,22 @@ class Irregularity:
     """Heights added to a contact wire under the pantographs.
 
     A cubic spline with horizontal ends joins the points; beyond them the height of the nearest end holds.
-
-    Parameters
-    ----------
-    position : tuple of float
-        Positions in increasing order, at least two [m].
-    height : tuple of float
-        Additional heights of the wire [m].
     """
 
     position: tuple[float, ...]
+    """Positions in increasing order, at least two [m]."""
     height: tuple[float, ...]
+    """Additional heights of the wire [m]."""
 
 
 @dataclass(frozen=True)
 class SpectralDensity:
-    """One-sided power spectral density of heights along the track.
-
-    Parameters
-    ----------
-    frequency : tuple of float
-        Spatial frequencies in increasing order, at least two; the density is zero outside of them [1/m].
-    density : tuple of float
-        Density at each frequency, log-log interpolated between them [m3].
-    """
+    """One-sided power spectral density of heights along the track."""
 
     frequency: tuple[float, ...]
+    """Spatial frequencies in increasing order, at least two; the density is zero outside of them [1/m]."""
     density: tuple[float, ...]
+    """Density at each frequency, log-log interpolated between them [m3]."""
 
 
 def realise_irregularity(spectrum: SpectralDensity, length: float, seed: int) -> Irregularity:
@@ -52,18 +41,13 @@ def realise_irregularity(spectrum: SpectralDensity, length: float, seed: int) ->
     The frequencies are the multiples of 1 / length; the amplitude of each is sqrt(2 S df), so that the spectrum of the
     realised heights is the requested one in every realisation (spectral representation, Shinozuka and Deodatis 1991).
 
-    Parameters
-    ----------
-    spectrum : SpectralDensity
-        Requested density.
-    length : float
-        Length of the line [m].
-    seed : int
-        Seed of the phases; the raw values of the bit generator PCG64, which are the same in every version of numpy.
+    Args:
+        spectrum: Requested density.
+        length: Length of the line [m].
+        seed: Seed of the phases; the raw values of the bit generator PCG64, which are the same in every version of
+            numpy.
 
-    Returns
-    -------
-    Irregularity
+    Returns:
         Heights from 0 to `length`.
     """
     points = point_count(spectrum, length)

@@ -18,17 +18,12 @@ def spline_polynomials(irregularity: Irregularity) -> Array:
 def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
     """Compute the additional heights of a wire.
 
-    Parameters
-    ----------
-    irregularity : Irregularity
-        Points of the irregularity.
-    position : (n,) ndarray
-        Positions along the track [m].
+    Args:
+        irregularity: Points of the irregularity.
+        position: Positions along the track, (n,) [m].
 
-    Returns
-    -------
-    (n,) ndarray
-        Heights [m].
+    Returns:
+        Heights, (n,) [m].
     """
     inside = np.clip(position, irregularity.position[0], irregularity.position[-1])
     return np.asarray(_spline(irregularity)(inside))

@@ -15,14 +15,11 @@ def keep_with_line(
 ) -> Callable[Concatenate[DiscretisedLine, Arguments], Result]:
     """Keep the results of a function with the line, so that each is built once and lives as long as the line.
 
-    Parameters
-    ----------
-    build : callable
-        Function of a line and of hashable positional arguments. Its result must not be changed by those who share it.
+    Args:
+        build: Function of a line and of hashable positional arguments. Its result must not be changed by those who
+            share it.
 
-    Returns
-    -------
-    callable
+    Returns:
         The same function; equal arguments give the same object.
     """
 

@@ -23,28 +23,20 @@ class Pantograph:
     """Linear pantograph model: M z'' + C z' + K z = force - contact force on the head.
 
     Displacements z are positive upwards from the datum of the line.
-
-    Parameters
-    ----------
-    mass, damping, stiffness : (n, n) ndarray
-        Symmetric matrices [kg, N s/m, N/m].
-    head : (n,) ndarray
-        Selects the displacement of the head from the unknowns [-].
-    force : (n,) ndarray
-        Constant forces on the unknowns: uplift force and preload of the springs [N].
-    static_force : float
-        Contact force at rest [N].
-    contact_stiffness : float
-        Stiffness of the penalty contact between head and wire [N/m].
     """
 
     mass: Array
     damping: Array
     stiffness: Array
+    """Symmetric matrices, (n, n) [kg, N s/m, N/m]."""
     head: Array
+    """Selects the displacement of the head from the unknowns, (n,) [-]."""
     force: Array
+    """Constant forces on the unknowns, (n,): uplift force and preload of the springs [N]."""
     static_force: float
+    """Contact force at rest [N]."""
     contact_stiffness: float
+    """Stiffness of the penalty contact between head and wire [N/m]."""
 
 
 def chain(
@@ -57,22 +49,14 @@ def chain(
 ) -> Pantograph:
     """Build a chain of lumped masses from base to head.
 
-    Parameters
-    ----------
-    masses : (n,) ndarray
-        Masses from the base upwards [kg].
-    stiffness, damping : (n,) ndarray
-        Stiffness and damping of the element below each mass [N/m, N s/m].
-    uplift_force : float
-        Constant uplift force [N].
-    uplift_on : int
-        Index of the mass on which it acts.
-    contact_stiffness : float
-        Stiffness of the penalty contact [N/m].
+    Args:
+        masses: Masses from the base upwards, (n,) [kg].
+        stiffness, damping: Stiffness and damping of the element below each mass, (n,) [N/m, N s/m].
+        uplift_force: Constant uplift force [N].
+        uplift_on: Index of the mass on which it acts.
+        contact_stiffness: Stiffness of the penalty contact [N/m].
 
-    Returns
-    -------
-    Pantograph
+    Returns:
         Linear model.
     """
     n = len(masses)
@@ -102,21 +86,12 @@ def from_matrices(
 
     In a linear model the constant uplift force only determines the state of rest, wherever it acts.
 
-    Parameters
-    ----------
-    mass, damping, stiffness : (n, n) ndarray
-        Symmetric matrices [kg, N s/m, N/m]; for modal unknowns in the units of their normalisation.
-    head : (n,) ndarray
-        Selects the displacement of the head from the unknowns.
-    static_force : float
-        Contact force at rest [N].
-    contact_stiffness : float
-        Stiffness of the penalty contact [N/m].
-
-    Returns
-    -------
-    Pantograph
-        Linear model.
+    Args:
+        mass, damping, stiffness: Symmetric matrices, (n, n) [kg, N s/m, N/m]; for modal unknowns in the units of their
+            normalisation.
+        head: Selects the displacement of the head from the unknowns, (n,).
+        static_force: Contact force at rest [N].
+        contact_stiffness: Stiffness of the penalty contact [N/m].
     """
     head = np.asarray(head, dtype=float)
     return Pantograph(
@@ -140,24 +115,15 @@ def from_modes(
 ) -> Pantograph:
     """Build a pantograph from its mass-normalised modes.
 
-    Parameters
-    ----------
-    frequency : (n,) ndarray
-        Natural frequencies; zero for a rigid-body mode [Hz].
-    damping_ratio : (n,) ndarray
-        Damping ratios [-].
-    head_shape : (n,) ndarray
-        Displacement of the head in each mode [kg^-1/2].
-    modal_force : (n,) ndarray
-        Constant force on each mode [N kg^-1/2].
-    static_force : float
-        Contact force at rest [N].
-    contact_stiffness : float
-        Stiffness of the penalty contact [N/m].
+    Args:
+        frequency: Natural frequencies, (n,); zero for a rigid-body mode [Hz].
+        damping_ratio: Damping ratios, (n,) [-].
+        head_shape: Displacement of the head in each mode, (n,) [kg^-1/2].
+        modal_force: Constant force on each mode, (n,) [N kg^-1/2].
+        static_force: Contact force at rest [N].
+        contact_stiffness: Stiffness of the penalty contact [N/m].
 
-    Returns
-    -------
-    Pantograph
+    Returns:
         Linear model.
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
@@ -180,19 +146,13 @@ def preload_springs(pantograph: Pantograph, displacement: Array) -> Pantograph:
 def equilibrium(pantograph: Pantograph, head_height: float) -> tuple[Array, float]:
     """Static equilibrium with the head held at a height.
 
-    Parameters
-    ----------
-    pantograph : Pantograph
-        Linear model.
-    head_height : float
-        Height of the head above the datum of the line [m].
+    Args:
+        pantograph: Linear model.
+        head_height: Height of the head above the datum of the line [m].
 
-    Returns
-    -------
-    displacement : (n,) ndarray
-        Displacements of the unknowns, all but the head in equilibrium.
-    contact_force : float
-        Contact force that holds the head [N].
+    Returns:
+        displacement: Displacements of the unknowns, all but the head in equilibrium, (n,).
+        contact_force: Contact force that holds the head [N].
     """
     n = pantograph.head.size
     system = np.zeros((n + 1, n + 1))
@@ -211,17 +171,12 @@ def frequencies(pantograph: Pantograph) -> Array:
 def apparent_mass(pantograph: Pantograph, frequency: Array) -> Array:
     """Frequency response at the head: force over acceleration, as measured on a test rig.
 
-    Parameters
-    ----------
-    pantograph : Pantograph
-        Linear model.
-    frequency : (m,) ndarray
-        Frequencies above zero [Hz].
+    Args:
+        pantograph: Linear model.
+        frequency: Frequencies above zero, (m,) [Hz].
 
-    Returns
-    -------
-    (m,) ndarray
-        Complex apparent mass [kg].
+    Returns:
+        Complex apparent mass, (m,) [kg].
     """
     omega = 2 * np.pi * np.asarray(frequency, dtype=float)
     receptance = np.empty(omega.size, dtype=complex)

@@ -18,9 +18,9 @@ from pantocheck.model.catenary import Catenary, Kind, Wire
 
 PARTS = ("droppers", "steady_arms", "messenger_supports", "clamps", "springs", "point_masses")
 """Parts of a catenary at single positions."""
-WIRE_NAMES = ("wire", "upper", "lower")
+WIRE_KEYS = ("wire", "upper", "lower")
 """Names of the wires that a part is attached to."""
-HEIGHTS = ("height", "contact_wire_height")
+HEIGHT_KEYS = ("height", "contact_wire_height")
 """Heights that a part prescribes."""
 
 Rise = Callable[[float], float]
@@ -32,21 +32,11 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
 
     Every prescribed height rises alike: anchors, arms, supports and the contact wire at the droppers.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Section that begins at 0.
-    name : str
-        Name of the section, unique within the line.
-    start : float
-        Position of its start along the line [m].
-    rise : callable
-        Rise at a position along the line [m].
-
-    Returns
-    -------
-    Catenary
-        Section in its place.
+    Args:
+        catenary: Section that begins at 0.
+        name: Name of the section, unique within the line.
+        start: Position of its start along the line [m].
+        rise: Rise at a position along the line [m].
     """
 
     def rename(wire: str) -> str:
@@ -66,8 +56,8 @@ def place_section(catenary: Catenary, name: str, start: float, rise: Rise) -> Ca
 def _place_part(part: Any, rename: Callable[[str], str], start: float, rise: Rise) -> Any:
     """Part at one position in its place; a height that it prescribes rises."""
     position = start + part.position
-    changes: dict[str, Any] = {key: rename(getattr(part, key)) for key in WIRE_NAMES if hasattr(part, key)}
-    for key in HEIGHTS:
+    changes: dict[str, Any] = {key: rename(getattr(part, key)) for key in WIRE_KEYS if hasattr(part, key)}
+    for key in HEIGHT_KEYS:
         if getattr(part, key, None) is not None:
             changes[key] = getattr(part, key) + rise(position)
     return replace(part, position=position, **changes)
@@ -103,20 +93,11 @@ def _default_end_heights(catenary: Catenary, wire: Wire) -> tuple[float, float]:
 def join_sections(sections: Sequence[Catenary]) -> Catenary:
     """Join sections in their places to one line.
 
-    Parameters
-    ----------
-    sections : sequence of Catenary
-        Sections in running order, with the same damping and with different names of wires.
+    Args:
+        sections: Sections in running order, with the same damping and with different names of wires.
 
-    Returns
-    -------
-    Catenary
-        Line of all sections.
-
-    Raises
-    ------
-    ValueError
-        The sections differ in their damping, or a name of a wire occurs twice.
+    Raises:
+        ValueError: The sections differ in their damping, or a name of a wire occurs twice.
     """
     first = sections[0]
     if any((s.damping, s.modal_damping) != (first.damping, first.modal_damping) for s in sections):
@@ -138,7 +119,7 @@ def select_parts(catenary: Catenary, name: str) -> dict[str, list[int]]:
         parts: [
             index
             for index, part in enumerate(getattr(catenary, parts))
-            if next(getattr(part, key) for key in WIRE_NAMES if hasattr(part, key)).startswith(f"{name} ")
+            if next(getattr(part, key) for key in WIRE_KEYS if hasattr(part, key)).startswith(f"{name} ")
         ]
         for parts in PARTS
     }

@@ -19,14 +19,10 @@ def worn_stiffness_share(wear_share: float) -> float:
     I = r4/4 (a - sin a cos a + 2 sin3 a cos a) and its first moment Q = 2/3 r3 sin3 a, the worn section has the second
     moment pi r4/4 - I - Q2 / (pi r2 - A) about its own centroid.
 
-    Parameters
-    ----------
-    wear_share : float
-        Missing share of the cross-section, from 0 to below 1 [-].
+    Args:
+        wear_share: Missing share of the cross-section, from 0 to below 1 [-].
 
-    Returns
-    -------
-    float
+    Returns:
         Share of the bending stiffness [-].
     """
     if wear_share == 0.0:

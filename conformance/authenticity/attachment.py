@@ -18,46 +18,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PdfCertificate:
-    """Certificate as PDF.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    content : bytes
-        Content of the file, with all updates.
-    original : bytes
-        First revision: the document as it was written, without the updates that were appended.
-    reader : PdfReader
-        Reader of the first revision.
-    attachment : bytes
-        Attached results.
-    results : Results
-        The same results as values.
-    """
+    """Certificate as PDF."""
 
     name: str
+    """Name of the file."""
     content: bytes
+    """Content of the file, with all updates."""
     original: bytes
+    """First revision: the document as it was written, without the updates that were appended."""
     reader: "PdfReader"
+    """Reader of the first revision."""
     attachment: bytes
+    """Attached results."""
     results: Results
+    """The same results as values."""
 
 
 def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
     """Read a certificate as PDF.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file.
-    name : str
-        Name of the file in messages.
+    Args:
+        content: Content of the file.
+        name: Name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        Damaged, encrypted, without pages, or without valid results.
+    Raises:
+        InputError: Damaged, encrypted, without pages, or without valid results.
     """
     original = cut_original_revision(content)
     reader = open_document(original, name)
@@ -70,10 +55,8 @@ def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
 def open_document(content: bytes, name: str) -> "PdfReader":
     """Open a PDF for reading; parameters as in `parse_pdf_certificate`.
 
-    Raises
-    ------
-    InputError
-        It is damaged, encrypted or without pages, or the extra `pdf` is not installed.
+    Raises:
+        InputError: It is damaged, encrypted or without pages, or the extra `pdf` is not installed.
     """
     with refuse_missing_package(name):
         from pypdf import PdfReader
@@ -93,10 +76,8 @@ def open_document(content: bytes, name: str) -> "PdfReader":
 def read_attachment(reader: "PdfReader", name: str) -> bytes:
     """Content of the attached results.
 
-    Raises
-    ------
-    InputError
-        The attachment is missing, repeated or cannot be decoded.
+    Raises:
+        InputError: The attachment is missing, repeated or cannot be decoded.
     """
     try:
         attachments = reader.attachments.get(NAME, [])

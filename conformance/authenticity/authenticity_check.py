@@ -20,21 +20,14 @@ MOST_DETAILS = 12
 
 @dataclass(frozen=True)
 class DocumentCheck:
-    """Result of one check.
-
-    Parameters
-    ----------
-    outcome : CheckOutcome
-        CheckOutcome of the check.
-    statement : str
-        Fact that was proved or not, as a sentence.
-    details : tuple of str
-        One line per contradiction, or per part that could not be compared.
-    """
+    """Result of one check."""
 
     outcome: CheckOutcome
+    """CheckOutcome of the check."""
     statement: str
+    """Fact that was proved or not, as a sentence."""
     details: tuple[str, ...] = ()
+    """One line per contradiction, or per part that could not be compared."""
 
 
 def shorten_details(details: Sequence[str]) -> tuple[str, ...]:

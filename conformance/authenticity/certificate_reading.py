@@ -25,20 +25,12 @@ HEADER_BYTES = 1024
 
 @dataclass(frozen=True)
 class ResultsFile:
-    """results.json of unknown origin.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    content : bytes
-        Content of the file.
-    results : Results
-        The results.
-    """
+    """results.json of unknown origin."""
 
     name: str
+    """Name of the file."""
     content: bytes
+    """Content of the file."""
     results: Results
 
 
@@ -48,15 +40,11 @@ Certificate = PdfCertificate | HtmlCertificate | ResultsFile
 def read_certificate(path: Path) -> Certificate:
     """Read a certificate or a results.json.
 
-    Parameters
-    ----------
-    path : Path
-        PDF, HTML page or results.json.
+    Args:
+        path: PDF, HTML page or results.json.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, is too large, or is none of them.
+    Raises:
+        InputError: It cannot be read, is too large, or is none of them.
     """
     name = str(path)
     if path.is_dir():

@@ -16,10 +16,8 @@ REASONS = ("not known", "does not apply")
 def find_gaps(results: Results) -> list[str]:
     """Missing parts of results, as sentences.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
+    Args:
+        results: Results of a document.
     """
     only_verified = bool(results.cases) and all(case.id in results.verification_only for case in results.cases)
     gaps = [] if results.scope else ["scope is missing"]

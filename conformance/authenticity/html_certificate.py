@@ -14,37 +14,25 @@ DATA_BLOCK = re.compile(rf'<script type="application/json" id="{BLOCK_ID}">([^<>
 
 @dataclass(frozen=True)
 class HtmlCertificate:
-    """Certificate as HTML page.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    text : str
-        Text of the page.
-    results : Results
-        Results of its data block.
-    """
+    """Certificate as HTML page."""
 
     name: str
+    """Name of the file."""
     text: str
+    """Text of the page."""
     results: Results
+    """Results of its data block."""
 
 
 def parse_html_certificate(content: bytes, name: str) -> HtmlCertificate:
     """Read a certificate as HTML page.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file.
-    name : str
-        Name of the file in messages.
+    Args:
+        content: Content of the file.
+        name: Name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        Not UTF-8, or without one block of valid results.
+    Raises:
+        InputError: Not UTF-8, or without one block of valid results.
     """
     try:
         text = content.decode("utf-8")

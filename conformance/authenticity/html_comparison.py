@@ -53,16 +53,11 @@ class _Tokens(HTMLParser):
 def compare_html(stated: str, expected: str) -> Iterator[str]:
     """Differences of a page from the expected one; at least one.
 
-    Parameters
-    ----------
-    stated : str
-        Page, whose text differs.
-    expected : str
-        Page that the results give.
+    Args:
+        stated: Page, whose text differs.
+        expected: Page that the results give.
 
-    Yields
-    ------
-    str
+    Yields:
         The first different tag or text; if there is none, the kind of the difference.
     """
     page, other = _Tokens(_cut_data(stated)), _Tokens(_cut_data(expected))

@@ -64,16 +64,11 @@ class _Parts(HTMLParser):
 def list_active_parts(stated: str, expected: str) -> Iterator[str]:
     """Active parts of a page that the page of its results does not have, or lacks.
 
-    Parameters
-    ----------
-    stated : str
-        Text of the page.
-    expected : str
-        Page that the results give.
+    Args:
+        stated: Text of the page.
+        expected: Page that the results give.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per part.
     """
     parts, others = _Parts(stated).parts, _Parts(expected).parts

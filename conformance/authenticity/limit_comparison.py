@@ -24,16 +24,11 @@ def compare_limits(case: Case, result: CaseResult) -> Iterator[str]:
 
     Limits of a user may replace those of the case. The result must then state each limit that they weaken.
 
-    Parameters
-    ----------
-    case : Case
-        Installed case with the limits of its file.
-    result : CaseResult
-        Result of a case with this id.
+    Args:
+        case: Installed case with the limits of its file.
+        result: Result of a case with this id.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per difference.
     """
     rows = _by_target(row for row in result.criteria if not row.is_drift)

@@ -1,49 +1,43 @@
 """Comparison of two results number by number: bit for bit, or within a relative tolerance."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeAlias
 
 from pantocheck.conformance.authenticity.reported_numbers import format_exact
 
 LeafPath = tuple[str | int, ...]
 """Keys and indices that lead to a leaf of nested dictionaries and lists."""
 
+Leaf: TypeAlias = float | str | bool | None
+
+NumberTree: TypeAlias = "Mapping[str, NumberTree] | Sequence[NumberTree] | Leaf"
+"""Nested dictionaries and lists of numbers and texts."""
+
 
 @dataclass(frozen=True)
 class NumberComparison:
-    """Comparison of the numbers of two trees.
-
-    Parameters
-    ----------
-    count : int
-        Number of compared leaves.
-    largest : float
-        Largest relative difference of two numbers within the tolerance.
-    differences : tuple of str
-        Leaves that differ by more, one sentence each.
-    """
+    """Comparison of the numbers of two trees."""
 
     count: int
+    """Number of compared leaves."""
     largest: float
+    """Largest relative difference of two numbers within the tolerance."""
     differences: tuple[str, ...]
+    """Leaves that differ by more, one sentence each."""
 
 
-def compare_numbers(stated: Any, computed: Any, tolerance: float) -> NumberComparison:
+def compare_numbers(stated: NumberTree, computed: NumberTree, tolerance: float) -> NumberComparison:
     """Compare two trees of numbers and texts.
 
     A number may differ by the tolerance relative to the largest number of its list, or to itself outside of a list: a
     curve passes through zero.
 
-    Parameters
-    ----------
-    stated : nested dict and list
-        Content of a document.
-    computed : nested dict and list
-        Content that was computed again.
-    tolerance : float
-        Largest relative difference; 0: all bits are equal.
+    Args:
+        stated: Content of a document.
+        computed: Content that was computed again.
+        tolerance: Largest relative difference; 0: all bits are equal.
     """
     ours, theirs = dict(_leaves(stated, ())), dict(_leaves(computed, ()))
     scales = _scales(theirs)
@@ -64,11 +58,11 @@ def compare_numbers(stated: Any, computed: Any, tolerance: float) -> NumberCompa
     return NumberComparison(len(theirs), largest, tuple(differences))
 
 
-def _leaves(tree: Any, path: LeafPath) -> Iterator[tuple[LeafPath, Any]]:
-    if isinstance(tree, dict):
+def _leaves(tree: NumberTree, path: LeafPath) -> Iterator[tuple[LeafPath, Leaf]]:
+    if isinstance(tree, Mapping):
         for key, value in tree.items():
             yield from _leaves(value, (*path, key))
-    elif isinstance(tree, list):
+    elif isinstance(tree, Sequence) and not isinstance(tree, str):
         yield (*path, "number of values"), len(tree)
         for index, value in enumerate(tree):
             yield from _leaves(value, (*path, index))
@@ -76,7 +70,7 @@ def _leaves(tree: Any, path: LeafPath) -> Iterator[tuple[LeafPath, Any]]:
         yield path, float(tree) if isinstance(tree, int) and not isinstance(tree, bool) else tree
 
 
-def _scales(leaves: dict[LeafPath, Any]) -> dict[LeafPath, float]:
+def _scales(leaves: dict[LeafPath, Leaf]) -> dict[LeafPath, float]:
     """Largest absolute number of each list, 1 for a list of zeros."""
     scales: dict[LeafPath, float] = {}
     for path, value in leaves.items():

@@ -9,10 +9,8 @@ def check_origin(report: SignatureReport) -> list[DocumentCheck]:
 
     A signature that could not be checked leaves the verification incomplete, because it may cover changed pages.
 
-    Parameters
-    ----------
-    report : SignatureReport
-        Signatures of the document.
+    Args:
+        report: Signatures of the document.
     """
     lines = tuple(describe_signatures(report))
     checks = []

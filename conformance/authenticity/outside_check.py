@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
 from pantocheck.conformance.authenticity.library_check import compare_with_case
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.cases.catalogue import CaseEntry, Catalogue
 from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 SOURCE_REMEDIES = {
@@ -24,17 +24,14 @@ def check_outside_cases(results: Results, catalogue: Catalogue) -> list[Document
     A source is written by its author, so that a proved comparison shows the origin of inputs and limits, not their
     quality.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
-    catalogue : Catalogue
-        Folders of the user; installed distributions are searched for the ids of the results.
+    Args:
+        results: Results of a document.
+        catalogue: Folders of the user; installed distributions are searched for the ids of the results.
     """
     return [_check(case, case.origin, catalogue) for case in results.cases if case.origin is not None]
 
 
-def _check(result: CaseResult, stated: OriginFacts, catalogue: Catalogue) -> DocumentCheck:
+def _check(result: CaseResult, stated: CaseOrigin, catalogue: Catalogue) -> DocumentCheck:
     try:
         entry = catalogue.find_id(result.id)
     except InputError as error:
@@ -53,7 +50,7 @@ def _check(result: CaseResult, stated: OriginFacts, catalogue: Catalogue) -> Doc
     )
 
 
-def _list_differences(result: CaseResult, entry: CaseEntry, stated: OriginFacts) -> Iterator[str]:
+def _list_differences(result: CaseResult, entry: CaseEntry, stated: CaseOrigin) -> Iterator[str]:
     # The sentences of the comparison call the place of the case the library.
     yield from (text.replace("the library", stated.text) for text in compare_with_case(load_entry(entry), result))
     if entry.origin is not None and entry.origin.digest != stated.digest:

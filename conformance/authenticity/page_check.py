@@ -30,38 +30,26 @@ from pantocheck.conformance.reports.words import read_words
 
 @dataclass(frozen=True)
 class PageDifferences:
-    """Differences of a document from the one that its results give.
-
-    Parameters
-    ----------
-    same : bool
-        Whether all bytes are equal.
-    all : tuple of str
-        Differences of any kind; at least one if the bytes differ.
-    texts : tuple of str
-        Differences of the texts alone.
-    foreign : tuple of str
-        Parts that no version of Pantocheck writes.
-    """
+    """Differences of a document from the one that its results give."""
 
     same: bool
+    """Whether all bytes are equal."""
     all: tuple[str, ...] = ()
+    """Differences of any kind; at least one if the bytes differ."""
     texts: tuple[str, ...] = ()
+    """Differences of the texts alone."""
     foreign: tuple[str, ...] = ()
+    """Parts that no version of Pantocheck writes."""
 
 
 def check_pages(document: Certificate) -> DocumentCheck:
     """Check the pages of a document against its results.
 
-    Parameters
-    ----------
-    document : Certificate
-        Document with its results.
+    Args:
+        document: Document with its results.
 
-    Raises
-    ------
-    InputError
-        The date of a PDF cannot be read.
+    Raises:
+        InputError: The date of a PDF cannot be read.
     """
     proved, contradicted = _statements(document)
     try:
@@ -95,7 +83,7 @@ def _compare(document: Certificate) -> PageDifferences:
             text = "the file is not as Pantocheck writes it: keys, their order, digits or spaces differ"
             return PageDifferences(same, (text,))
         case HtmlCertificate(_, text, results):
-            page = render_html(build_dated_certificate(results.to_dict(), read_html_date(text)))
+            page = render_html(build_dated_certificate(results, read_html_date(text)))
             if text == page:
                 return PageDifferences(True)
             return PageDifferences(
@@ -115,7 +103,7 @@ def _compare_pdf(document: PdfCertificate) -> PageDifferences:
     from pantocheck.conformance.authenticity.pdf_structure import list_foreign_parts
 
     date = read_date(document.reader, document.name)
-    page = render_pdf(build_dated_certificate(document.results.to_dict(), date))
+    page = render_pdf(build_dated_certificate(document.results, date))
     if document.original == page:
         return PageDifferences(True)
     foreign = tuple(list_foreign_parts(document.reader, document.original))

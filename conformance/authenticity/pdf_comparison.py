@@ -17,17 +17,12 @@ DEEPEST_COMPARED = 60
 def read_date(reader: PdfReader, name: str) -> int:
     """Date in the metadata of a PDF [s since 1970]; 0 if there is none.
 
-    Parameters
-    ----------
-    reader : PdfReader
-        Document.
-    name : str
-        Name of the file in messages.
+    Args:
+        reader: Document.
+        name: Name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        The date cannot be read.
+    Raises:
+        InputError: The date cannot be read.
     """
     try:
         date = reader.metadata.creation_date if reader.metadata else None
@@ -49,12 +44,9 @@ def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]
 def compare_pdfs(stated: PdfReader, expected: bytes) -> list[str]:
     """Differences of a PDF from the expected one; at least one.
 
-    Parameters
-    ----------
-    stated : PdfReader
-        Document, whose bytes differ.
-    expected : bytes
-        Document that the results give.
+    Args:
+        stated: Document, whose bytes differ.
+        expected: Document that the results give.
     """
     other = PdfReader(BytesIO(expected))
     try:

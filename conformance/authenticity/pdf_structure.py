@@ -49,16 +49,11 @@ DEEPEST_SEARCHED = 100
 def list_foreign_parts(reader: PdfReader, content: bytes) -> Iterator[str]:
     """Parts that Pantocheck never writes.
 
-    Parameters
-    ----------
-    reader : PdfReader
-        Document.
-    content : bytes
-        Content of the document.
+    Args:
+        reader: Document.
+        content: Content of the document.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per kind of part.
     """
     if not content.startswith(b"%PDF-"):

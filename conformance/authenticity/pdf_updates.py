@@ -13,10 +13,8 @@ from pantocheck.conformance.authenticity.signatures.signature_check import is_si
 def check_updates(document: PdfCertificate) -> list[DocumentCheck]:
     """Check the part of a file behind its first revision; no check if there is none, or if the document is signed.
 
-    Parameters
-    ----------
-    document : PdfCertificate
-        Certificate.
+    Args:
+        document: Certificate.
     """
     content = document.content
     ends = list_revision_ends(content)

@@ -1,8 +1,8 @@
 """Check of a procedure: verdicts of its steps and claims must follow from criteria, cases and evidence."""
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
+from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -11,22 +11,16 @@ def check_procedure(
     stated: Procedure | None,
     decided: Procedure | None,
     cases: list[CaseResult],
-    check_grade: Callable[[dict[str, Any]], Iterator[str]],
+    check_grade: Callable[[Criterion], Iterator[str]],
 ) -> Iterator[str]:
     """Find contradictions in the procedure of a dossier.
 
-    Parameters
-    ----------
-    stated, decided : Procedure or None
-        Procedure of the results, and the same with the verdicts that follow.
-    cases : list of CaseResult
-        Cases of the results.
-    check_grade : callable
-        Check of the verdict and margin of one criterion.
+    Args:
+        stated, decided: Procedure of the results, and the same with the verdicts that follow.
+        cases: Cases of the results.
+        check_grade: Check of the verdict and margin of one criterion.
 
-    Yields
-    ------
-    str
+    Yields:
         One line per contradiction.
     """
     if stated is None or decided is None:
@@ -39,7 +33,7 @@ def check_procedure(
             yield f"procedure: {case.id} belongs to {named.count(case.id)} steps"
     for step in stated.steps:
         for row in step.criteria:
-            yield from (f"step {step.step}, {row.quantity}: {text}" for text in check_grade(row.model_dump()))
+            yield from (f"step {step.step}, {row.quantity}: {text}" for text in check_grade(row))
     for name, old, new in zip(STEP_NAMES, stated.steps, decided.steps, strict=False):
         if old != new:
             yield f"step {name}: verdict '{old.verdict}', margin or uncertainty do not follow: '{new.verdict}'"

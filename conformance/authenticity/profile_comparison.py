@@ -13,16 +13,11 @@ def compare_profile(profile: Profile, result: CaseResult) -> Iterator[str]:
 
     The bounds of most rules depend on the record, so that only `--record` recomputes them.
 
-    Parameters
-    ----------
-    profile : Profile
-        Installed profile.
-    result : CaseResult
-        Result of an assessment by a profile of this name.
+    Args:
+        profile: Installed profile.
+        result: Result of an assessment by a profile of this name.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per difference.
     """
     if result.stated_limits_digest != json_digest([rules_digest(profile), limits_digest(())]):

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
-from pantocheck.conformance.authenticity.number_comparison import compare_numbers
+from pantocheck.conformance.authenticity.number_comparison import NumberTree, compare_numbers
 from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.cases.profile_file import load_profile
@@ -16,12 +15,14 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, record_digest
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.criterion_format import ComponentName
 from pantocheck.conformance.results.record_facts import RecordState
-from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_building import key_by_owner, list_components, select_finite
+from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results, UncertaintyComponents
+from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.systems.record_folder import RecordFolder
 
-RECORD_COMPONENTS = ("section", "length")
+RECORD_COMPONENTS: tuple[ComponentName, ...] = ("section", "length")
 """Components of the uncertainty that follow from the record alone; the others need further runs."""
 
 RECORD_TOLERANCE = 1e-6
@@ -34,27 +35,21 @@ A table of a record has at least nine significant digits; extremes and filters k
 class RecomputedRecord:
     """Quantities of a record with the components of their uncertainty, by owner and name; its state, if judged."""
 
-    quantities: dict[str, Any]
-    components: dict[str, Any]
+    quantities: dict[str, dict[str, Number]]
+    components: UncertaintyComponents
     state: RecordState | None
 
 
 def check_record_quantities(results: Results, path: Path, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
     """Compute the quantities of a record again and compare them with the results.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a document.
-    path : Path
-        Record: its sidecar, its table, or a summary record.
-    catalogue : Catalogue
-        Cases at hand.
+    Args:
+        results: Results of a document.
+        path: Record: its sidecar, its table, or a summary record.
+        catalogue: Cases at hand.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read, or belongs to no case of the results.
+    Raises:
+        InputError: The record cannot be read, or belongs to no case of the results.
     """
     opened = open_record(path)
     result = _find_result(results, opened.case, path)
@@ -70,10 +65,10 @@ def check_record_quantities(results: Results, path: Path, catalogue: Catalogue =
 
 def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
     """Compare quantities, the parts of their uncertainty that follow from the record, and its state."""
-    stated = result.model_dump(mode="json")
+    stated = result.quantities
     pairs = (
-        (_select(stated["quantities"], computed.quantities), _select(computed.quantities, stated["quantities"])),
-        (_keep_components(stated["uncertainty_components"]), _keep_components(computed.components)),
+        (_select(stated, computed.quantities), _select(computed.quantities, stated)),
+        (_keep_components(result.uncertainty_components), _keep_components(computed.components)),
     )
     numbers, widths = (compare_numbers(*pair, RECORD_TOLERANCE) for pair in pairs)
     differences = [*numbers.differences, *(f"uncertainty, {text}" for text in widths.differences)]
@@ -103,7 +98,7 @@ def _name_others(result: CaseResult, computed: RecomputedRecord) -> Iterator[Doc
         yield DocumentCheck("open", f"{result.id}: these quantities need more than the record.", lines)
 
 
-def _select(quantities: dict[str, Any], others: dict[str, Any]) -> dict[str, Any]:
+def _select(quantities: Quantities, others: Quantities) -> NumberTree:
     """Quantities that are among others, too."""
     return {
         owner: {name: value for name, value in values.items() if name in others[owner]}
@@ -112,7 +107,7 @@ def _select(quantities: dict[str, Any], others: dict[str, Any]) -> dict[str, Any
     }
 
 
-def _keep_components(components: dict[str, Any]) -> dict[str, Any]:
+def _keep_components(components: UncertaintyComponents) -> NumberTree:
     """Half-widths that follow from a record, by pantograph, quantity and component."""
     return {
         f"{owner} {name} {part}": parts[part]
@@ -145,7 +140,7 @@ def _find_result(results: Results, case: str | None, path: Path) -> CaseResult:
 def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Catalogue) -> RecomputedRecord:
     if result.profile is not None:
         assessed = load_assessed_record(sidecar, load_profile(result.profile), LineTable())
-        parts = describe_uncertainty(assessed.uncertainty)["uncertainty_components"]
+        parts = list_components(assessed.uncertainty)
         return RecomputedRecord(key_by_owner(select_finite(assessed.values.values)), parts, None)
     if (entry := catalogue.find_id(result.id)) is None:
         hint = "Give the folder of the case by --cases, or install the distribution that offers it."
@@ -153,6 +148,5 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
     system = RecordFolder(results.system.name, results.system.version, ((result.id, sidecar),))
     case = load_entry(entry)
     graded = grade_case(case, system.run(case), results.trust)
-    content = graded.model_dump(mode="json")
     state = None if graded.record is None else graded.record.state
-    return RecomputedRecord(content["quantities"], content["uncertainty_components"], state)
+    return RecomputedRecord(graded.quantities, graded.uncertainty_components, state)

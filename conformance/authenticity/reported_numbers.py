@@ -1,18 +1,18 @@
 """Numbers of results.json: their items, and their comparison."""
 
 import math
-from typing import Any
+from collections.abc import Mapping
+
+from pantocheck.conformance.results.results_part import Number, select_item
 
 EXACT, ROUNDED = 1e-9, 2e-5
 """Relative tolerances: numbers of results.json have all their digits, traces are rounded to six digits."""
 
 
-def select_item(reported: Any, item: int | None) -> Any:
-    """Item of a quantity with several values, by default the first; None if there is none."""
-    if not isinstance(reported, list):
-        return reported
-    index = (item or 1) - 1
-    return reported[index] if 0 <= index < len(reported) else None
+def select_first(reported: Mapping[str, Number]) -> dict[str, float]:
+    """Quantities with one number each: of several values, the first."""
+    numbers = {name: select_item(value, None) for name, value in reported.items()}
+    return {name: number for name, number in numbers.items() if number is not None}
 
 
 def same_number(a: float | None, b: float | None, tolerance: float = EXACT) -> bool:

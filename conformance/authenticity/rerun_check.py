@@ -4,10 +4,9 @@ import platform as host
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import Any
 
 from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck, judge_details
-from pantocheck.conformance.authenticity.number_comparison import NumberComparison, compare_numbers
+from pantocheck.conformance.authenticity.number_comparison import NumberComparison, NumberTree, compare_numbers
 from pantocheck.conformance.authenticity.version_differences import list_suite_differences
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
@@ -50,17 +49,12 @@ class Rerun:
 def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
     """Run the cases of results again and compare all computed numbers.
 
-    Parameters
-    ----------
-    results : Results
-        Results of the built-in simulator.
-    catalogue : Catalogue
-        Cases at hand; others are named and not run.
+    Args:
+        results: Results of the built-in simulator.
+        catalogue: Cases at hand; others are named and not run.
 
-    Raises
-    ------
-    InputError
-        Another system made the results.
+    Raises:
+        InputError: Another system made the results.
     """
     simulator = ReferenceSimulator()
     if (results.system.kind, results.system.name) != (simulator.kind, simulator.name):
@@ -87,11 +81,10 @@ def _rerun(case: Case, stated: CaseResult, results: Results, simulator: Referenc
     return Rerun(stated.id, compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance))
 
 
-def _select_parts(result: CaseResult, keys: Sequence[str]) -> dict[str, Any]:
+def _select_parts(result: CaseResult, keys: Sequence[str]) -> NumberTree:
     """Parts of a result that a new run repeats; the computing time is left out."""
-    content = result.model_dump(mode="json")
-    del content["run"]["wall_s"]
-    return {key: content.get(key) for key in keys}
+    untimed = result.model_copy(update={"run": result.run.model_copy(update={"wall_s": None})})
+    return {key: untimed.model_dump(mode="json", include={key}).get(key) for key in keys}
 
 
 def _judge(results: Results, reruns: list[Rerun], tolerance: float) -> Iterator[DocumentCheck]:

@@ -12,10 +12,8 @@ REVISION_END = re.compile(rb"startxref\s+\d+\s+%%EOF(\r\n|\n|\r)?")
 def list_revision_ends(content: bytes) -> tuple[int, ...]:
     """Ends of the revisions of a PDF [bytes], the first one being the document as it was written.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file.
+    Args:
+        content: Content of the file.
     """
     return tuple(match.end() for match in REVISION_END.finditer(content))
 

@@ -13,16 +13,11 @@ CHARACTERS_BEFORE = 30
 def compare_lines(stated: Sequence[str], expected: Sequence[str]) -> Iterator[str]:
     """First line of a text that differs from the expected text.
 
-    Parameters
-    ----------
-    stated : sequence of str
-        Lines of the document.
-    expected : sequence of str
-        Lines that the results give.
+    Args:
+        stated: Lines of the document.
+        expected: Lines that the results give.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence, if the texts differ.
     """
     for line, other in zip_longest(stated, expected):

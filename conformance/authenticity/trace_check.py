@@ -1,12 +1,13 @@
 """Check of the drawn curves of a case against its stated quantities."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Any
 
-from pantocheck.conformance.authenticity.reported_numbers import ROUNDED, format_exact, same_number
+from pantocheck.conformance.authenticity.reported_numbers import ROUNDED, format_exact, same_number, select_first
 from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.results.figure_data import Traces
+from pantocheck.conformance.results.results_format import CaseResult
 
 THINNED_FORCE = 0.02
 """Largest relative difference of the deviation of a thinned 20 Hz curve, sampled ten times per period or more.
@@ -19,37 +20,32 @@ THINNED_UPLIFT = 0.02
 UPLIFT = "max_uplift_at_support_mm"
 
 
-def check_trace(quantities: dict[str, Any], trace: dict[str, Any]) -> Iterator[str]:
+def check_trace(quantities: Mapping[str, float], trace: Traces) -> Iterator[str]:
     """Contradictions between the curves of a pantograph and its quantities.
 
-    Parameters
-    ----------
-    quantities : dict of str
-        Quantities of the pantograph.
-    trace : dict of str
-        Curves of the pantograph.
+    Args:
+        quantities: Quantities of the pantograph.
+        trace: Curves of the pantograph.
 
-    Yields
-    ------
-    str
+    Yields:
         One sentence per contradiction.
     """
-    for key, name in (("mean_N", "mean_force_N"), ("std_N", "std_force_N")):
-        if name in quantities and trace[key] is not None and not same_number(trace[key], quantities[name], ROUNDED):
-            yield f"{name} {format_exact(quantities[name])} stated, {format_exact(trace[key])} drawn"
-    force = trace["force_20_N"]
+    for drawn, name in ((trace.mean_N, "mean_force_N"), (trace.std_N, "std_force_N")):
+        if name in quantities and drawn is not None and not same_number(drawn, quantities[name], ROUNDED):
+            yield f"{name} {format_exact(quantities[name])} stated, {format_exact(drawn)} drawn"
+    force = trace.force_20_N
     if force:
         yield from _check_extremes(quantities, force)
-        yield from _check_deviation(quantities, trace["position_m"], force)
-    if trace["histogram"] is not None:
-        yield from _check_histogram(quantities, **trace["histogram"])
-    yield from _check_bands(quantities, trace["spectrum"]["frequency_Hz"], trace["spectrum"]["amplitude_N"])
+        yield from _check_deviation(quantities, trace.position_m, force)
+    if trace.histogram is not None:
+        yield from _check_histogram(quantities, trace.histogram.edges_N, trace.histogram.share_pct)
+    yield from _check_bands(quantities, trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N)
 
 
-def check_uplift(case: dict[str, Any]) -> Iterator[str]:
+def check_uplift(case: CaseResult) -> Iterator[str]:
     """Contradiction between the uplift curves of a case and its largest uplift."""
-    stated = [values[UPLIFT] for values in case["quantities"].values() if UPLIFT in values]
-    drawn = [value for curve in case["uplift"] for value in curve["uplift_mm"]]
+    stated = [values[UPLIFT] for values in map(select_first, case.quantities.values()) if UPLIFT in values]
+    drawn = [value for curve in case.uplift for value in curve.uplift_mm]
     if not stated or not drawn:
         return
     value, highest = max(stated), max(drawn)
@@ -57,7 +53,7 @@ def check_uplift(case: dict[str, Any]) -> Iterator[str]:
         yield f"{UPLIFT} {format_exact(value)} stated, {format_exact(highest)} drawn"
 
 
-def _check_extremes(quantities: dict[str, Any], force: list[float]) -> Iterator[str]:
+def _check_extremes(quantities: Mapping[str, float], force: list[float]) -> Iterator[str]:
     """The drawn force is thinned: it may miss the extremes, but must not exceed them."""
     slack = ROUNDED * max(map(abs, force))
     if "max_force_N" in quantities and max(force) > quantities["max_force_N"] + slack:
@@ -66,7 +62,7 @@ def _check_extremes(quantities: dict[str, Any], force: list[float]) -> Iterator[
         yield f"min_force_N {format_exact(quantities['min_force_N'])} stated, {format_exact(min(force))} drawn"
 
 
-def _check_deviation(quantities: dict[str, Any], position: list[float], force: list[float]) -> Iterator[str]:
+def _check_deviation(quantities: Mapping[str, float], position: list[float], force: list[float]) -> Iterator[str]:
     """The curve itself must have the stated mean and deviation, unless its samples are extremes of a long record."""
     steps = [b - a for a, b in pairwise(position)]
     extremes_alone = not steps or max(steps) > 1.5 * min(steps)
@@ -80,7 +76,7 @@ def _check_deviation(quantities: dict[str, Any], position: list[float], force: l
         yield "mean {} and deviation {} stated, {} and {} follow from the drawn curve".format(*texts)
 
 
-def _check_histogram(quantities: dict[str, Any], edges_N: list[float], share_pct: list[float]) -> Iterator[str]:
+def _check_histogram(quantities: Mapping[str, float], edges_N: list[float], share_pct: list[float]) -> Iterator[str]:
     """Mean, deviation and extremes must follow from the classes within the width of one class."""
     if len(edges_N) != len(share_pct) + 1 or not same_number(math.fsum(share_pct), 100.0, 1e-3):
         yield "the shares of the drawn histogram do not add up to 100 %"
@@ -101,7 +97,7 @@ def _check_histogram(quantities: dict[str, Any], edges_N: list[float], share_pct
             yield f"{name} {format_exact(quantities[name])} stated, about {value:.4g} follows from the histogram"
 
 
-def _check_bands(quantities: dict[str, Any], frequency: list[float], amplitude: list[float]) -> Iterator[str]:
+def _check_bands(quantities: Mapping[str, float], frequency: list[float], amplitude: list[float]) -> Iterator[str]:
     """RMS values of the bands must follow from the drawn spectrum by Parseval, if it has all its lines."""
     steps = [b - a for a, b in pairwise(frequency)]
     complete = len(frequency) == len(amplitude) and steps and max(steps) - min(steps) <= ROUNDED * max(frequency)

@@ -27,18 +27,12 @@ DocumentState = Literal["consistent", "incomplete", "contradicted"]
 
 @dataclass(frozen=True)
 class Verification:
-    """Result of the verification of a document.
-
-    Parameters
-    ----------
-    results : Results
-        Results inside the document.
-    checks : tuple of DocumentCheck
-        Checks in the order of reports.
-    """
+    """Result of the verification of a document."""
 
     results: Results
+    """Results inside the document."""
     checks: tuple[DocumentCheck, ...]
+    """Checks in the order of reports."""
 
     @property
     def verdict(self) -> Verdict:
@@ -87,15 +81,11 @@ def verify_document(path: Path) -> Verification:
     A consistent document has verdicts that follow from its numbers, pages that follow from its results, and the cases
     of the library. Only a record or a new run shows that the numbers come from the named system.
 
-    Parameters
-    ----------
-    path : Path
-        Certificate as PDF or HTML page, or results.json.
+    Args:
+        path: Certificate as PDF or HTML page, or results.json.
 
-    Raises
-    ------
-    InputError
-        None of these, damaged, or without valid results.
+    Raises:
+        InputError: None of these, damaged, or without valid results.
     """
     return verify_certificate(read_certificate(path))
 
@@ -130,7 +120,7 @@ def _check_numbers(results: Results) -> DocumentCheck:
     return judge_details(
         "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
         "The embedded numbers and verdicts contradict each other.",
-        [*find_discrepancies(results.to_dict()), *find_false_version(results)],
+        [*find_discrepancies(results), *find_false_version(results)],
     )
 
 

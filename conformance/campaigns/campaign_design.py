@@ -11,27 +11,18 @@ from pantocheck.conformance.campaigns.design_conditions import Condition
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """Run of a campaign.
-
-    Parameters
-    ----------
-    number : int
-        Number of the run, from 1.
-    design : int
-        Number of the design, from 1; the same for all systems.
-    case_id : str
-        Id of the base case.
-    system : str
-        System as in the option `--system`.
-    inputs : dict
-        Values of the varied inputs by key.
-    """
+    """Run of a campaign."""
 
     number: int
+    """Number of the run, from 1."""
     design: int
+    """Number of the design, from 1; the same for all systems."""
     case_id: str
+    """Id of the base case."""
     system: str
+    """System as in the option `--system`."""
     inputs: Inputs
+    """Values of the varied inputs by key."""
 
 
 @dataclass(frozen=True)
@@ -40,25 +31,16 @@ class CampaignDesign:
 
     The case changes slowest, then the axes in their order; the system changes from run to run. A design that breaks a
     condition is left out; the numbers of the others stay.
-
-    Parameters
-    ----------
-    case_ids : tuple of str
-        Ids of the base cases.
-    axes : tuple of DesignAxis
-        Axes of the grid; the last one changes fastest.
-    links : tuple of InputLink
-        Inputs that follow a varied input.
-    conditions : tuple of Condition
-        Conditions on the inputs.
-    systems : tuple of str
-        Systems.
     """
 
     case_ids: tuple[str, ...]
+    """Ids of the base cases."""
     axes: tuple[DesignAxis, ...]
+    """Axes of the grid; the last one changes fastest."""
     links: tuple[InputLink, ...]
+    """Inputs that follow a varied input."""
     conditions: tuple[Condition, ...]
+    """Conditions on the inputs."""
     systems: tuple[str, ...]
 
     @property

@@ -21,22 +21,15 @@ RATED_RUNS = 50
 
 @dataclass(frozen=True)
 class CampaignProgress:
-    """Progress of a campaign.
-
-    Parameters
-    ----------
-    total : int
-        Number of the runs of the campaign.
-    finished, failed : int
-        Number of the finished runs, earlier ones included, and of the failed ones among them.
-    rate : float or None
-        Runs per second, over the latest runs; None before two runs are finished.
-    """
+    """Progress of a campaign."""
 
     total: int
+    """Number of the runs of the campaign."""
     finished: int
     failed: int
+    """Number of the finished runs, earlier ones included, and of the failed ones among them."""
     rate: float | None
+    """Runs per second, over the latest runs; None before two runs are finished."""
 
     @property
     def remaining_s(self) -> float | None:
@@ -86,24 +79,15 @@ def drive_campaign(
 ) -> CampaignEnding:
     """Execute the runs of a campaign that its store does not hold.
 
-    Parameters
-    ----------
-    design : CampaignDesign
-        Runs of the campaign.
-    execute : callable
-        Function that executes one run.
-    store : CampaignStore
-        Finished runs.
-    executor : RunExecutor
-        Executor of the runs.
-    execution : Execution
-        Conditions of an early stop.
-    report : callable
-        Callback that receives the progress after every run.
+    Args:
+        design: Runs of the campaign.
+        execute: Function that executes one run.
+        store: Finished runs.
+        executor: Executor of the runs.
+        execution: Conditions of an early stop.
+        report: Callback that receives the progress after every run.
 
-    Returns
-    -------
-    str
+    Returns:
         Reason of the end.
     """
     total, session = design.count_runs(), _Session(execution, *store.count())

@@ -25,9 +25,12 @@ Values = Annotated[tuple[InputValue, ...], Field(strict=False, min_length=1, max
 class ValueRange(InputTable):
     """Equidistant values; the end is included if a step reaches it."""
 
-    start: Annotated[int | float, Field(description="first value")]
-    stop: Annotated[int | float, Field(description="last value, if a step reaches it")]
-    step: Annotated[int | float, Field(gt=0, description="distance of the values")]
+    start: int | float
+    """First value."""
+    stop: int | float
+    """Last value, if a step reaches it."""
+    step: Annotated[int | float, Field(gt=0)]
+    """Distance of the values."""
 
     @cross_check
     def _check_length(self) -> Problems:
@@ -41,7 +44,8 @@ class ValueVariation(SourcedTable):
     """InputVariation of one key over listed values."""
 
     key: Key
-    values: Annotated[Values, Field(description="values of the key, in the types of TOML")]
+    values: Values
+    """Values of the key, in the types of TOML."""
 
 
 class RangeVariation(SourcedTable):
@@ -54,9 +58,8 @@ class RangeVariation(SourcedTable):
 class ColumnVariation(SourcedTable):
     """InputVariation of several keys together: the first values of all of them, then the second values."""
 
-    columns: Annotated[
-        dict[Key, Values], Field(min_length=1, description="values of each key; all lists have the same length")
-    ]
+    columns: Annotated[dict[Key, Values], Field(min_length=1)]
+    """Values of each key; all lists have the same length."""
 
     @cross_check
     def _check_lengths(self) -> Problems:
@@ -69,10 +72,8 @@ class ColumnVariation(SourcedTable):
 class TableVariation(SourcedTable):
     """InputVariation by a table of designs: one row per design, one column per key."""
 
-    table: Annotated[
-        str,
-        Field(min_length=1, max_length=500, description="CSV file, relative to the campaign; keys in its first row"),
-    ]
+    table: Annotated[str, Field(min_length=1, max_length=500)]
+    """CSV file, relative to the campaign; keys in its first row."""
 
 
 _KINDS = {"range": "RangeVariation", "columns": "ColumnVariation", "table": "TableVariation"}
@@ -105,17 +106,14 @@ class SampledInput(SourcedTable):
 class InputSampling(InputTable):
     """Random designs of several inputs; the seed makes them repeatable."""
 
-    method: Annotated[
-        Literal["latin-hypercube", "sobol", "random", "saltelli"],
-        Field(
-            description="latin-hypercube; sobol: scrambled sequence of a power of two runs; random: independent; "
-            "saltelli: designs for Sobol indices"
-        ),
-    ]
-    runs: Annotated[
-        int, Field(ge=1, le=1_000_000, description="number of designs; of saltelli: of the first of its k + 2 sets")
-    ]
-    seed: Annotated[int, Field(ge=0, le=2**63 - 1, description="seed of the generator")] = 0
+    method: Literal["latin-hypercube", "sobol", "random", "saltelli"]
+    """Latin-hypercube; sobol: scrambled sequence of a power of two runs; random: independent; saltelli: designs for
+    Sobol indices.
+    """
+    runs: Annotated[int, Field(ge=1, le=1_000_000)]
+    """Number of designs; of saltelli: of the first of its k + 2 sets."""
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
+    """Seed of the generator."""
     input: Annotated[tuple[SampledInput, ...], Field(strict=False, min_length=1, max_length=1000)]
 
     @cross_check
@@ -131,8 +129,10 @@ class InputLink(InputTable):
 
     key: Key
     follows: Key
-    factor: Annotated[float, Field(description="factor of the followed value")] = 1.0
-    offset: Annotated[float, Field(description="summand, in the unit of `key`")] = 0.0
+    factor: float = 1.0
+    """Factor of the followed value."""
+    offset: float = 0.0
+    """Summand, in the unit of `key`."""
 
 
 ClusterKind = Literal["slurm", "pbs", "sge", "lsf", "htcondor", "oar", "moab"]
@@ -142,30 +142,24 @@ ClusterKind = Literal["slurm", "pbs", "sge", "lsf", "htcondor", "oar", "moab"]
 class Execution(InputTable):
     """Execution of a campaign; it has no influence on the results of a run."""
 
-    workers: Annotated[
-        int | None,
-        Field(ge=1, le=100_000, description="number of processes, or of jobs of a cluster; default: processors"),
-    ] = None
-    scheduler: Annotated[
-        str | None, Field(max_length=500, description="address of a running scheduler of Dask, e.g. tcp://host:8786")
-    ] = None
-    cluster: Annotated[ClusterKind | None, Field(description="batch system to which workers are submitted")] = None
-    cluster_options: Annotated[
-        dict[str, InputValue],
-        Field(max_length=100, description='options of the jobs as in dask-jobqueue, e.g. walltime = "02:00:00"'),
-    ] = Field(default_factory=dict)
-    max_failed_share: Annotated[
-        float, Field(ge=0, le=1, description="share of failed runs above which the campaign stops early; 1: never")
-    ] = 0.9
-    time_budget_s: Annotated[
-        float | None, Field(gt=0, description="time after which no further run is started [s]")
-    ] = None
-    run_time_limit_s: Annotated[float | None, Field(gt=0, description="time after which a single run fails [s]")] = None
-    traces: Annotated[
-        StoredTraces,
-        Field(description="runs whose curves of force and uplift are stored: none, failing (verdict fail), or all"),
-    ] = "none"
-    timeout_s: Annotated[Positive, Field(description="time limit of a program for a case [s]")] = TIMEOUT_S
+    workers: Annotated[int | None, Field(ge=1, le=100_000)] = None
+    """Number of processes, or of jobs of a cluster; default: processors."""
+    scheduler: Annotated[str | None, Field(max_length=500)] = None
+    """Address of a running scheduler of Dask, e.g. tcp://host:8786."""
+    cluster: ClusterKind | None = None
+    """Batch system to which workers are submitted."""
+    cluster_options: Annotated[dict[str, InputValue], Field(max_length=100)] = Field(default_factory=dict)
+    """Options of the jobs as in dask-jobqueue, e.g. walltime = "02:00:00"."""
+    max_failed_share: Annotated[float, Field(ge=0, le=1)] = 0.9
+    """Share of failed runs above which the campaign stops early; 1: never."""
+    time_budget_s: Annotated[float | None, Field(gt=0)] = None
+    """Time after which no further run is started [s]."""
+    run_time_limit_s: Annotated[float | None, Field(gt=0)] = None
+    """Time after which a single run fails [s]."""
+    traces: StoredTraces = "none"
+    """Runs whose curves of force and uplift are stored: none, failing (verdict fail), or all."""
+    timeout_s: Positive = TIMEOUT_S
+    """Time limit of a program for a case [s]."""
 
     @property
     def is_local(self) -> bool:
@@ -184,47 +178,31 @@ Texts = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
 class CampaignFile(InputTable):
     """Campaign: every case with every combination of the variations, on every system."""
 
-    title: Annotated[str, Field(max_length=200, description="title in reports")] = "Campaign"
-    cases: Annotated[
-        Texts, Field(min_length=1, description="ids, globs or paths of the base cases, relative to the campaign")
-    ]
-    case_folders: Annotated[
-        Texts, Field(description="folders with further cases, whose ids begin with own/, relative to the campaign")
-    ] = ()
-    set: Annotated[Texts, Field(description='inputs changed in all runs, e.g. "speed_km_h=300"')] = ()
-    vary: Annotated[
-        tuple[InputVariation, ...], Field(strict=False, max_length=100, description="variations, combined as a grid")
-    ] = ()
-    sampling: Annotated[InputSampling | None, Field(description="random designs, combined with the grid")] = None
+    title: Annotated[str, Field(max_length=200)] = "Campaign"
+    """Title in reports."""
+    cases: Annotated[Texts, Field(min_length=1)]
+    """Ids, globs or paths of the base cases, relative to the campaign."""
+    case_folders: Texts = ()
+    """Folders with further cases, whose ids begin with own/, relative to the campaign."""
+    set: Texts = ()
+    """Inputs changed in all runs, e.g. "speed_km_h=300"."""
+    vary: Annotated[tuple[InputVariation, ...], Field(strict=False, max_length=100)] = ()
+    """Variations, combined as a grid."""
+    sampling: InputSampling | None = None
+    """Random designs, combined with the grid."""
     link: Annotated[tuple[InputLink, ...], Field(strict=False, max_length=1000)] = ()
-    conditions: Annotated[
-        Texts,
-        Field(description='conditions on varied inputs, e.g. "speed_km_h <= 320"; designs that break one are left out'),
-    ] = ()
-    systems: Annotated[
-        Texts,
-        Field(
-            min_length=1,
-            description="builtin, record:DIR or command:PROGRAM ARGUMENTS; {design} in it is the number of the design",
-        ),
-    ] = ("builtin",)
-    refined: Annotated[
-        bool,
-        Field(description="true: runs on two other meshes, for the uncertainty of discretisation; six times slower"),
-    ] = False
-    limits: Annotated[
-        str | None, Field(description="file of limits, relative to the campaign; a changed library case has no limits")
-    ] = None
-    profile: Annotated[
-        str | None,
-        Field(
-            max_length=500,
-            description="profile whose rules are limits at the speed of each run: a name, or a file relative to the "
-            "campaign",
-        ),
-    ] = None
-    uplift_space_mm: Annotated[
-        float | None, Field(gt=0, le=2000, description="space for the uplift at the supports, for a profile [mm]")
-    ] = None
-    trust: Annotated[Trust, Field(description="lowest trust of the limits that count")] = "secondary"
+    conditions: Texts = ()
+    """Conditions on varied inputs, e.g. "speed_km_h <= 320"; designs that break one are left out."""
+    systems: Annotated[Texts, Field(min_length=1)] = ("builtin",)
+    """Builtin, record:DIR or command:PROGRAM ARGUMENTS; {design} in it is the number of the design."""
+    refined: bool = False
+    """true: runs on two other meshes, for the uncertainty of discretisation; six times slower."""
+    limits: str | None = None
+    """File of limits, relative to the campaign; a changed library case has no limits."""
+    profile: Annotated[str | None, Field(max_length=500)] = None
+    """Profile whose rules are limits at the speed of each run: a name, or a file relative to the campaign."""
+    uplift_space_mm: Annotated[float | None, Field(gt=0, le=2000)] = None
+    """Space for the uplift at the supports, for a profile [mm]."""
+    trust: Trust = "secondary"
+    """Lowest trust of the limits that count."""
     execution: Execution = Execution()

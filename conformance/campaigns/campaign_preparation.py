@@ -37,31 +37,22 @@ OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "pr
 
 @dataclass(frozen=True)
 class PreparedCampaign:
-    """Campaign whose files are read and checked.
-
-    Parameters
-    ----------
-    file : CampaignFile
-        Content of the campaign file.
-    design : CampaignDesign
-        Its runs.
-    execute : RunExecution
-        Function that executes one run.
-    identity : dict
-        Parts of the campaign on which its results depend.
-    limits : dict
-        Lower and upper bound of each limit by the column of its value, such as `1.std_force_N`; limits that differ
-        between the cases are left out.
-    origins : dict
-        Source of each case from outside, by its id.
-    """
+    """Campaign whose files are read and checked."""
 
     file: CampaignFile
+    """Content of the campaign file."""
     design: CampaignDesign
+    """Its runs."""
     execute: RunExecution
+    """Function that executes one run."""
     identity: dict[str, Any]
+    """Parts of the campaign on which its results depend."""
     limits: dict[str, tuple[float | None, float | None]]
+    """Lower and upper bound of each limit by the column of its value, such as `1.std_force_N`; limits that differ
+    between the cases are left out.
+    """
     origins: dict[str, CaseOrigin]
+    """Source of each case from outside, by its id."""
 
 
 def find_campaign_file(name: str) -> Path | None:
@@ -73,10 +64,8 @@ def find_campaign_file(name: str) -> Path | None:
 def read_campaign(path: Path) -> PreparedCampaign:
     """Read and prepare a campaign file; paths in it are relative to the file.
 
-    Raises
-    ------
-    InputError
-        The file, or a file that it names, cannot be read or is wrong.
+    Raises:
+        InputError: The file, or a file that it names, cannot be read or is wrong.
     """
     return prepare_campaign(read_model(path, CampaignFile, "campaign"), path.parent)
 
@@ -84,17 +73,12 @@ def read_campaign(path: Path) -> PreparedCampaign:
 def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     """Prepare a campaign.
 
-    Parameters
-    ----------
-    file : CampaignFile
-        Content of a campaign file.
-    folder : Path
-        Folder to which its paths are relative.
+    Args:
+        file: Content of a campaign file.
+        folder: Folder to which its paths are relative.
 
-    Raises
-    ------
-    InputError
-        A case, table, key, condition, limit or system is wrong.
+    Raises:
+        InputError: A case, table, key, condition, limit or system is wrong.
     """
     changes = parse_changes(file.set)
     catalogue = open_catalogue([folder / name for name in file.case_folders])

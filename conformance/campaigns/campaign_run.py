@@ -32,33 +32,22 @@ CAMPAIGN = "campaign"
 
 @dataclass(frozen=True)
 class RunRow:
-    """Row of a run in the store.
-
-    Parameters
-    ----------
-    run : PlannedRun
-        The run with its inputs.
-    verdicts : dict
-        Verdict, and the verdicts by the criteria and by verification; None: not judged.
-    reason : str or None
-        Reason of a run without a result.
-    quantities : dict
-        Values by the name of their column, such as `1.mean_force_N`.
-    wall_s : float
-        Computing time [s].
-    uncertainties : dict
-        Half-widths of the 95 % intervals of the quantities that have one.
-    traces : bytes
-        Compressed curves; empty if they are not stored.
-    """
+    """Row of a run in the store."""
 
     run: PlannedRun
+    """The run with its inputs."""
     verdicts: dict[str, Verdict | None]
+    """Verdict, and the verdicts by the criteria and by verification; None: not judged."""
     reason: str | None
+    """Reason of a run without a result."""
     quantities: dict[str, float]
+    """Values by the name of their column, such as `1.mean_force_N`."""
     wall_s: float
+    """Computing time [s]."""
     uncertainties: dict[str, float] = field(default_factory=dict)
+    """Half-widths of the 95 % intervals of the quantities that have one."""
     traces: bytes = b""
+    """Compressed curves; empty if they are not stored."""
 
     @property
     def is_failed(self) -> bool:
@@ -68,36 +57,24 @@ class RunRow:
 
 @dataclass(frozen=True)
 class RunExecution:
-    """Function that executes runs: it is sent to the workers once, and called with each run.
-
-    Parameters
-    ----------
-    case_files : dict of str to str
-        Files of the base cases by id.
-    changes : tuple of InputChange
-        Changes of all runs.
-    limits : tuple of LimitOverride
-        Limits of the user.
-    profile : ProfileLimits or None
-        Rules that are limits of every run; limits of the user replace them.
-    trust : Trust
-        Lowest trust of the limits that count.
-    refined : bool
-        Whether the reference simulator also runs on two other meshes.
-    timeout_s : float
-        Time limit of a program for a case [s].
-    stored_traces : str
-        Runs whose curves are stored, as in `StoredTraces`.
-    """
+    """Function that executes runs: it is sent to the workers once, and called with each run."""
 
     case_files: dict[str, str]
+    """Files of the base cases by id."""
     changes: tuple[InputChange, ...]
+    """Changes of all runs."""
     limits: tuple[LimitOverride, ...]
+    """Limits of the user."""
     profile: ProfileLimits | None
+    """Rules that are limits of every run; limits of the user replace them."""
     trust: Trust
+    """Lowest trust of the limits that count."""
     refined: bool
+    """Whether the reference simulator also runs on two other meshes."""
     timeout_s: float
+    """Time limit of a program for a case [s]."""
     stored_traces: StoredTraces
+    """Runs whose curves are stored, as in `StoredTraces`."""
 
     def __call__(self, run: PlannedRun) -> RunRow:
         """Execute a run."""
@@ -114,10 +91,8 @@ class RunExecution:
     def read_case(self, run: PlannedRun) -> Case:
         """Case of a run, with its inputs and the limits of the user.
 
-        Raises
-        ------
-        InputError
-            A file cannot be read, or the inputs are invalid.
+        Raises:
+            InputError: A file cannot be read, or the inputs are invalid.
         """
         case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *vary_inputs(run.inputs)))
         rules = () if self.profile is None else self.profile.resolve(case)[0]
@@ -128,10 +103,8 @@ class RunExecution:
 def vary_inputs(inputs: Inputs) -> tuple[InputChange, ...]:
     """Changes of a case that set its varied inputs.
 
-    Raises
-    ------
-    InputError
-        A key does not exist.
+    Raises:
+        InputError: A key does not exist.
     """
     return tuple(build_change(key, value, CAMPAIGN) for key, value in inputs.items())
 

@@ -38,10 +38,8 @@ CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT N
 class CampaignStore:
     """Rows of the finished runs of one campaign. One process at a time writes them.
 
-    Parameters
-    ----------
-    connection : sqlite3.Connection
-        Open database.
+    Args:
+        connection: Open database.
     """
 
     def __init__(self, connection: sqlite3.Connection) -> None:
@@ -100,10 +98,8 @@ class CampaignStore:
     def check_identity(self, identity: Mapping[str, Any], folder: Path) -> None:
         """Compare the campaign of the store with this one, or write its identity into a new store.
 
-        Raises
-        ------
-        InputError
-            The store holds the runs of another campaign.
+        Raises:
+            InputError: The store holds the runs of another campaign.
         """
         stored = dict(self._connection.execute("SELECT name, content FROM campaign").fetchall())
         contents = {name: json.dumps(content, sort_keys=True, default=str) for name, content in identity.items()}
@@ -124,10 +120,8 @@ class CampaignStore:
 def read_store(folder: Path) -> Iterator[CampaignStore]:
     """Open the store of another campaign for reading.
 
-    Raises
-    ------
-    InputError
-        The folder holds no campaign, or its store is damaged.
+    Raises:
+        InputError: The folder holds no campaign, or its store is damaged.
     """
     where = f"folder '{folder}'"
     path = folder / STORE_NAME
@@ -144,23 +138,13 @@ def read_store(folder: Path) -> Iterator[CampaignStore]:
 def open_store(folder: Path, identity: Mapping[str, Any]) -> Iterator[CampaignStore]:
     """Open the store of a campaign, or create it; no other process can write it meanwhile.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the campaign.
-    identity : mapping of str to Any
-        Parts of the campaign on which its results depend.
+    Args:
+        folder: Folder of the campaign.
+        identity: Parts of the campaign on which its results depend.
 
-    Yields
-    ------
-    CampaignStore
-        The store.
-
-    Raises
-    ------
-    InputError
-        The folder cannot be written, another process runs the campaign, or the store is damaged or that of another
-        campaign.
+    Raises:
+        InputError: The folder cannot be written, another process runs the campaign, or the store is damaged or that of
+            another campaign.
     """
     check_writable(folder)
     where = f"folder '{folder}'"

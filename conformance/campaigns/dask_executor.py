@@ -30,10 +30,8 @@ _CLASSES: dict[ClusterKind, str] = {
 class DaskExecutor:
     """Executor on a cluster of Dask.
 
-    Parameters
-    ----------
-    client : distributed.Client
-        Client of the cluster.
+    Args:
+        client: Client of the cluster (distributed.Client).
     """
 
     def __init__(self, client: Any) -> None:
@@ -47,10 +45,8 @@ class DaskExecutor:
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         """Execute runs as in `RunExecutor`; the scheduler repeats a run whose worker ends unexpectedly.
 
-        Raises
-        ------
-        InputError
-            The connection to the scheduler is lost.
+        Raises:
+            InputError: The connection to the scheduler is lost.
         """
         from distributed import CancelledError, KilledWorker, as_completed
 
@@ -95,10 +91,8 @@ def call_execution(execute: Execute, run: PlannedRun) -> RunRow:
 def connect_scheduler(address: str) -> Iterator[DaskExecutor]:
     """Connect to a running scheduler, such as `tcp://host:8786`.
 
-    Raises
-    ------
-    InputError
-        Dask is not installed, or there is no scheduler at this address.
+    Raises:
+        InputError: Dask is not installed, or there is no scheduler at this address.
     """
     with refuse_missing_package("campaign"):
         import distributed
@@ -115,20 +109,14 @@ def connect_scheduler(address: str) -> Iterator[DaskExecutor]:
 def start_cluster(kind: ClusterKind, jobs: int, options: Mapping[str, Any]) -> Iterator[DaskExecutor]:
     """Submit jobs to a batch system; each job is a worker with one thread, and ends with the campaign.
 
-    Parameters
-    ----------
-    kind : str
-        Batch system.
-    jobs : int
-        Number of jobs.
-    options : mapping of str to Any
-        Options of the jobs as in dask-jobqueue, such as `queue`, `walltime` and `memory`; others are those of the
-        configuration of Dask.
+    Args:
+        kind: Batch system.
+        jobs: Number of jobs.
+        options: Options of the jobs as in dask-jobqueue, such as `queue`, `walltime` and `memory`; others are those of
+            the configuration of Dask.
 
-    Raises
-    ------
-    InputError
-        Dask is not installed, an option is wrong, or no job can be submitted.
+    Raises:
+        InputError: Dask is not installed, an option is wrong, or no job can be submitted.
     """
     with refuse_missing_package("campaign"):
         import dask

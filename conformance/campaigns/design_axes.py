@@ -69,18 +69,11 @@ class RangeAxis:
 
 @dataclass(frozen=True)
 class ColumnAxis:
-    """Values of several keys that vary together.
-
-    Parameters
-    ----------
-    keys : tuple of str
-        The keys.
-    columns : tuple of sequences
-        Values of each key, all of the same length.
-    """
+    """Values of several keys that vary together."""
 
     keys: tuple[str, ...]
     columns: tuple[Sequence[Any], ...]
+    """Values of each key, all of the same length."""
 
     def __len__(self) -> int:
         """Number of rows."""
@@ -125,10 +118,8 @@ def build_axis(
 ) -> DesignAxis:
     """Build the axis of a variation; a table of designs is read from a folder.
 
-    Raises
-    ------
-    InputError
-        The table cannot be read, or a cell is not a value.
+    Raises:
+        InputError: The table cannot be read, or a cell is not a value.
     """
     match variation:
         case ValueVariation(key=key, values=values):

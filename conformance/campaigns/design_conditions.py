@@ -26,32 +26,22 @@ _CONDITION = re.compile("(.+?)(" + "|".join(RELATIONS) + ")(.+)")
 
 @dataclass(frozen=True)
 class Condition:
-    """Relation of a varied input to a value or to another varied input.
-
-    Parameters
-    ----------
-    text : str
-        The condition as the user wrote it.
-    key : str
-        Varied input on the left.
-    relation : str
-        One of `RELATIONS`.
-    value : object
-        Value on the right, or the key of a varied input.
-    """
+    """Relation of a varied input to a value or to another varied input."""
 
     text: str
+    """The condition as the user wrote it."""
     key: str
+    """Varied input on the left."""
     relation: str
+    """One of `RELATIONS`."""
     value: object
+    """Value on the right, or the key of a varied input."""
 
     def holds(self, inputs: Inputs) -> bool:
         """Whether the inputs of a design meet the condition.
 
-        Raises
-        ------
-        InputError
-            The two sides cannot be compared.
+        Raises:
+            InputError: The two sides cannot be compared.
         """
         right = inputs[self.value] if isinstance(self.value, str) and self.value in inputs else self.value
         try:
@@ -64,17 +54,12 @@ class Condition:
 def parse_condition(text: str, keys: Collection[str]) -> Condition:
     """Parse a condition on varied inputs.
 
-    Parameters
-    ----------
-    text : str
-        The condition: key, relation, and a value or another key.
-    keys : collection of str
-        Keys of the varied inputs.
+    Args:
+        text: The condition: key, relation, and a value or another key.
+        keys: Keys of the varied inputs.
 
-    Raises
-    ------
-    InputError
-        The text is no condition, or its key is not varied.
+    Raises:
+        InputError: The text is no condition, or its key is not varied.
     """
     where = f"campaign, condition {text[:80]!r}"
     match = _CONDITION.fullmatch(text)

@@ -18,8 +18,10 @@ class Uniform(InputTable):
     """Uniform distribution between two values."""
 
     kind: Literal["uniform"]
-    lower: Annotated[float, Field(description="smallest value")]
-    upper: Annotated[float, Field(description="largest value")]
+    lower: float
+    """Smallest value."""
+    upper: float
+    """Largest value."""
 
     @cross_check
     def _check_order(self) -> Problems:
@@ -34,8 +36,10 @@ class Normal(InputTable):
     """Normal distribution."""
 
     kind: Literal["normal"]
-    mean: Annotated[float, Field(description="mean value")]
-    std: Annotated[Positive, Field(description="standard deviation")]
+    mean: float
+    """Mean value."""
+    std: Positive
+    """Standard deviation."""
 
     def quantiles(self, probability: RealArray) -> RealArray:
         """Values at some probabilities."""
@@ -47,10 +51,14 @@ class TruncatedNormal(InputTable):
     """Normal distribution of `mean` and `std`, restricted to the values between two bounds."""
 
     kind: Literal["truncated-normal"]
-    mean: Annotated[float, Field(description="mean of the distribution before its truncation")]
-    std: Annotated[Positive, Field(description="standard deviation before the truncation")]
-    lower: Annotated[float, Field(description="smallest value")]
-    upper: Annotated[float, Field(description="largest value")]
+    mean: float
+    """Mean of the distribution before its truncation."""
+    std: Positive
+    """Standard deviation before the truncation."""
+    lower: float
+    """Smallest value."""
+    upper: float
+    """Largest value."""
 
     @cross_check
     def _check_order(self) -> Problems:
@@ -72,10 +80,10 @@ class Discrete(InputTable):
     """Distribution over listed values."""
 
     kind: Literal["discrete"]
-    values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1, max_length=1000, description="values")]
-    weights: Annotated[
-        PositiveList | None, Field(description="relative frequency of each value; default: all alike")
-    ] = None
+    values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1, max_length=1000)]
+    """Values."""
+    weights: PositiveList | None = None
+    """Relative frequency of each value; default: all alike."""
 
     @cross_check
     def _check_weights(self) -> Problems:

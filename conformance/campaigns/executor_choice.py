@@ -13,10 +13,8 @@ from pantocheck.conformance.campaigns.run_executor import RunExecutor
 def choose_executor(execution: Execution) -> Iterator[RunExecutor]:
     """Choose the executor of a campaign; a cluster that is started ends with the context.
 
-    Raises
-    ------
-    InputError
-        A cluster cannot be reached or started.
+    Raises:
+        InputError: A cluster cannot be reached or started.
     """
     workers = execution.workers or os.cpu_count() or 1
     if execution.scheduler is not None:

@@ -21,18 +21,12 @@ _STARTED = "started"
 
 @dataclass(frozen=True)
 class LocalWorkers:
-    """Worker processes on this machine.
-
-    Parameters
-    ----------
-    workers : int
-        Number of processes.
-    run_time_limit_s : float or None
-        Time after which a single run fails and its process is ended [s].
-    """
+    """Worker processes on this machine."""
 
     workers: int
+    """Number of processes."""
     run_time_limit_s: float | None = None
+    """Time after which a single run fails and its process is ended [s]."""
 
     @property
     def description(self) -> str:

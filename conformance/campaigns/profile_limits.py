@@ -11,26 +11,18 @@ from pantocheck.conformance.input_files.input_error import InputError
 
 @dataclass(frozen=True)
 class ProfileLimits:
-    """Rules of a profile with the values of the line that they need.
-
-    Parameters
-    ----------
-    profile : Profile
-        Profile without rules that compare with a measured record.
-    uplift_space_mm : float or None
-        Space for the uplift of the contact wire at the supports [mm].
-    """
+    """Rules of a profile with the values of the line that they need."""
 
     profile: Profile
+    """Profile without rules that compare with a measured record."""
     uplift_space_mm: float | None
+    """Space for the uplift of the contact wire at the supports [mm]."""
 
     def resolve(self, case: Case) -> tuple[tuple[Limit, ...], tuple[str, ...]]:
         """Limits of a case, and the reason of each rule that has no bound for it.
 
-        Raises
-        ------
-        InputError
-            The rules do not apply to the case.
+        Raises:
+            InputError: The rules do not apply to the case.
         """
         where = f"profile '{self.profile.name}'"
         if self.profile.compares:

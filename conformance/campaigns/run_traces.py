@@ -29,18 +29,12 @@ class RunTraces(ResultsPart):
 def pack_traces(result: CaseResult, verdict: Verdict | None, stored: StoredTraces) -> bytes:
     """Compress the traces of a run.
 
-    Parameters
-    ----------
-    result : CaseResult
-        Result of the run.
-    verdict : str or None
-        Verdict of its row.
-    stored : str
-        Runs whose traces are stored.
+    Args:
+        result: Result of the run.
+        verdict: Verdict of its row.
+        stored: Runs whose traces are stored.
 
-    Returns
-    -------
-    bytes
+    Returns:
         Compressed traces; empty if they are not stored, or if the run has none.
     """
     verdicts = _STORED[stored]

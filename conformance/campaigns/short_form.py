@@ -19,15 +19,11 @@ _RANGE = re.compile(f"{_NUMBER}:{_NUMBER}:{_NUMBER}")
 def parse_variation(text: str) -> dict[str, Any]:
     """Parse a variation of the command line into a [[vary]] table of a campaign file.
 
-    Parameters
-    ----------
-    text : str
-        `KEY=START:STOP:STEP` or `KEY=VALUE,VALUE,...`.
+    Args:
+        text: `KEY=START:STOP:STEP` or `KEY=VALUE,VALUE,...`.
 
-    Raises
-    ------
-    InputError
-        The text is no variation.
+    Raises:
+        InputError: The text is no variation.
     """
     key, equals, values = (part.strip() for part in text.partition("="))
     where = f"{VARY_OPTION} {text[:80]!r}"
@@ -45,10 +41,8 @@ def parse_variation(text: str) -> dict[str, Any]:
 def check_variation(variation: dict[str, Any]) -> None:
     """Check the key of a variation of the command line, with its first value.
 
-    Raises
-    ------
-    InputError
-        The key does not exist, or cannot be changed.
+    Raises:
+        InputError: The key does not exist, or cannot be changed.
     """
     values = variation["values"] if "values" in variation else [variation["range"]["start"]]
     build_change(variation["key"], next(iter(values), None), VARY_OPTION)

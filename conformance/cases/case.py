@@ -21,55 +21,36 @@ from pantocheck.conformance.records.sidecar_tables import StartTable
 
 @dataclass(frozen=True)
 class InputProvenance:
-    """Source of a group of inputs.
-
-    Parameters
-    ----------
-    group : str
-        Dotted name of a table, or of one of its keys.
-    trust : Trust
-        Stated trust.
-    source : tuple of str
-        Source keys.
-    """
+    """Source of a group of inputs."""
 
     group: str
+    """Dotted name of a table, or of one of its keys."""
     trust: Trust
+    """Stated trust."""
     source: tuple[str, ...]
+    """Source keys."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """Reference case: line, pantographs, analysis section and limits.
-
-    Parameters
-    ----------
-    file : CaseFile
-        Content of the case file.
-    line : LineFile
-        Line of the case.
-    pantographs : tuple of PantographFile
-        One pantograph per [[pantograph]] table, in running order.
-    limits : tuple of Limit
-        Limits of the file, merged with those of a user.
-    static_pantograph : PantographFile, optional
-        Pantograph whose apparent mass a static case computes.
-    dampings : mapping of str to Damping
-        Further damping models of a study or a comparison, by name.
-    changes : tuple of str
-        Inputs that were changed on the command line, with the values of the files.
-    origin : CaseOrigin, optional
-        Source of a case from outside; None: the library.
-    """
+    """Reference case: line, pantographs, analysis section and limits."""
 
     file: CaseFile
+    """Content of the case file."""
     line: LineFile
+    """Line of the case."""
     pantographs: tuple[PantographFile, ...]
+    """One pantograph per [[pantograph]] table, in running order."""
     limits: tuple[Limit, ...]
+    """Limits of the file, merged with those of a user."""
     static_pantograph: PantographFile | None = None
+    """Pantograph whose apparent mass a static case computes."""
     dampings: Mapping[str, Damping] = field(default_factory=dict)
+    """Further damping models of a study or a comparison, by name."""
     changes: tuple[str, ...] = ()
+    """Inputs that were changed on the command line, with the values of the files."""
     origin: CaseOrigin | None = field(default=None, compare=False)
+    """Source of a case from outside; None: the library."""
 
     @property
     def pantograph_files(self) -> tuple[PantographFile, ...]:

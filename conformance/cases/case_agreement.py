@@ -11,17 +11,9 @@ from pantocheck.conformance.input_files.input_error import InputError
 def find_disagreements(case: Case, where: str) -> Iterator[InputError]:
     """Disagreements between a case and its line.
 
-    Parameters
-    ----------
-    case : Case
-        Case whose files are valid, each by itself.
-    where : str
-        Name of the case file in messages.
-
-    Yields
-    ------
-    InputError
-        One disagreement.
+    Args:
+        case: Case whose files are valid, each by itself.
+        where: Name of the case file in messages.
     """
     where = f"{where}, key "
     yield from _find_invalid_laws(case, where)

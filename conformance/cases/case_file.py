@@ -19,7 +19,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]
 
@@ -31,18 +31,10 @@ class PantographUse(SourcedTable):
     """Pantograph of a run, with a stated force."""
 
     model: PantographName
-    uplift_force_N: Annotated[
-        float | None,
-        Field(
-            gt=0,
-            le=LARGEST_FORCE_N,
-            description="constant uplift force, or start value of its tuning to the mean force [N]",
-        ),
-    ] = None
-    target_mean_force_N: Annotated[
-        float | None,
-        Field(gt=0, le=LARGEST_FORCE_N, description="mean contact force to which the uplift force is tuned [N]"),
-    ] = None
+    uplift_force_N: Annotated[float | None, Field(gt=0, le=LARGEST_FORCE_N)] = None
+    """Constant uplift force, or start value of its tuning to the mean force [N]."""
+    target_mean_force_N: Annotated[float | None, Field(gt=0, le=LARGEST_FORCE_N)] = None
+    """Mean contact force to which the uplift force is tuned [N]."""
 
     @cross_check
     def _has_a_force(self) -> Problems:
@@ -59,9 +51,8 @@ class PantographByLaw(SourcedTable):
     """Pantograph of a run, with the force law of its file at the speed of the case."""
 
     model: PantographName
-    force_from: Annotated[
-        Literal["law"], Field(description="law: mean contact force or applied forces from the file of the pantograph")
-    ]
+    force_from: Literal["law"]
+    """law: mean contact force or applied forces from the file of the pantograph."""
 
     @model_validator(mode="before")
     @classmethod
@@ -85,45 +76,18 @@ CasePantograph = Annotated[
 """Pantograph of a run."""
 
 
-class Filter(InputTable):
-    """Filter of the graded contact force."""
-
-    kind: Annotated[Literal["butterworth"], Field(description="filter type")] = "butterworth"
-    order: Annotated[int, Field(ge=1, le=12, description="total order, over both passes of a zero-phase filter")] = 6
-    cutoff_Hz: Annotated[float, Field(gt=0, le=1000, description="frequency of -3 dB of the whole filter [Hz]")] = 20.0
-    phase: Annotated[
-        Literal["zero", "causal"], Field(description="zero: forward and backward pass; causal: forward only")
-    ] = "zero"
-
-    @cross_check
-    def _exists(self) -> Problems:
-        if self.phase == "zero" and self.order % 2:
-            yield validation_problem(
-                "order",
-                f"{self.order} is odd",
-                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
-            )
-
-    @property
-    def low_pass(self) -> LowPass:
-        """Low-pass with these parameters."""
-        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)
-
-
 class Discretisation(InputTable):
     """Mesh and time step of the reference simulator; its refined run uses half of both, its coarse run twice both."""
 
-    element_m: Annotated[float, Field(ge=0.02, le=5, description="largest element length [m]")] = 0.5
-    time_step_s: Annotated[float, Field(ge=1e-5, le=0.01, description="time step [s]")] = 0.001
-    reach_m: Annotated[
-        float | None,
-        Field(
-            ge=20,
-            description="largest half-width of the active window around the train [m]; default: wide enough for every "
-            "wave that returns to a pantograph before the end of the run. Uplift that waves from a narrower window can "
-            "have reached is missing in the record",
-        ),
-    ] = None
+    element_m: Annotated[float, Field(ge=0.02, le=5)] = 0.5
+    """Largest element length [m]."""
+    time_step_s: Annotated[float, Field(ge=1e-5, le=0.01)] = 0.001
+    """Time step [s]."""
+    reach_m: Annotated[float | None, Field(ge=20)] = None
+    """Largest half-width of the active window around the train [m]; default: wide enough for every wave that returns
+    to a pantograph before the end of the run. Uplift that waves from a narrower window can have reached is missing
+    in the record.
+    """
 
     def scale(self, factor: float) -> "Discretisation":
         """Discretisation with element length and time step multiplied by a factor."""
@@ -134,86 +98,54 @@ class Discretisation(InputTable):
 class ApparentMass(InputTable):
     """Apparent mass at the head of a pantograph, computed in a static case."""
 
-    model: Annotated[FileName, Field(description="pantograph file, relative to the case file")]
-    frequency_Hz: Annotated[PositiveList, Field(max_length=100, description="frequencies of the apparent mass [Hz]")]
+    model: FileName
+    """Pantograph file, relative to the case file."""
+    frequency_Hz: Annotated[PositiveList, Field(max_length=100)]
+    """Frequencies of the apparent mass [Hz]."""
 
 
 class CaseFile(SourcedTable):
     """Content of a case file. A case without a speed is a static check of the line."""
 
-    id: Annotated[
-        str,
-        Field(
-            pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*(/[A-Za-z0-9_-][A-Za-z0-9._-]*)*$",
-            max_length=200,
-            description="path-like name; no part begins with a dot",
-        ),
-    ]
-    title: Annotated[str, Field(max_length=200, description="title in reports")]
-    edition: Annotated[
-        str | None, Field(max_length=100, description='edition of the standard, e.g. "EN 50318:2018"')
-    ] = None
-    superseded_by: Annotated[str | None, Field(max_length=100, description="edition that superseded this edition")] = (
-        None
-    )
-    line: Annotated[FileName, Field(description="line file, relative to the case file")]
-    damping: Annotated[
-        FileName | Damping | None,
-        Field(description="damping that replaces that of the line: a file, relative to the case file, or a table"),
-    ] = None
-    on_request: Annotated[
-        bool, Field(description="true: the case runs only if it is named, because it is slow or expected to fail")
-    ] = False
-    requires: Annotated[
-        tuple[str, ...],
-        Field(
-            strict=False,
-            max_length=100,
-            description="ids of the cases that are run first; this case is skipped if one of them, or a case that it "
-            "requires in turn, fails, ends with an error or was not run; after any other verdict, skip included, this "
-            "case runs and counts",
-        ),
-    ] = ()
-    speed_km_h: Annotated[float | None, Field(ge=1, le=FASTEST_KM_H, description="speed of the train [km/h]")] = None
-    evaluated_spans: Annotated[
-        tuple[int, ...] | None,
-        Field(
-            strict=False,
-            min_length=1,
-            max_length=1000,
-            description="spans of the analysis section, numbered from 1: first and last span, or all spans",
-        ),
-    ] = None
-    evaluated_m: Annotated[
-        tuple[NonNegative, Positive] | None,
-        Field(
-            strict=False,
-            description="start and end of the analysis section, in place of evaluated_spans [m]",
-            exclude_if=is_absent,
-        ),
-    ] = None
-    compared_spans: Annotated[
-        tuple[int, int] | None,
-        Field(
-            strict=False,
-            description="first and last span of a longer section; the analysis section is shifted along it span by "
-            "span, to determine the spread of the results",
-        ),
-    ] = None
-    start_m: Annotated[
-        float | None,
-        Field(ge=0, description="start position of the last pantograph [m]; default: end of the first span"),
-    ] = None
-    run_out_m: Annotated[
-        float | None,
-        Field(ge=0, description="run-out of the last pantograph beyond the section [m]; default: at most one span"),
-    ] = None
-    spacing_m: Annotated[
-        PositiveList | None, Field(description="distances between successive pantographs, in running order [m]")
-    ] = None
+    id: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-][A-Za-z0-9._-]*(/[A-Za-z0-9_-][A-Za-z0-9._-]*)*$", max_length=200)]
+    """Path-like name; no part begins with a dot."""
+    title: Annotated[str, Field(max_length=200)]
+    """Title in reports."""
+    edition: Annotated[str | None, Field(max_length=100)] = None
+    """Edition of the standard, e.g. "EN 50318:2018"."""
+    superseded_by: Annotated[str | None, Field(max_length=100)] = None
+    """Edition that superseded this edition."""
+    line: FileName
+    """Line file, relative to the case file."""
+    damping: FileName | Damping | None = None
+    """Damping that replaces that of the line: a file, relative to the case file, or a table."""
+    on_request: bool = False
+    """true: the case runs only if it is named, because it is slow or expected to fail."""
+    requires: Annotated[tuple[str, ...], Field(strict=False, max_length=100)] = ()
+    """Ids of the cases that are run first; this case is skipped if one of them, or a case that it requires in turn,
+    fails, ends with an error or was not run; after any other verdict, skip included, this case runs and counts.
+    """
+    speed_km_h: Annotated[float | None, Field(ge=1, le=FASTEST_KM_H)] = None
+    """Speed of the train [km/h]."""
+    evaluated_spans: Annotated[tuple[int, ...] | None, Field(strict=False, min_length=1, max_length=1000)] = None
+    """Spans of the analysis section, numbered from 1: first and last span, or all spans."""
+    evaluated_m: Annotated[tuple[NonNegative, Positive] | None, Field(strict=False, exclude_if=is_absent)] = None
+    """Start and end of the analysis section, in place of evaluated_spans [m]."""
+    compared_spans: Annotated[tuple[int, int] | None, Field(strict=False)] = None
+    """First and last span of a longer section; the analysis section is shifted along it span by span, to determine
+    the spread of the results.
+    """
+    start_m: Annotated[float | None, Field(ge=0)] = None
+    """Start position of the last pantograph [m]; default: end of the first span."""
+    run_out_m: Annotated[float | None, Field(ge=0)] = None
+    """Run-out of the last pantograph beyond the section [m]; default: at most one span."""
+    spacing_m: PositiveList | None = None
+    """Distances between successive pantographs, in running order [m]."""
     pantograph: Annotated[tuple[CasePantograph, ...], Field(strict=False, max_length=20)] = ()
-    mass_drop: Annotated[MassDrop | None, Field(description="mass drops instead of a train")] = None
-    study: Annotated[Study | None, Field(description="comparison of several runs")] = None
+    mass_drop: MassDrop | None = None
+    """Mass drops instead of a train."""
+    study: Study | None = None
+    """Comparison of several runs."""
     apparent_mass: ApparentMass | None = None
     filter: Filter = Filter()
     discretisation: Discretisation = Discretisation()

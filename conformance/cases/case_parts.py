@@ -32,29 +32,20 @@ LONGEST_NAME = 200
 
 @dataclass(frozen=True)
 class CaseFiles:
-    """Files of a case, read with changes of the command line.
-
-    Parameters
-    ----------
-    path : Path
-        Case file.
-    tree : dict
-        Content of the case file.
-    changes : tuple of InputChange
-        Changes of this case.
-    """
+    """Files of a case, read with changes of the command line."""
 
     path: Path
+    """Case file."""
     tree: dict[str, Any]
+    """Content of the case file."""
     changes: tuple[InputChange, ...] = ()
+    """Changes of this case."""
 
     def read(self) -> Case:
         """Read all files, each valid by itself.
 
-        Raises
-        ------
-        InputError
-            A file cannot be read or is invalid; the error is that of the first such file.
+        Raises:
+            InputError: A file cannot be read or is invalid; the error is that of the first such file.
         """
         path = self.path
         file, case_changes = self._read_case()
@@ -84,10 +75,8 @@ class CaseFiles:
     def _refuse_hidden_changes(self, damping: Damping) -> None:
         """Refuse changes of the damping of the line that the damping of the case replaces.
 
-        Raises
-        ------
-        InputError
-            A change would have no effect.
+        Raises:
+            InputError: A change would have no effect.
         """
         replaced = {(), *((name,) for name in (*damping.model_fields_set, "modal"))}
         for change in self.changes:

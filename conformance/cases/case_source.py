@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,49 +20,38 @@ MOST_FILES = 10_000
 
 @dataclass(frozen=True, eq=False)
 class CaseSource:
-    """Folder of cases from outside.
-
-    Parameters
-    ----------
-    origin : CaseOrigin
-        Name, version and digest of the folder or distribution.
-    cases : dict of str to Path
-        File of every case by its id.
-    """
+    """Folder of cases from outside."""
 
     origin: CaseOrigin
+    """Name, version and digest of the folder or distribution."""
     cases: dict[str, Path]
+    """File of every case by its id."""
 
 
 def open_case_folder(folder: Path) -> CaseSource:
     """Find the cases of a folder and of the folders below it.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder with TOML files; files and folders whose name begins with a dot are left out.
+    Args:
+        folder: Folder with TOML files; files and folders whose name begins with a dot are left out.
 
-    Raises
-    ------
-    InputError
-        There is no such folder or no case in it, an id does not begin with `own/`, or a file has a name of the library.
-        The error lists all problems.
+    Raises:
+        InputError: There is no such folder or no case in it, an id does not begin with `own/`, or a file has a name of
+            the library. The error lists all problems.
     """
-    return _open_source(folder, CaseOrigin("folder", folder.resolve().name, "", ""), OUTSIDE_PREFIX)
+    return _open_source(
+        folder, CaseOrigin(kind="folder", name=folder.resolve().name, version="", digest=""), OUTSIDE_PREFIX
+    )
 
 
 def list_case_sources(pattern: str) -> list[CaseSource]:
     """Folders of cases of installed distributions; the ids of their cases begin with `own/DISTRIBUTION/`.
 
-    Parameters
-    ----------
-    pattern : str
-        Id or pattern. Distributions none of whose ids can match it are left out, so that they cannot cause an error.
+    Args:
+        pattern: Id or pattern. Distributions none of whose ids can match it are left out, so that they cannot cause an
+            error.
 
-    Raises
-    ------
-    InputError
-        An entry point names no folder, or its cases are refused as by `open_case_folder`.
+    Raises:
+        InputError: An entry point names no folder, or its cases are refused as by `open_case_folder`.
     """
     packages = list_case_packages()
     matching = (each for each in packages if _may_match(pattern, id_prefix(each.distribution)))
@@ -81,7 +70,7 @@ def _may_match(pattern: str, prefix: str) -> bool:
 
 @cache
 def _open_package(package: CasePackage, folder: Path) -> CaseSource:
-    origin = CaseOrigin("distribution", package.distribution, package.version, "")
+    origin = CaseOrigin(kind="distribution", name=package.distribution, version=package.version, digest="")
     try:
         return _open_source(folder, origin, id_prefix(package.distribution))
     except InputError as error:
@@ -118,7 +107,7 @@ def _open_source(folder: Path, origin: CaseOrigin, prefix: str) -> CaseSource:
     cases = {tree["id"]: path for path, tree in trees.items() if isinstance(tree.get("id"), str)}
     if not cases:
         raise InputError(where, "holds no case file", f'A case file has the key id, e.g. id = "{prefix}my-line" .')
-    return CaseSource(replace(origin, digest=_folder_digest(folder, files)), cases)
+    return CaseSource(origin.model_copy(update={"digest": _folder_digest(folder, files)}), cases)
 
 
 def _list_files(folder: Path, where: str) -> list[Path]:

@@ -18,31 +18,20 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 
 @dataclass(frozen=True)
 class CaseEntry:
-    """File of a case.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    origin : CaseOrigin or None
-        Source from outside; None: the library.
-    """
+    """File of a case."""
 
     path: Path
+    """The file."""
     origin: CaseOrigin | None = None
+    """Source from outside; None: the library."""
 
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Cases by id. Installed distributions are searched only if an id or pattern begins with `own/`.
-
-    Parameters
-    ----------
-    folders : tuple of CaseSource
-        Folders of the user.
-    """
+    """Cases by id. Installed distributions are searched only if an id or pattern begins with `own/`."""
 
     folders: tuple[CaseSource, ...] = ()
+    """Folders of the user."""
 
     @cached_property
     def listed(self) -> dict[str, CaseEntry]:
@@ -58,15 +47,11 @@ class Catalogue:
     def find(self, pattern: str) -> list[CaseEntry]:
         """Find cases by id, pattern or path.
 
-        Parameters
-        ----------
-        pattern : str
-            Id, pattern with `*` and `?`, or path of a case file, which ends in .toml.
+        Args:
+            pattern: Id, pattern with `*` and `?`, or path of a case file, which ends in .toml.
 
-        Raises
-        ------
-        InputError
-            There is no such case, or the cases of a distribution are invalid.
+        Raises:
+            InputError: There is no such case, or the cases of a distribution are invalid.
         """
         if (entry := self.find_id(pattern)) is not None:
             return [entry]
@@ -100,10 +85,8 @@ LIBRARY = Catalogue()
 def open_catalogue(folders: Sequence[Path | str]) -> Catalogue:
     """Catalogue of the library, installed distributions and folders of the user.
 
-    Raises
-    ------
-    InputError
-        A folder has no cases, an id that is not its own, or an id of another folder.
+    Raises:
+        InputError: A folder has no cases, an id that is not its own, or an id of another folder.
     """
     sources = tuple(open_case_folder(folder) for folder in dict.fromkeys(Path(folder).resolve() for folder in folders))
     named = {name: None for source in sources for name in source.cases}
@@ -114,7 +97,7 @@ def open_catalogue(folders: Sequence[Path | str]) -> Catalogue:
 def _name_file(path: Path) -> CaseEntry:
     """Entry of a case file that is named by its path; a file that cannot be read is refused when the case is read."""
     digest = file_digest(path) if path.is_file() else ""
-    return CaseEntry(path, CaseOrigin("file", path.name, "", digest))
+    return CaseEntry(path, CaseOrigin(kind="file", name=path.name, version="", digest=digest))
 
 
 def _join_sources(sources: Sequence[CaseSource]) -> dict[str, CaseEntry]:

@@ -38,26 +38,18 @@ def change_tree(
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Apply changes to the content of a file.
 
-    Parameters
-    ----------
-    tree : dict
-        Content of the file.
-    model : type of BaseModel
-        Model of the file.
-    changes : sequence of InputChange
-        Changes of this file.
+    Args:
+        tree: Content of the file.
+        model: Model of the file.
+        changes: Changes of this file.
 
-    Returns
-    -------
-    tree : dict
-        Changed content. Changed keys count as `provisional`, because the source of their table does not state them.
-    descriptions : tuple of str
-        One text per value that differs, with the value of the file.
+    Returns:
+        tree: Changed content. Changed keys count as `provisional`, because the source of their table does not state
+            them.
+        descriptions: One text per value that differs, with the value of the file.
 
-    Raises
-    ------
-    InputError
-        A table or a list item does not exist.
+    Raises:
+        InputError: A table or a list item does not exist.
     """
     if not changes:
         return tree, ()

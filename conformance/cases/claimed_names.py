@@ -25,18 +25,12 @@ def _library_files() -> dict[str, Path]:
 def find_claims(folder: Path, trees: Mapping[Path, Mapping[str, Any]], prefix: str) -> Iterator[InputError]:
     """Find the names that files from outside must not have.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the files.
-    trees : mapping of Path to mapping
-        Content of each TOML file of the folder.
-    prefix : str
-        Required beginning of the id of a case: `own/`, or `own/` and the name of a distribution.
+    Args:
+        folder: Folder of the files.
+        trees: Content of each TOML file of the folder.
+        prefix: Required beginning of the id of a case: `own/`, or `own/` and the name of a distribution.
 
-    Yields
-    ------
-    InputError
+    Yields:
         A file with the name, id or profile name of a library file, a case without the prefix, or a repeated id. Both
         files are named.
     """

@@ -21,10 +21,8 @@ class OwnedQuantity(InputTable):
     """Quantity of a pantograph or of the line."""
 
     quantity: QuantityName
-    pantograph: Annotated[
-        int | None,
-        Field(ge=1, le=20, description="number of the pantograph in running order; none for a quantity of the line"),
-    ] = None
+    pantograph: Annotated[int | None, Field(ge=1, le=20)] = None
+    """Number of the pantograph in running order; none for a quantity of the line."""
 
     @cross_check
     def _owned(self) -> Problems:
@@ -44,19 +42,18 @@ class OwnedQuantity(InputTable):
 class ConvergedValue(OwnedQuantity):
     """Converged value with its interval, and the value of the second formulation."""
 
-    value: Annotated[FiniteBound, Field(description="extrapolated value, in the unit of the quantity")]
-    half_width: Annotated[NonNegative, Field(description="half-width of the interval of the value")]
-    start_half_width: Annotated[
-        NonNegative | None,
-        Field(description="half-width of the change of the value with other starts; none where it is not known"),
-    ] = None
-    order: Annotated[
-        float | None, Field(description="observed order of convergence; none where it is not observed")
-    ] = None
-    second_value: Annotated[FiniteBound, Field(description="value of the second formulation")]
-    difference_pct: Annotated[
-        FiniteBound, Field(description="second value minus value, relative to the value or the dynamic part [%]")
-    ]
+    value: FiniteBound
+    """Extrapolated value, in the unit of the quantity."""
+    half_width: NonNegative
+    """Half-width of the interval of the value."""
+    start_half_width: NonNegative | None = None
+    """Half-width of the change of the value with other starts; none where it is not known."""
+    order: float | None = None
+    """Observed order of convergence; none where it is not observed."""
+    second_value: FiniteBound
+    """Value of the second formulation."""
+    difference_pct: FiniteBound
+    """Second value minus value, relative to the value or the dynamic part [%]."""
 
 
 class OmittedValue(OwnedQuantity):
@@ -69,20 +66,23 @@ class Formulation(InputTable):
     """Formulation of the equations of a case, with the meshes from which its values are extrapolated."""
 
     name: Annotated[str, Field(min_length=1, max_length=1000)]
-    spacing_m: Annotated[PositiveList, Field(description="element lengths or distances of points, the coarsest first")]
-    time_step_s: Annotated[PositiveList, Field(description="time steps, the coarsest first")]
+    spacing_m: PositiveList
+    """Element lengths or distances of points, the coarsest first."""
+    time_step_s: PositiveList
+    """Time steps, the coarsest first."""
 
 
 class ConvergedFile(InputTable):
     """Content of a file of converged values."""
 
     schema_: Annotated[Literal["pantocheck.converged/1"], Field(alias="schema")]
-    case: Annotated[str, Field(description="id of the case", max_length=200)]
-    case_digest: Annotated[str, Field(description="digest of the inputs of the case", max_length=100)]
+    case: Annotated[str, Field(max_length=200)]
+    """Id of the case."""
+    case_digest: Annotated[str, Field(max_length=100)]
+    """Digest of the inputs of the case."""
     trust: Computed
-    uplift_force_N: Annotated[
-        tuple[float, ...], Field(strict=False, max_length=20, description="uplift force of each pantograph [N]")
-    ] = ()
+    uplift_force_N: Annotated[tuple[float, ...], Field(strict=False, max_length=20)] = ()
+    """Uplift force of each pantograph [N]."""
     reference: Formulation
     second: Formulation
     value: Annotated[tuple[ConvergedValue, ...], Field(strict=False, max_length=1000)] = ()

@@ -17,20 +17,21 @@ from pantocheck.conformance.input_files.trust import LEVELS
 class ComponentDamping(InputTable):
     """Rayleigh damping of one kind of component: C = mass_coefficient M + stiffness_coefficient K."""
 
-    mass_coefficient_1_s: Annotated[
-        float, Field(ge=0, le=100, description="factor of the mass matrix [1/s]"), Feature("rayleigh_damping")
-    ] = 0.0
-    stiffness_coefficient_s: Annotated[
-        float, Field(ge=0, le=10, description="factor of the stiffness matrix [s]"), Feature("rayleigh_damping")
-    ] = 0.0
+    mass_coefficient_1_s: Annotated[float, Field(ge=0, le=100), Feature("rayleigh_damping")] = 0.0
+    """Factor of the mass matrix [1/s]."""
+    stiffness_coefficient_s: Annotated[float, Field(ge=0, le=10), Feature("rayleigh_damping")] = 0.0
+    """Factor of the stiffness matrix [s]."""
 
 
 class ModalDamping(InputTable):
     """Damping ratio of all undamped modes of the line in a frequency band, in place of their Rayleigh damping."""
 
-    from_Hz: Annotated[float, Field(ge=0, le=1000, description="lower edge of the band [Hz]")]
-    to_Hz: Annotated[float, Field(gt=0, le=1000, description="upper edge of the band [Hz]")]
-    damping_ratio: Annotated[float, Field(ge=0, lt=1, description="ratio to critical damping [-]")]
+    from_Hz: Annotated[float, Field(ge=0, le=1000)]
+    """Lower edge of the band [Hz]."""
+    to_Hz: Annotated[float, Field(gt=0, le=1000)]
+    """Upper edge of the band [Hz]."""
+    damping_ratio: Annotated[float, Field(ge=0, lt=1)]
+    """Ratio to critical damping [-]."""
 
     @cross_check
     def _ordered(self) -> Problems:
@@ -50,11 +51,8 @@ class Damping(SourcedTable):
     stitch_wire: ComponentDamping = ComponentDamping()
     droppers: ComponentDamping = ComponentDamping()
     steady_arms: ComponentDamping = ComponentDamping()
-    modal: Annotated[
-        tuple[ModalDamping, ...],
-        Field(strict=False, max_length=1000, description="frequency bands with a damping ratio"),
-        Feature("modal_damping"),
-    ] = ()
+    modal: Annotated[tuple[ModalDamping, ...], Field(strict=False, max_length=1000), Feature("modal_damping")] = ()
+    """Frequency bands with a damping ratio."""
 
     @cross_check
     def _bands_apart(self) -> Problems:

@@ -31,12 +31,12 @@ class Sensor(InputTable):
 class DropTest(InputTable):
     """Release of one mass that hangs on a wire."""
 
-    mass_kg: Annotated[Positive, Field(le=200, description="mass on the wire before the release [kg]")]
+    mass_kg: Annotated[Positive, Field(le=200)]
+    """Mass on the wire before the release [kg]."""
     wire: WireName
     x_m: Place
-    release_s: Annotated[
-        NonNegative, Field(le=5, description="time in which the weight decreases linearly to zero [s]; 0: at once")
-    ] = 0.0
+    release_s: Annotated[NonNegative, Field(le=5)] = 0.0
+    """Time in which the weight decreases linearly to zero [s]; 0: at once."""
 
 
 class MassDrop(SourcedTable):
@@ -44,23 +44,20 @@ class MassDrop(SourcedTable):
 
     drop: Annotated[tuple[DropTest, ...], Field(strict=False, min_length=1, max_length=20)]
     sensor: Annotated[tuple[Sensor, ...], Field(strict=False, min_length=1, max_length=100)]
-    record_s: Annotated[Positive, Field(le=900, description="duration of the record after the release [s]")]
-    hanging_s: Annotated[
-        Positive, Field(ge=1, le=60, description="duration of the record before the release, with hanging mass [s]")
-    ] = 5.0
-    rate_Hz: Annotated[Positive, Field(ge=10, le=5000, description="sampling rate of the record [Hz]")] = 100.0
-    quantity: Annotated[Literal["acceleration", "velocity", "displacement"], Field(description="measured quantity")] = (
-        "acceleration"
-    )
-    noise_rms: Annotated[
-        NonNegative,
-        Field(
-            le=10,
-            description="RMS of the white noise of each sensor [SI unit of quantity]; each drop has its own noise, "
-            "the same in every run",
-        ),
-    ] = 0.0
-    highest_Hz: Annotated[Positive, Field(le=200, description="highest frequency of the identified modes [Hz]")] = 10.0
+    record_s: Annotated[Positive, Field(le=900)]
+    """Duration of the record after the release [s]."""
+    hanging_s: Annotated[Positive, Field(ge=1, le=60)] = 5.0
+    """Duration of the record before the release, with hanging mass [s]."""
+    rate_Hz: Annotated[Positive, Field(ge=10, le=5000)] = 100.0
+    """Sampling rate of the record [Hz]."""
+    quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration"
+    """Measured quantity."""
+    noise_rms: Annotated[NonNegative, Field(le=10)] = 0.0
+    """RMS of the white noise of each sensor [SI unit of quantity]; each drop has its own noise, the same in every
+    run.
+    """
+    highest_Hz: Annotated[Positive, Field(le=200)] = 10.0
+    """Highest frequency of the identified modes [Hz]."""
     compared: Annotated[DampingModels, Field(default_factory=dict)]
 
     @cross_check

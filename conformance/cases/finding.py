@@ -13,16 +13,15 @@ Role = Literal["imposed", "held_out"]
 class PublishedFinding(InputTable):
     """Finding of a publication: its sentence, its role, and the choices behind the bounds of its limit."""
 
-    section: Annotated[str, Field(max_length=40, description="section, table or figure of the publication")]
-    sentence: Annotated[str, Field(max_length=500, description="statement of the publication in one sentence")]
-    role: Annotated[
-        Role,
-        Field(description="imposed: the search for the inputs used the finding; held_out: it did not"),
-    ]
-    printed: Annotated[
-        str, Field(max_length=100, description="number in the publication; none: it states no number")
-    ] = "none"
-    tolerance: Annotated[str, Field(max_length=500, description="origin of the bounds and of their tolerance")]
-    sensitivity: Annotated[
-        str, Field(max_length=1000, description="reason, with numbers, why the case does not reproduce the finding")
-    ] = ""
+    section: Annotated[str, Field(max_length=40)]
+    """Section, table or figure of the publication."""
+    sentence: Annotated[str, Field(max_length=500)]
+    """Statement of the publication in one sentence."""
+    role: Role
+    """imposed: the search for the inputs used the finding; held_out: it did not."""
+    printed: Annotated[str, Field(max_length=100)] = "none"
+    """Number in the publication; none: it states no number."""
+    tolerance: Annotated[str, Field(max_length=500)]
+    """Origin of the bounds and of their tolerance."""
+    sensitivity: Annotated[str, Field(max_length=1000)] = ""
+    """Reason, with numbers, why the case does not reproduce the finding."""

@@ -35,19 +35,16 @@ PointOfForce = Annotated[
 class SpeedPolynomial(SourcedTable):
     """Force as a polynomial of the speed v: constant + linear v + quadratic v^2."""
 
-    constant_N: Annotated[float, Field(ge=-LARGEST_FORCE_N, le=LARGEST_FORCE_N, description="force at speed 0 [N]")] = (
-        0.0
-    )
-    linear_N_h_km: Annotated[float, Field(ge=-100, le=100, description="factor of the speed [N per km/h]")] = 0.0
-    quadratic_N_h2_km2: Annotated[
-        float, Field(ge=-1, le=1, description="factor of the squared speed [N per (km/h)^2]")
-    ] = 0.0
-    above_km_h: Annotated[
-        float, Field(ge=0, lt=FASTEST_KM_H, description="speed above which the law is valid [km/h]")
-    ] = 0.0
-    up_to_km_h: Annotated[
-        float, Field(gt=0, le=FASTEST_KM_H, description="largest speed for which the law is valid [km/h]")
-    ] = FASTEST_KM_H
+    constant_N: Annotated[float, Field(ge=-LARGEST_FORCE_N, le=LARGEST_FORCE_N)] = 0.0
+    """Force at speed 0 [N]."""
+    linear_N_h_km: Annotated[float, Field(ge=-100, le=100)] = 0.0
+    """Factor of the speed [N per km/h]."""
+    quadratic_N_h2_km2: Annotated[float, Field(ge=-1, le=1)] = 0.0
+    """Factor of the squared speed [N per (km/h)^2]."""
+    above_km_h: Annotated[float, Field(ge=0, lt=FASTEST_KM_H)] = 0.0
+    """Speed above which the law is valid [km/h]."""
+    up_to_km_h: Annotated[float, Field(gt=0, le=FASTEST_KM_H)] = FASTEST_KM_H
+    """Largest speed for which the law is valid [km/h]."""
 
     @cross_check
     def _has_a_range(self) -> Problems:
@@ -61,20 +58,14 @@ class SpeedPolynomial(SourcedTable):
     def evaluate(self, speed_km_h: float) -> float:
         """Evaluate the polynomial.
 
-        Parameters
-        ----------
-        speed_km_h : float
-            Speed [km/h].
+        Args:
+            speed_km_h: Speed [km/h].
 
-        Returns
-        -------
-        float
+        Returns:
             Force [N].
 
-        Raises
-        ------
-        LawInvalid
-            The law is not valid at this speed.
+        Raises:
+            LawInvalid: The law is not valid at this speed.
         """
         if not self.above_km_h < speed_km_h <= self.up_to_km_h:
             raise LawInvalid(
@@ -98,9 +89,8 @@ class MeanForceRule(InputTable):
     """Law of the mean contact force: the largest mean force that a profile of the library accepts."""
 
     kind: Literal["mean_force_rule"]
-    profile: Annotated[
-        str, Field(min_length=1, max_length=100, description="name of a profile with a formula for mean_force_N")
-    ]
+    profile: Annotated[str, Field(min_length=1, max_length=100)]
+    """Name of a profile with a formula for mean_force_N."""
 
 
 class AerodynamicForce(SpeedPolynomial):
@@ -113,9 +103,8 @@ class AppliedForceLaw(SourcedTable):
     """Law of the applied forces: static force at `uplift_force_on` of the model, and aerodynamic force."""
 
     kind: Literal["applied_forces"]
-    static_force_N: Annotated[
-        float, Field(ge=0, le=LARGEST_FORCE_N, description="static uplift force at every speed [N]")
-    ]
+    static_force_N: Annotated[float, Field(ge=0, le=LARGEST_FORCE_N)]
+    """Static uplift force at every speed [N]."""
     aerodynamic_force: AerodynamicForce
 
 

@@ -9,22 +9,15 @@ from pantocheck.conformance.input_files.suggestions import suggest_names
 def resolve_rule(file: PantographFile, where: str) -> PantographFile:
     """Replace the name of a rule by its formula, with the trust and the source of the profile.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Content of a pantograph file.
-    where : str
-        Name of the file in messages.
+    Args:
+        file: Content of a pantograph file.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    PantographFile
+    Returns:
         The same content; a force law of the kind `mean_force_rule` becomes one of the kind `mean_force`.
 
-    Raises
-    ------
-    InputError
-        The library has no profile of this name, or the profile has no formula for the mean force.
+    Raises:
+        InputError: The library has no profile of this name, or the profile has no formula for the mean force.
     """
     if not isinstance(file.force_law, MeanForceRule):
         return file

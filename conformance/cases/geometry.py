@@ -110,8 +110,10 @@ class SpanPositions:
 class EqualSpans(SpanPositions, SourcedTable):
     """Equal spans, heights and stagger."""
 
-    span_m: Annotated[SpanLength, Field(description="length of every span [m]")]
-    spans: Annotated[int, Field(ge=1, le=MOST_SPANS, description="number of spans")]
+    span_m: SpanLength
+    """Length of every span [m]."""
+    spans: Annotated[int, Field(ge=1, le=MOST_SPANS)]
+    """Number of spans."""
     encumbrance_m: Encumbrance
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
@@ -143,20 +145,21 @@ SpanDroppers = Annotated[
 class Span(InputTable):
     """Span of a line with its droppers."""
 
-    length_m: Annotated[SpanLength, Field(description="length of the span [m]")]
-    droppers: Annotated[
-        SpanDroppers | None,
-        Field(description="name of a table in geometry.schedule, or the schedule itself; default: that of [droppers]"),
-        Feature("listed_spans"),
-    ] = None
+    length_m: SpanLength
+    """Length of the span [m]."""
+    droppers: Annotated[SpanDroppers | None, Feature("listed_spans")] = None
+    """Name of a table in geometry.schedule, or the schedule itself; default: that of [droppers]."""
 
 
 class GradientTable(InputTable):
     """Stretch on which the contact wire rises or falls; behind it, the wire keeps the height that it reached."""
 
-    from_m: Annotated[NonNegative, Field(description="start of the gradient [m]")]
-    to_m: Annotated[NonNegative, Field(description="end of the gradient [m]")]
-    slope: Annotated[float, Field(ge=-0.05, le=0.05, description="rise per length; negative: the wire falls [-]")]
+    from_m: NonNegative
+    """Start of the gradient [m]."""
+    to_m: NonNegative
+    """End of the gradient [m]."""
+    slope: Annotated[float, Field(ge=-0.05, le=0.05)]
+    """Rise per length; negative: the wire falls [-]."""
 
     @cross_check
     def _has_a_length(self) -> Problems:
@@ -176,15 +179,13 @@ class ListedSpans(SpanPositions, SourcedTable):
     """Spans listed one by one; heights and stagger of the supports, and supports with their own values."""
 
     span_list: Annotated[
-        tuple[Span, ...],
-        Field(strict=False, min_length=1, max_length=MOST_SPANS, description="spans in running order"),
-        Feature("listed_spans", always),
+        tuple[Span, ...], Field(strict=False, min_length=1, max_length=MOST_SPANS), Feature("listed_spans", always)
     ]
+    """Spans in running order."""
     schedule: Annotated[
-        dict[ScheduleName, DropperSchedule],
-        Field(default_factory=dict, max_length=MOST_SPANS, description="dropper schedules by name"),
-        Feature("listed_spans"),
+        dict[ScheduleName, DropperSchedule], Field(default_factory=dict, max_length=MOST_SPANS), Feature("listed_spans")
     ]
+    """Dropper schedules by name."""
     encumbrance_m: Encumbrance
     stagger_contact_wire_m: Stagger = 0.0
     stagger_messenger_m: Stagger = 0.0
@@ -192,25 +193,15 @@ class ListedSpans(SpanPositions, SourcedTable):
         0.0
     )
     support: Annotated[
-        tuple[SupportTable, ...],
-        Field(
-            strict=False,
-            max_length=MOST_SPANS + 1,
-            description="supports and ends of the line with their own values",
-            exclude_if=is_absent,
-        ),
-        SINGLE_SUPPORTS,
+        tuple[SupportTable, ...], Field(strict=False, max_length=MOST_SPANS + 1, exclude_if=is_absent), SINGLE_SUPPORTS
     ] = ()
+    """Supports and ends of the line with their own values."""
     gradient: Annotated[
         tuple[GradientTable, ...],
-        Field(
-            strict=False,
-            max_length=MOST_SPANS,
-            description="gradients of the contact wire; they add to the heights of the supports",
-            exclude_if=is_absent,
-        ),
+        Field(strict=False, max_length=MOST_SPANS, exclude_if=is_absent),
         Feature("gradients"),
     ] = ()
+    """Gradients of the contact wire; they add to the heights of the supports."""
 
     @property
     def spans(self) -> int:

@@ -50,30 +50,20 @@ _PLAIN_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
 
 @dataclass(frozen=True)
 class InputChange:
-    """New value of one key.
-
-    Parameters
-    ----------
-    key : str
-        Dotted key as the user wrote it.
-    part : ChangedPart
-        Part of the case that holds the key.
-    pantograph : int or None
-        Index of the pantograph in running order, from 0; None: all of them, or no key of a pantograph.
-    path : KeyPath
-        Path of the key in this part.
-    value : object
-        New value.
-    origin : str
-        File or option that states the change, for messages.
-    """
+    """New value of one key."""
 
     key: str
+    """Dotted key as the user wrote it."""
     part: ChangedPart
+    """Part of the case that holds the key."""
     pantograph: int | None
+    """Index of the pantograph in running order, from 0; None: all of them, or no key of a pantograph."""
     path: KeyPath
+    """Path of the key in this part."""
     value: object
+    """New value."""
     origin: str = SET_OPTION
+    """File or option that states the change, for messages."""
 
     @property
     def where(self) -> str:
@@ -84,21 +74,15 @@ class InputChange:
 def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
     """Parse changes of the form `KEY=VALUE`.
 
-    Parameters
-    ----------
-    texts : sequence of str
-        Dotted keys of the case, of its line (`line.contact_wire.tension_N`) or of its pantographs
-        (`pantograph[1].chain.masses_kg`; without a number, of all pantographs), with values as in TOML.
+    Args:
+        texts: Dotted keys of the case, of its line (`line.contact_wire.tension_N`) or of its pantographs
+            (`pantograph[1].chain.masses_kg`; without a number, of all pantographs), with values as in TOML.
 
-    Returns
-    -------
-    tuple of InputChange
+    Returns:
         The changes in their order.
 
-    Raises
-    ------
-    InputError
-        A text is no assignment, a key does not exist, or its value cannot be changed.
+    Raises:
+        InputError: A text is no assignment, a key does not exist, or its value cannot be changed.
     """
     return tuple(map(_parse_change, texts))
 
@@ -106,24 +90,13 @@ def parse_changes(texts: Sequence[str]) -> tuple[InputChange, ...]:
 def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChange:
     """Build the change of one key.
 
-    Parameters
-    ----------
-    key : str
-        Dotted key as in `parse_changes`.
-    value : object
-        New value in the types of TOML; a number for a key that holds a list stands for a list of one item.
-    origin : str
-        File or option that states the change, for messages.
+    Args:
+        key: Dotted key as in `parse_changes`.
+        value: New value in the types of TOML; a number for a key that holds a list stands for a list of one item.
+        origin: File or option that states the change, for messages.
 
-    Returns
-    -------
-    InputChange
-        The change.
-
-    Raises
-    ------
-    InputError
-        The key does not exist, or its value cannot be changed.
+    Raises:
+        InputError: The key does not exist, or its value cannot be changed.
     """
     parts = parse_key(key)
     if parts is None:
@@ -165,10 +138,8 @@ def _locate(key: str, parts: KeyPath, value: object, origin: str) -> InputChange
 def parse_value(text: str, where: str) -> object:
     """Parse a value of TOML; a plain word is text, because a shell removes quotes.
 
-    Raises
-    ------
-    InputError
-        The text is no value; `where` is its place in the message.
+    Raises:
+        InputError: The text is no value; `where` is its place in the message.
     """
     try:
         return tomllib.loads(f"value = {text}")["value"]

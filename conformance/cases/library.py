@@ -26,24 +26,16 @@ def select_cases(
 ) -> list[Case]:
     """Read cases by id, pattern or path, in this order, each after the cases that it requires.
 
-    Parameters
-    ----------
-    patterns : sequence of str
-        Ids, patterns with `*` and `?`, and paths of case files.
-    changes : sequence of InputChange
-        Changes of the selected cases; those of the line apply to the required cases, too.
-    catalogue : Catalogue
-        Cases that have an id.
+    Args:
+        patterns: Ids, patterns with `*` and `?`, and paths of case files.
+        changes: Changes of the selected cases; those of the line apply to the required cases, too.
+        catalogue: Cases that have an id.
 
-    Returns
-    -------
-    list of Case
+    Returns:
         Selected cases, without repetition.
 
-    Raises
-    ------
-    InputError
-        A pattern matches no case, or a file is invalid.
+    Raises:
+        InputError: A pattern matches no case, or a file is invalid.
     """
     named = {entry: load_entry(entry, changes) for entry in find_entries(patterns, catalogue)}
     of_line = [change for change in changes if change.part == "line"]
@@ -93,24 +85,14 @@ def _add(
 def load_case(path: Path, changes: Sequence[InputChange] = (), origin: CaseOrigin | None = None) -> Case:
     """Read a case file with its line and pantographs, and check that they agree.
 
-    Parameters
-    ----------
-    path : Path
-        Case file.
-    changes : sequence of InputChange
-        Changes of the case, its line and its pantographs. A changed case with the id of a library case has no limits.
-    origin : CaseOrigin or None
-        Source of a case from outside the library.
+    Args:
+        path: Case file.
+        changes: Changes of the case, its line and its pantographs. A changed case with the id of a library case has no
+            limits.
+        origin: Source of a case from outside the library.
 
-    Returns
-    -------
-    Case
-        The case.
-
-    Raises
-    ------
-    InputError
-        A file cannot be read or is invalid, or the files do not agree. The error lists all problems.
+    Raises:
+        InputError: A file cannot be read or is invalid, or the files do not agree. The error lists all problems.
     """
     tree = read_toml(path, "case")
     if (kind := recognise_named_file(tree.keys())) is not None:
@@ -140,22 +122,15 @@ def read_limits(path: Path) -> tuple[LimitOverride, ...]:
 def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:
     """Add the limits of a user to cases; a limit replaces that of the case with the same target.
 
-    Parameters
-    ----------
-    cases : sequence of Case
-        Cases of the run.
-    limits : sequence of LimitOverride
-        Limits of the user.
+    Args:
+        cases: Cases of the run.
+        limits: Limits of the user.
 
-    Returns
-    -------
-    list of Case
+    Returns:
         Cases with these limits.
 
-    Raises
-    ------
-    InputError
-        A limit matches none of the cases, or none of the matching cases has its pantograph.
+    Raises:
+        InputError: A limit matches none of the cases, or none of the matching cases has its pantograph.
     """
     added: dict[str, list[Limit]] = {case.id: [] for case in cases}
     for i, limit in enumerate(limits, 1):

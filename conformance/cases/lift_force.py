@@ -9,18 +9,12 @@ from pantocheck.conformance.cases.pantograph_file import PantographFile
 
 @dataclass(frozen=True)
 class AppliedForces:
-    """Given forces on a pantograph; its mean contact force is a result.
-
-    Parameters
-    ----------
-    static_force : float
-        Force at the point of the uplift force [N].
-    aerodynamic_force : float
-        Mean aerodynamic force at a point of its own [N]; 0 if the static force includes it.
-    """
+    """Given forces on a pantograph; its mean contact force is a result."""
 
     static_force: float
+    """Force at the point of the uplift force [N]."""
     aerodynamic_force: float = 0.0
+    """Mean aerodynamic force at a point of its own [N]; 0 if the static force includes it."""
 
     @property
     def uplift_force(self) -> float:
@@ -40,18 +34,12 @@ class AppliedForces:
 
 @dataclass(frozen=True)
 class TunedForce:
-    """Mean contact force to which the uplift force is tuned.
-
-    Parameters
-    ----------
-    target_mean_force : float
-        Mean contact force over the analysis section [N].
-    stated_uplift_force : float, optional
-        Start value of the tuning [N]; None: not stated.
-    """
+    """Mean contact force to which the uplift force is tuned."""
 
     target_mean_force: float
+    """Mean contact force over the analysis section [N]."""
     stated_uplift_force: float | None = None
+    """Start value of the tuning [N]; None: not stated."""
 
     @property
     def aerodynamic_force(self) -> float:
@@ -71,24 +59,16 @@ LiftForce = AppliedForces | TunedForce
 def resolve_lift_force(use: PantographUse | PantographByLaw, file: PantographFile, speed_km_h: float) -> LiftForce:
     """Lift force of a pantograph, stated in the case or from the force law of the pantograph.
 
-    Parameters
-    ----------
-    use : PantographUse or PantographByLaw
-        Pantograph of the case.
-    file : PantographFile
-        Content of its file; a rule of a profile is replaced by its formula.
-    speed_km_h : float
-        Speed of the case [km/h].
+    Args:
+        use: Pantograph of the case.
+        file: Content of its file; a rule of a profile is replaced by its formula.
+        speed_km_h: Speed of the case [km/h].
 
-    Returns
-    -------
-    LiftForce
+    Returns:
         Applied forces, or a mean contact force.
 
-    Raises
-    ------
-    LawInvalid
-        The pantograph has no force law, or its law gives no force at this speed.
+    Raises:
+        LawInvalid: The pantograph has no force law, or its law gives no force at this speed.
     """
     if isinstance(use, PantographUse):
         if use.target_mean_force_N is not None:

@@ -45,30 +45,22 @@ class Limit(InputTable):
     """Bounds of a quantity; a quantity of the line or of a static check has no pantograph."""
 
     quantity: QuantityName
-    pantograph: Annotated[
-        int | None,
-        Field(
-            ge=1,
-            le=20,
-            description="number of the pantograph in running order; default: every pantograph; none for a quantity of "
-            "the line",
-        ),
-    ] = None
-    item: Annotated[
-        int | None,
-        Field(ge=1, description="number of the value in a quantity with several values (droppers, modes), from 1"),
-    ] = None
-    lower: Annotated[FiniteBound | None, Field(description="lower bound, in the unit of the quantity")] = None
-    upper: Annotated[FiniteBound | None, Field(description="upper bound, in the unit of the quantity")] = None
-    trust: Annotated[Trust, Field(description="trust in the limit")] = NO_TRUST
-    source: Annotated[str | list[str], Field(description="source of the limit: keys of sources.toml, or free text")] = (
-        NO_SOURCE
-    )
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
-    finding: Annotated[
-        PublishedFinding | None,
-        Field(description="finding of a publication that this limit grades", exclude_if=is_absent),
-    ] = None
+    pantograph: Annotated[int | None, Field(ge=1, le=20)] = None
+    """Number of the pantograph in running order; default: every pantograph; none for a quantity of the line."""
+    item: Annotated[int | None, Field(ge=1)] = None
+    """Number of the value in a quantity with several values (droppers, modes), from 1."""
+    lower: FiniteBound | None = None
+    """Lower bound, in the unit of the quantity."""
+    upper: FiniteBound | None = None
+    """Upper bound, in the unit of the quantity."""
+    trust: Trust = NO_TRUST
+    """Trust in the limit."""
+    source: str | list[str] = NO_SOURCE
+    """Source of the limit: keys of sources.toml, or free text."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
+    finding: Annotated[PublishedFinding | None, Field(exclude_if=is_absent)] = None
+    """Finding of a publication that this limit grades."""
 
     @cross_check
     def _consistent(self) -> Problems:
@@ -111,16 +103,11 @@ def spread_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimi
     A limit that names its pantograph takes precedence. Without copies, a limit would judge the first pantograph alone,
     although the rear one usually has the larger standard deviation.
 
-    Parameters
-    ----------
-    limits : iterable of Limit
-        Limits of a case, a record or a user.
-    pantographs : int
-        Number of pantographs.
+    Args:
+        limits: Limits of a case, a record or a user.
+        pantographs: Number of pantographs.
 
-    Returns
-    -------
-    tuple of Limit
+    Returns:
         Limits; with two or more pantographs, each limit of a pantograph names it.
     """
     limits = tuple(limits)
@@ -140,7 +127,8 @@ def spread_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimi
 class LimitOverride(Limit):
     """Limit of a user for selected cases."""
 
-    case: Annotated[str, Field(description="id of the case, or pattern with * and ?", max_length=200)] = "*"
+    case: Annotated[str, Field(max_length=200)] = "*"
+    """Id of the case, or pattern with * and ?"""
 
 
 class LimitsFile(InputTable):

@@ -14,14 +14,16 @@ from pantocheck.conformance.line.elements.element_registry import LineElements
 class LineHead(InputTable):
     """First keys of a line file."""
 
-    title: Annotated[str, Field(description="title in reports", max_length=200)]
+    title: Annotated[str, Field(max_length=200)]
+    """Title in reports."""
     geometry: GeometryTable
 
 
 class LineFile(LineElements, LineHead):
     """Content of a line file."""
 
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000), NO_FEATURE] = None
+    note: Annotated[str | None, Field(max_length=4000), NO_FEATURE] = None
+    """Remark for the reader."""
 
     @property
     def layout(self) -> LineLayout:

@@ -22,28 +22,19 @@ from pantocheck.conformance.line.support_table import SupportTable
 
 @dataclass(frozen=True)
 class SpanLimit:
-    """Point where the wires are held: a support, or an end of the line.
-
-    Parameters
-    ----------
-    number : int
-        Number from 0, the start of the line.
-    position : float
-        Position along the track [m].
-    contact_wire_height : float
-        Height of the contact wire above the datum [m].
-    encumbrance : float
-        Vertical distance between messenger wire and contact wire [m].
-    contact_wire_stagger, messenger_wire_stagger : float
-        Lateral positions of the wires, signed [m].
-    """
+    """Point where the wires are held: a support, or an end of the line."""
 
     number: int
+    """Number from 0, the start of the line."""
     position: float
+    """Position along the track [m]."""
     contact_wire_height: float
+    """Height of the contact wire above the datum [m]."""
     encumbrance: float
+    """Vertical distance between messenger wire and contact wire [m]."""
     contact_wire_stagger: float
     messenger_wire_stagger: float
+    """Lateral positions of the wires, signed [m]."""
 
     @property
     def messenger_wire_height(self) -> float:
@@ -53,63 +44,38 @@ class SpanLimit:
 
 @dataclass(frozen=True)
 class SupportLayout:
-    """Support with its arm and its messenger support.
-
-    Parameters
-    ----------
-    limit : SpanLimit
-        Position, heights and staggers.
-    steady_arm : SteadyArmTable
-        Steady arm.
-    messenger_support : MessengerSupportTable
-        Messenger support.
-    """
+    """Support with its arm and its messenger support."""
 
     limit: SpanLimit
+    """Position, heights and staggers."""
     steady_arm: SteadyArmTable
     messenger_support: MessengerSupportTable
 
 
 @dataclass(frozen=True)
 class SpanLayout:
-    """Span with its droppers.
-
-    Parameters
-    ----------
-    start, end : SpanLimit
-        Support or end of the line at either side.
-    dropper_position : (n,) ndarray
-        Positions of the droppers along the track [m].
-    contact_wire_height : (n,) ndarray
-        Prescribed heights of the contact wire at the droppers [m].
-    """
+    """Span with its droppers."""
 
     start: SpanLimit
     end: SpanLimit
+    """Support or end of the line at either side."""
     dropper_position: RealArray
+    """Positions of the droppers along the track, (n,) [m]."""
     contact_wire_height: RealArray
+    """Prescribed heights of the contact wire at the droppers, (n,) [m]."""
 
 
 @dataclass(frozen=True)
 class LineLayout:
-    """Spans and supports in running order.
-
-    Parameters
-    ----------
-    limits : tuple of SpanLimit
-        Start of the line, supports, and end of the line.
-    spans : tuple of SpanLayout
-        Spans.
-    supports : tuple of SupportLayout
-        Supports between the ends of the line.
-    has_stagger : bool
-        Whether a wire of the whole line lies beside the centre line at a support.
-    """
+    """Spans and supports in running order."""
 
     limits: tuple[SpanLimit, ...]
+    """Start of the line, supports, and end of the line."""
     spans: tuple[SpanLayout, ...]
     supports: tuple[SupportLayout, ...]
+    """Supports between the ends of the line."""
     has_stagger: bool
+    """Whether a wire of the whole line lies beside the centre line at a support."""
 
     @property
     def supports_fixed_along_track(self) -> tuple[int, ...]:
@@ -138,14 +104,10 @@ def build_layout(
 ) -> LineLayout:
     """Build the layout of a line.
 
-    Parameters
-    ----------
-    geometry : Geometry
-        Spans, heights and staggers.
-    schedules : sequence of DropperSchedule
-        Dropper schedule of every span.
-    steady_arm, messenger_support : SteadyArmTable, MessengerSupportTable
-        Arm and messenger support of supports without their own values.
+    Args:
+        geometry: Spans, heights and staggers.
+        schedules: Dropper schedule of every span.
+        steady_arm, messenger_support: Arm and messenger support of supports without their own values.
     """
     own = geometry.own_supports
     limits = tuple(_build_limit(geometry, number, x, own) for number, x in enumerate(geometry.span_limits))

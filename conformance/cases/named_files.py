@@ -15,10 +15,8 @@ FORMATS: dict[str, type[BaseModel]] = {"line": LineFile, "pantograph": Pantograp
 def recognise_named_file(keys: Collection[str]) -> str | None:
     """Kind of a file that a case names, a key of `FORMATS`; None for a case and for unknown keys.
 
-    Parameters
-    ----------
-    keys : collection of str
-        Keys of the file. A case is recognised by `id` or `line`.
+    Args:
+        keys: Keys of the file. A case is recognised by `id` or `line`.
     """
     if {"id", "line"} & {*keys}:
         return None

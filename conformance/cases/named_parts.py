@@ -13,19 +13,13 @@ from pantocheck.conformance.input_files.toml_file import read_model
 def locate_part(name: str, folder: Path, where: str) -> Path:
     """Path of a named file: relative to a folder, or else to the library.
 
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    folder : Path
-        Folder of the file that contains the name.
-    where : str
-        Place of the name in messages.
+    Args:
+        name: Name of the file.
+        folder: Folder of the file that contains the name.
+        where: Place of the name in messages.
 
-    Raises
-    ------
-    InputError
-        There is no such file.
+    Raises:
+        InputError: There is no such file.
     """
     for place in (folder, library_folder()):
         if (place / name).is_file():

@@ -23,35 +23,31 @@ from pantocheck.conformance.input_files.sourced_table import (
 class ContactTable(SourcedTable):
     """Contact between head and contact wire: a spring that acts in compression only."""
 
-    stiffness_N_m: Annotated[Positive, Field(le=1e8, description="stiffness of the contact [N/m]")]
+    stiffness_N_m: Annotated[Positive, Field(le=1e8)]
+    """Stiffness of the contact [N/m]."""
 
 
 class ChainTable(SourcedTable):
     """Lumped masses, base to head; spring and damper i connect masses i - 1 and i, the first ones mass 1 and base."""
 
-    names: Annotated[
-        tuple[str, ...] | None,
-        Field(strict=False, description="names of the masses, base to head, e.g. frame and head"),
-        NO_FEATURE,
-    ] = None
-    masses_kg: Annotated[PositiveList, Field(max_length=20, description="lumped masses, base to head [kg]")]
-    stiffness_N_m: Annotated[NonNegativeList, Field(max_length=20, description="springs, base to head [N/m]")]
-    damping_N_s_m: Annotated[NonNegativeList, Field(max_length=20, description="dampers, base to head [N s/m]")]
+    names: Annotated[tuple[str, ...] | None, Field(strict=False), NO_FEATURE] = None
+    """Names of the masses, base to head, e.g. frame and head."""
+    masses_kg: Annotated[PositiveList, Field(max_length=20)]
+    """Lumped masses, base to head [kg]."""
+    stiffness_N_m: Annotated[NonNegativeList, Field(max_length=20)]
+    """Springs, base to head [N/m]."""
+    damping_N_s_m: Annotated[NonNegativeList, Field(max_length=20)]
+    """Dampers, base to head [N s/m]."""
 
-    uplift_force_on: Annotated[
-        int | str,
-        Field(description="mass on which the uplift force acts: number from the base, from 1, or name"),
-        Feature("chain"),
-    ] = 1
+    uplift_force_on: Annotated[int | str, Feature("chain")] = 1
+    """Mass on which the uplift force acts: number from the base, from 1, or name."""
     base_spring_unstretched: Annotated[
-        Literal["working_height", "wire_height"],
-        Field(
-            description="height from which the displacements of all masses count: with every mass at this height, all "
-            "springs are without force; working_height: static height of the head under the uplift force; "
-            "wire_height: nominal height of the contact wire"
-        ),
-        Feature("base_spring_at_wire_height"),
+        Literal["working_height", "wire_height"], Feature("base_spring_at_wire_height")
     ] = "working_height"
+    """Height from which the displacements of all masses count: with every mass at this height, all springs are
+    without force; working_height: static height of the head under the uplift force; wire_height: nominal height of
+    the contact wire.
+    """
 
     @cross_check
     def _consistent(self) -> Problems:
@@ -85,23 +81,19 @@ Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max
 class MatricesTable(SourcedTable):
     """Matrices of a linear pantograph with fixed base; springs are without force at the static working height."""
 
-    mass_kg: Annotated[Matrix, Field(description="mass matrix, row by row [kg]")]
-    damping_N_s_m: Annotated[Matrix, Field(description="damping matrix, row by row [N s/m]")]
-    stiffness_N_m: Annotated[Matrix, Field(description="stiffness matrix, row by row [N/m]")]
-    head: Annotated[
-        NumberList,
-        Field(max_length=50, description="displacement of the head per unit of each degree of freedom, e.g. [0, 0, 1]"),
-    ]
-    uplift_force_on: Annotated[
-        NumberList | None,
-        Field(
-            max_length=50,
-            description="displacement of the point of the uplift force per unit of each degree of freedom, e.g. "
-            "[1, 0, 0] for the lowest mass of a chain; default: the head, so that the static contact force at the "
-            "working height equals the uplift force",
-        ),
-        Feature("matrices"),
-    ] = None
+    mass_kg: Matrix
+    """Mass matrix, row by row [kg]."""
+    damping_N_s_m: Matrix
+    """Damping matrix, row by row [N s/m]."""
+    stiffness_N_m: Matrix
+    """Stiffness matrix, row by row [N/m]."""
+    head: Annotated[NumberList, Field(max_length=50)]
+    """Displacement of the head per unit of each degree of freedom, e.g. [0, 0, 1]."""
+    uplift_force_on: Annotated[NumberList | None, Field(max_length=50), Feature("matrices")] = None
+    """Displacement of the point of the uplift force per unit of each degree of freedom, e.g. [1, 0, 0] for the
+    lowest mass of a chain; default: the head, so that the static contact force at the working height equals the
+    uplift force.
+    """
 
     @cross_check
     def _possible(self) -> Problems:
@@ -132,23 +124,14 @@ class MatricesTable(SourcedTable):
 class ModesTable(SourcedTable):
     """Mass-normalised modes of a linear pantograph with fixed base, free head; working height as for matrices."""
 
-    frequency_Hz: Annotated[
-        NonNegativeList,
-        Field(max_length=200, description="natural frequency of each mode, 0 for a rigid-body mode [Hz]"),
-    ]
-    damping_ratio: Annotated[NonNegativeList, Field(max_length=200, description="damping ratio of each mode [-]")]
-    head_shape: Annotated[
-        NumberList, Field(max_length=200, description="displacement of the head in each mode [kg^-1/2]")
-    ]
-    uplift_force_on: Annotated[
-        NumberList | None,
-        Field(
-            max_length=200,
-            description="displacement of the point of the uplift force in each mode [kg^-1/2]; default: the head, as "
-            "for matrices",
-        ),
-        Feature("modes"),
-    ] = None
+    frequency_Hz: Annotated[NonNegativeList, Field(max_length=200)]
+    """Natural frequency of each mode, 0 for a rigid-body mode [Hz]."""
+    damping_ratio: Annotated[NonNegativeList, Field(max_length=200)]
+    """Damping ratio of each mode [-]."""
+    head_shape: Annotated[NumberList, Field(max_length=200)]
+    """Displacement of the head in each mode [kg^-1/2]."""
+    uplift_force_on: Annotated[NumberList | None, Field(max_length=200), Feature("modes")] = None
+    """Displacement of the point of the uplift force in each mode [kg^-1/2]; default: the head, as for matrices."""
 
     @cross_check
     def _same_length(self) -> Problems:
@@ -162,7 +145,8 @@ class ModesTable(SourcedTable):
 class PantographFile(InputTable):
     """Content of a pantograph file: contact, one of the tables chain, matrices and modes, and its force law."""
 
-    title: Annotated[str, Field(description="title in reports", max_length=200)]
+    title: Annotated[str, Field(max_length=200)]
+    """Title in reports."""
     chain: Annotated[ChainTable | None, Feature("chain")] = None
     matrices: Annotated[MatricesTable | None, Feature("matrices")] = None
     modes: Annotated[ModesTable | None, Feature("modes")] = None
@@ -176,7 +160,8 @@ class PantographFile(InputTable):
         ),
         NO_FEATURE,  # a program receives the forces of the law at the speed of the case
     ] = None
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
 
     @cross_check
     def _has_one_model(self) -> Problems:

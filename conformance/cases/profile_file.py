@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
@@ -22,6 +21,7 @@ from pantocheck.conformance.input_files.sourced_table import (
 from pantocheck.conformance.input_files.suggestions import suggest_names
 from pantocheck.conformance.input_files.toml_file import read_model
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.logger.event_tables import EventKind
 
@@ -29,13 +29,12 @@ from pantocheck.conformance.records.logger.event_tables import EventKind
 class SpeedFormula(InputTable):
     """Bound as a function of the speed v [km/h]: per_speed_squared v^2 + constant."""
 
-    per_speed_squared: Annotated[
-        float, Field(ge=-1e6, le=1e6, description="factor of v^2, in the unit of the quantity per (km/h)^2")
-    ]
-    constant: Annotated[float, Field(ge=-1e9, le=1e9, description="bound at speed 0, in the unit of the quantity")]
-    above_km_h: Annotated[
-        float | None, Field(ge=0, description="speed above which the formula is valid [km/h]; default: every speed")
-    ] = None
+    per_speed_squared: Annotated[float, Field(ge=-1e6, le=1e6)]
+    """Factor of v^2, in the unit of the quantity per (km/h)^2."""
+    constant: Annotated[float, Field(ge=-1e9, le=1e9)]
+    """Bound at speed 0, in the unit of the quantity."""
+    above_km_h: Annotated[float | None, Field(ge=0)] = None
+    """Speed above which the formula is valid [km/h]; default: every speed."""
 
     def at(self, speed_km_h: float) -> float:
         """Bound at a speed [km/h]."""
@@ -45,8 +44,10 @@ class SpeedFormula(InputTable):
 class NamedBound(InputTable):
     """Bound from the record: the value of a key of its `line` table, times a factor."""
 
-    given: Annotated[Literal["uplift_space_mm"], Field(description="key of the table [line] of the record")]
-    factor: Annotated[float, Field(gt=0, le=100, description="factor on the value of this key [-]")] = 1.0
+    given: Literal["uplift_space_mm"]
+    """Key of the table [line] of the record."""
+    factor: Annotated[float, Field(gt=0, le=100)] = 1.0
+    """Factor on the value of this key [-]."""
 
 
 def _kind_of_bound(bound: object) -> str:
@@ -71,19 +72,20 @@ class Rule(InputTable):
     """Bounds of one quantity for every pantograph: stated bounds, or a tolerance on the measured value."""
 
     quantity: QuantityName
-    lower: Annotated[RuleBound | None, Field(description="lower bound: number, formula or key of the record")] = None
-    upper: Annotated[RuleBound | None, Field(description="upper bound: number, formula or key of the record")] = None
-    tolerance: Annotated[
-        Tolerance | None, Field(description="largest difference from the measured value, in the unit of the quantity")
-    ] = None
-    tolerance_pct: Annotated[
-        Tolerance | None, Field(description="largest difference from the measured value, relative to it [%]")
-    ] = None
-    trust: Annotated[Trust, Field(description="trust in the rule")] = NO_TRUST
-    source: Annotated[str | list[str], Field(description="source of the rule: keys of sources.toml, or free text")] = (
-        NO_SOURCE
-    )
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
+    lower: RuleBound | None = None
+    """Lower bound: number, formula or key of the record."""
+    upper: RuleBound | None = None
+    """Upper bound: number, formula or key of the record."""
+    tolerance: Tolerance | None = None
+    """Largest difference from the measured value, in the unit of the quantity."""
+    tolerance_pct: Tolerance | None = None
+    """Largest difference from the measured value, relative to it [%]."""
+    trust: Trust = NO_TRUST
+    """Trust in the rule."""
+    source: str | list[str] = NO_SOURCE
+    """Source of the rule: keys of sources.toml, or free text."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
 
     @cross_check
     def _consistent(self) -> Problems:
@@ -109,49 +111,33 @@ class Rule(InputTable):
 class ExclusionRule(InputTable):
     """Stretches of the line that a measured record may leave out of the statistics of the contact force."""
 
-    kinds: Annotated[
-        tuple[EventKind, ...], Field(strict=False, min_length=1, description="kinds of events that may be left out")
-    ]
-    largest_share_pct: Annotated[
-        float, Field(gt=0, le=50, description="largest share of the analysis section that may be left out [%]")
-    ]
+    kinds: Annotated[tuple[EventKind, ...], Field(strict=False, min_length=1)]
+    """Kinds of events that may be left out."""
+    largest_share_pct: Annotated[float, Field(gt=0, le=50)]
+    """Largest share of the analysis section that may be left out [%]."""
 
 
 class Profile(InputTable):
     """Rules for the assessment of a record."""
 
-    schema_: Annotated[Literal["pantocheck.profile/1"], Field(alias="schema", description="version of the format")]
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100, description="name of the profile")]
-    title: Annotated[str, Field(max_length=200, description="title in reports")]
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
-    speed_tolerance_pct: Annotated[
-        float,
-        Field(
-            gt=0,
-            le=50,
-            description="largest deviation from the nominal speed inside the analysis section [%]",
-        ),
-    ] = 5.0
-    verification: Annotated[
-        Literal["shown", "demanded"],
-        Field(
-            description="use of the state of the record (verified or unverified); demanded: an unverified record does "
-            "not pass; shown: the report shows the state"
-        ),
-    ] = "shown"
-    shortest_contact_loss_s: Annotated[
-        float | None,
-        Field(
-            exclude_if=is_absent,
-            gt=0,
-            le=10,
-            description="shortest contact loss that counts for long_contact_loss_pct [s]",
-        ),
-    ] = None
-    exclusion: Annotated[
-        ExclusionRule | None,
-        Field(exclude_if=is_absent, description="stretches that may be left out; default: none"),
-    ] = None
+    schema_: Annotated[Literal["pantocheck.profile/1"], Field(alias="schema")]
+    """Version of the format."""
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100)]
+    """Name of the profile."""
+    title: Annotated[str, Field(max_length=200)]
+    """Title in reports."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
+    speed_tolerance_pct: Annotated[float, Field(gt=0, le=50)] = 5.0
+    """Largest deviation from the nominal speed inside the analysis section [%]."""
+    verification: Literal["shown", "demanded"] = "shown"
+    """Use of the state of the record (verified or unverified); demanded: an unverified record does not pass; shown:
+    the report shows the state.
+    """
+    shortest_contact_loss_s: Annotated[float | None, Field(exclude_if=is_absent, gt=0, le=10)] = None
+    """Shortest contact loss that counts for long_contact_loss_pct [s]."""
+    exclusion: Annotated[ExclusionRule | None, Field(exclude_if=is_absent)] = None
+    """Stretches that may be left out; default: none."""
     filter: Filter = Filter()
     rule: Annotated[tuple[Rule, ...], Field(strict=False, min_length=1, max_length=1000)]
 
@@ -170,26 +156,18 @@ def resolve_bounds(
 ) -> tuple[float | None, float | None]:
     """Lower and upper bound of a rule for a record.
 
-    Parameters
-    ----------
-    rule : Rule
-        Rule of a profile.
-    speed_km_h : float
-        Speed of the record [km/h].
-    line_values : mapping of str to float or None
-        Line table of the record, by key.
-    measured : float or None
-        Value of the measured record, for a rule with a tolerance.
+    Args:
+        rule: Rule of a profile.
+        speed_km_h: Speed of the record [km/h].
+        line_values: Line table of the record, by key.
+        measured: Value of the measured record, for a rule with a tolerance.
 
-    Returns
-    -------
-    tuple of (float or None)
+    Returns:
         Lower and upper bound, in the unit of the quantity.
 
-    Raises
-    ------
-    BoundMissing
-        The formula is not valid at the speed, a value is missing, or the lower bound is above the upper bound.
+    Raises:
+        BoundMissing: The formula is not valid at the speed, a value is missing, or the lower bound is above the upper
+            bound.
     """
     if rule.compares:
         if measured is None:
@@ -224,10 +202,8 @@ def list_profiles() -> dict[str, Path]:
 def load_profile(name: str) -> Profile:
     """Read a profile of the library by name, or a profile file by its path, which ends in .toml.
 
-    Raises
-    ------
-    InputError
-        The library has no profile of this name, or the file is invalid.
+    Raises:
+        InputError: The library has no profile of this name, or the file is invalid.
     """
     if name.endswith(".toml"):
         return read_model(Path(name), Profile, "profile")

@@ -28,18 +28,12 @@ SECTION_SHIFTS = (-0.75, -0.5, -0.25, 0.25, 0.5, 0.75)
 
 @dataclass(frozen=True)
 class RunStart:
-    """Start of a run.
-
-    Parameters
-    ----------
-    case : Case
-        The case with its start position.
-    ramp_s : float
-        Time over which the contact force rises from zero [s]; zero: the static force acts from the start.
-    """
+    """Start of a run."""
 
     case: Case
+    """The case with its start position."""
     ramp_s: float = 0.0
+    """Time over which the contact force rises from zero [s]; zero: the static force acts from the start."""
 
 
 def run_in_spans(case: Case) -> float:

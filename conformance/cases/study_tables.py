@@ -21,18 +21,24 @@ Interval = Annotated[tuple[float, float], Field(strict=False)]
 class Printed(InputTable):
     """Printed values of a pantograph under a damping model, for comparison with the computed values."""
 
-    model: Annotated[str, Field(max_length=100, description="name of the damping model")]
-    pantograph: Annotated[int, Field(ge=1, le=20, description="number in running order")]
-    values: Annotated[dict[str, float], Field(min_length=1, max_length=50, description="values by name of quantity")]
+    model: Annotated[str, Field(max_length=100)]
+    """Name of the damping model."""
+    pantograph: Annotated[int, Field(ge=1, le=20)]
+    """Number in running order."""
+    values: Annotated[dict[str, float], Field(min_length=1, max_length=50)]
+    """Values by name of quantity."""
 
 
 class DampingChange(SourcedTable):
     """Study of a changed damping: the passage runs with an earlier damping and with the damping of the case."""
 
     kind: Literal["damping-change"]
-    before: Annotated[DampingModels, Field(min_length=1, max_length=1, description="damping file of the earlier run")]
-    after: Annotated[str, Field(max_length=100, description="name of the damping of the case")]
-    span: Annotated[int, Field(ge=1, description="number of the span for the figure of the force, from 1")]
+    before: Annotated[DampingModels, Field(min_length=1, max_length=1)]
+    """Damping file of the earlier run."""
+    after: Annotated[str, Field(max_length=100)]
+    """Name of the damping of the case."""
+    span: Annotated[int, Field(ge=1)]
+    """Number of the span for the figure of the force, from 1."""
     printed: Annotated[tuple[Printed, ...], Field(strict=False, max_length=40)] = ()
 
 
@@ -40,22 +46,16 @@ class ReleaseVelocity(SourcedTable):
     """Study of a release: velocity of a sensor in several time windows, under several damping models."""
 
     kind: Literal["release-velocity"]
-    models: Annotated[
-        DampingModels,
-        Field(
-            min_length=4,
-            description="damping files by name: reference model, fitted Rayleigh damping, the same with modal damping, "
-            "and any further models, which are drawn",
-        ),
-    ]
-    test: Annotated[str, Field(max_length=100, description="name of the model whose drop takes the place of a record")]
-    windows_s: Annotated[
-        tuple[Interval, ...],
-        Field(
-            strict=False, min_length=1, max_length=6, description="start and end of each window, after the release [s]"
-        ),
-    ]
-    sensor: Annotated[int, Field(ge=1, description="number of the sensor, from 1")] = 1
+    models: Annotated[DampingModels, Field(min_length=4)]
+    """Damping files by name: reference model, fitted Rayleigh damping, the same with modal damping, and any further
+    models, which are drawn.
+    """
+    test: Annotated[str, Field(max_length=100)]
+    """Name of the model whose drop takes the place of a record."""
+    windows_s: Annotated[tuple[Interval, ...], Field(strict=False, min_length=1, max_length=6)]
+    """Start and end of each window, after the release [s]."""
+    sensor: Annotated[int, Field(ge=1)] = 1
+    """Number of the sensor, from 1."""
 
     @cross_check
     def _ordered(self) -> Problems:
@@ -70,7 +70,8 @@ class DropperDamping(SourcedTable):
     """Study of the dropper damping: the passage runs once for each stiffness coefficient of the droppers."""
 
     kind: Literal["dropper-damping"]
-    coefficients_s: Annotated[PositiveList, Field(min_length=4, description="stiffness coefficients, ascending [s]")]
+    coefficients_s: Annotated[PositiveList, Field(min_length=4)]
+    """Stiffness coefficients, ascending [s]."""
     x_m: Place
 
     @cross_check
@@ -85,10 +86,8 @@ class DropperOscillation(SourcedTable):
     """Study of the dropper damping after a release: the drop runs once for each stiffness coefficient."""
 
     kind: Literal["dropper-oscillation"]
-    coefficients_s: Annotated[
-        tuple[NonNegative, ...],
-        Field(strict=False, min_length=3, max_length=20, description="stiffness coefficients from 0, ascending [s]"),
-    ]
+    coefficients_s: Annotated[tuple[NonNegative, ...], Field(strict=False, min_length=3, max_length=20)]
+    """Stiffness coefficients from 0, ascending [s]."""
 
     @cross_check
     def _ascending_from_zero(self) -> Problems:
@@ -102,11 +101,10 @@ class SteadyArmDamper(SourcedTable):
     """Study of dampers at the steady arms: damping is identified with and without them, by frequency band."""
 
     kind: Literal["steady-arm-damper"]
-    damper_N_s_m: Annotated[Positive, Field(le=1e6, description="vertical damper between wire and ground [N s/m]")]
-    bands_Hz: Annotated[
-        tuple[Interval, ...],
-        Field(strict=False, min_length=1, max_length=40, description="lower and upper edge of each band [Hz]"),
-    ]
+    damper_N_s_m: Annotated[Positive, Field(le=1e6)]
+    """Vertical damper between wire and ground [N s/m]."""
+    bands_Hz: Annotated[tuple[Interval, ...], Field(strict=False, min_length=1, max_length=40)]
+    """Lower and upper edge of each band [Hz]."""
 
 
 class DampingSensitivity(SourcedTable):

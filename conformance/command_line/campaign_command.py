@@ -209,5 +209,5 @@ def _write_results(results: CampaignResults, store: CampaignStore, folder: Path)
     if (parquet := write_parquet(files[0])) is not None:
         files.append(parquet)
     write_model(files[1], results)
-    report = build_campaign_report(results.model_dump(mode="json", by_alias=True))
+    report = build_campaign_report(results)
     return [*files, *write_document(report, folder / "campaign")]

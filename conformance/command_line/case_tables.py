@@ -23,10 +23,8 @@ OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "pantograph
 def build_case_tables(case: Case) -> list[RenderableType]:
     """Header, inputs, limits, notes and sources of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Any case, with or without a speed.
+    Args:
+        case: Any case, with or without a speed.
     """
     mesh = case.file.discretisation
     parts: list[RenderableType] = [Text(f"{case.id}  ", "bold") + escape_text(case.file.title)]

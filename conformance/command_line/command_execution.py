@@ -21,16 +21,11 @@ from pantocheck.conformance.command_line.output_settings import (
 def build_executable(name: str, command: Callable[..., CommandOutput]) -> Callable[..., None]:
     """Function for typer that runs a command, prints its output and ends with its exit code.
 
-    Parameters
-    ----------
-    name : str
-        Name of the command.
-    command : callable
-        Function of the command.
+    Args:
+        name: Name of the command.
+        command: Function of the command.
 
-    Returns
-    -------
-    callable
+    Returns:
         Function with the parameters of the command and the options of the output, which count before the command, too.
     """
 

@@ -25,44 +25,30 @@ class Unwrapped(Text):
 
 @dataclass(frozen=True)
 class CommandOutput:
-    """Output of a command.
-
-    Parameters
-    ----------
-    conclusion : Text
-        Verdict or result in one line, which `-q` prints alone; empty: the details are the result.
-    data : object
-        Result for a program: a pydantic model, or plain lists, dictionaries, text and numbers.
-    details : sequence of RenderableType
-        Text and tables below the conclusion.
-    further : sequence of RenderableType
-        Text and tables that only `-v` prints.
-    files : sequence of Path
-        Written files.
-    exit_code : int
-        Exit code of the command.
-    remarks : sequence of str
-        Remarks on the files, which go to standard error.
-    """
+    """Output of a command."""
 
     conclusion: Text
+    """Verdict or result in one line, which `-q` prints alone; empty: the details are the result."""
     data: object
+    """Result for a program: a pydantic model, or plain lists, dictionaries, text and numbers."""
     details: Sequence[RenderableType] = ()
+    """Text and tables below the conclusion."""
     further: Sequence[RenderableType] = ()
+    """Text and tables that only `-v` prints."""
     files: Sequence[Path] = field(default=())
+    """Written files."""
     exit_code: int = 0
+    """Exit code of the command."""
     remarks: Sequence[str] = ()
+    """Remarks on the files, which go to standard error."""
 
 
 def print_output(output: CommandOutput, command: str) -> None:
     """Print the output of a command in the form and amount of the current settings.
 
-    Parameters
-    ----------
-    output : CommandOutput
-        Output.
-    command : str
-        Name of the command.
+    Args:
+        output: Output.
+        command: Name of the command.
     """
     settings = current_settings()
     for remark in () if settings.detail == "quiet" else output.remarks:
@@ -85,16 +71,11 @@ def print_output(output: CommandOutput, command: str) -> None:
 def print_failure(command: str, message: str, error: Exception | None, exit_code: int) -> None:
     """Print a failure as JSON, if the current settings ask for it; the message itself goes to standard error.
 
-    Parameters
-    ----------
-    command : str
-        Name of the command.
-    message : str
-        Text of the failure.
-    error : Exception or None
-        Failure; the problems of an `InputError` are listed.
-    exit_code : int
-        Exit code of the command.
+    Args:
+        command: Name of the command.
+        message: Text of the failure.
+        error: Failure; the problems of an `InputError` are listed.
+        exit_code: Exit code of the command.
     """
     if current_settings().form == "json":
         problems = list_problems(error) if isinstance(error, InputError) else []

@@ -18,10 +18,8 @@ MOST_ENTRIES = 12
 def build_derived_tables(case: Case) -> list[RenderableType]:
     """Derived values of a case; of a list by span, those of the middle span.
 
-    Parameters
-    ----------
-    case : Case
-        Any case, with or without a speed.
+    Args:
+        case: Any case, with or without a speed.
     """
     derived, middle = build_derived(case), case.line.middle_span
     parts: list[tuple[str, BaseModel | None]] = [("line", derived.line), ("train", derived.train)]

@@ -108,10 +108,8 @@ def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
 def name_damping_files(paths: Sequence[Path]) -> list[str]:
     """Stems of the files; with the name of the folder in front where several files have the same stem.
 
-    Raises
-    ------
-    InputError
-        Two files have the same stem in folders of the same name.
+    Raises:
+        InputError: Two files have the same stem in folders of the same name.
     """
     stems = [path.stem for path in paths]
     names = [

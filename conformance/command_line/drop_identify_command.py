@@ -75,7 +75,6 @@ def drop_identify_command(
         identifications = identify_modes(*inputs) if population is None else population.joint
         progress.begin_task("report")
         lines = tuple(analyse_identification(identification) for identification in identifications)
-        data = [line.model_dump(mode="json", by_alias=True) for line in lines]
         modes = tuple(mode for line in lines for mode in line.modes)
         write_model(out / "modes.json", ModesFile(modes))
         for path, write_modes in exports:
@@ -87,7 +86,7 @@ def drop_identify_command(
         IdentificationFile(lines=lines),
         [
             *_list_groups(lines),
-            *(indent_text(text, "warning: ") for text in collect_warnings(data)),
+            *(indent_text(text, "warning: ") for text in collect_warnings(lines)),
             *map(escape_text, population_lines),
         ],
         files=[out / "modes.json", *files, *(path for path, _ in exports), *population_files],

@@ -21,21 +21,14 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 @dataclass(frozen=True)
 class DeclaredPackage:
-    """A declared dependency.
-
-    Parameters
-    ----------
-    name : str
-        Name of the distribution.
-    lowest : str
-        Lowest declared version.
-    extra : str
-        Name of the extra; empty for a dependency of every installation.
-    """
+    """A declared dependency."""
 
     name: str
+    """Name of the distribution."""
     lowest: str
+    """Lowest declared version."""
     extra: str
+    """Name of the extra; empty for a dependency of every installation."""
 
     @property
     def installed(self) -> str | None:

@@ -32,16 +32,11 @@ INDENT = 2
 class FittedTable:
     """Rows under headings, for any width.
 
-    Parameters
-    ----------
-    headings : sequence of str
-        One per column.
-    title : str or None
-        Text above the table.
-    unbroken : collection of str
-        Headings of columns that are never wrapped.
-    right : collection of str
-        Headings of columns that are aligned to the right.
+    Args:
+        headings: One per column.
+        title: Text above the table.
+        unbroken: Headings of columns that are never wrapped.
+        right: Headings of columns that are aligned to the right.
     """
 
     def __init__(

@@ -30,16 +30,11 @@ def guard_command(
 ) -> Callable[P, R]:
     """Wrap a command so that failures end with one message: no traceback reaches the user.
 
-    Parameters
-    ----------
-    command : callable
-        Function of a command.
-    report : callable
-        Also receives the message, the failure and the exit code.
+    Args:
+        command: Function of a command.
+        report: Also receives the message, the failure and the exit code.
 
-    Returns
-    -------
-    callable
+    Returns:
         The same command. It ends with exit code 2 after an `InputError`, a `SimulationError` or an internal error, with
         130 after Ctrl-C, 143 after SIGTERM and 129 after SIGHUP. The traceback of an internal error is printed if
         `PANTOCHECK_TRACEBACK` is set.

@@ -9,12 +9,9 @@ from rich.text import Text
 class HangingText:
     """Paragraph that wraps below its text, not below its mark.
 
-    Parameters
-    ----------
-    mark : str
-        Begin of the first line, such as two spaces or a bullet.
-    text : Text
-        Text after the mark.
+    Args:
+        mark: Begin of the first line, such as two spaces or a bullet.
+        text: Text after the mark.
     """
 
     def __init__(self, mark: str, text: Text) -> None:

@@ -34,15 +34,11 @@ WAITING = b"Interrupted: the reports are still written. A second signal ends the
 class Interruption:
     """Signals of a run.
 
-    Parameters
-    ----------
-    open_cases : int
-        Number of cases that are not finished; with none, a first signal waits.
+    Args:
+        open_cases: Number of cases that are not finished; with none, a first signal waits.
 
-    Attributes
-    ----------
-    exit_code : int
-        Exit code after a signal that waits until the reports are written; 0 without one.
+    Attributes:
+        exit_code: Exit code after a signal that waits until the reports are written; 0 without one.
     """
 
     def __init__(self, open_cases: int) -> None:
@@ -53,12 +49,9 @@ class Interruption:
     def follow(self, progress: Progress, cases: int) -> Progress:
         """Callback of the runner that counts the finished cases.
 
-        Parameters
-        ----------
-        progress : Progress
-            Callback that receives each result, too.
-        cases : int
-            Number of cases; after the last one, a first signal waits.
+        Args:
+            progress: Callback that receives each result, too.
+            cases: Number of cases; after the last one, a first signal waits.
         """
         self._open_cases = cases
 
@@ -71,10 +64,8 @@ class Interruption:
     def receive(self, number: int, frame: FrameType | None) -> None:
         """Handler of the signals.
 
-        Raises
-        ------
-        KeyboardInterrupt
-            A case is open, or the signal is the second one.
+        Raises:
+            KeyboardInterrupt: A case is open, or the signal is the second one.
         """
         now, first = time.monotonic(), self._first_s
         if first is None:
@@ -92,12 +83,9 @@ class Interruption:
 def receive_signals(results: Path, open_cases: int) -> Iterator[Interruption]:
     """Receive the signals of a run; if it ends early, state whether its results are written.
 
-    Parameters
-    ----------
-    results : Path
-        File of the results.
-    open_cases : int
-        Number of cases that are not finished.
+    Args:
+        results: File of the results.
+        open_cases: Number of cases that are not finished.
     """
     interruption, before = Interruption(open_cases), _identify(results)
     names = SIGNALS if threading.current_thread() is threading.main_thread() else ()

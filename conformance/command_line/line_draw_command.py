@@ -1,6 +1,6 @@
 """`pantocheck line draw`: drawing of a whole line, in elevation and in plan."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +9,7 @@ import typer
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.cases.drop_test import MassDrop
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.named_files import recognise_named_file
@@ -20,10 +21,11 @@ from pantocheck.conformance.command_line.show_command import leave_out_required
 from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
 from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.line.elements.element import KINDS, DrawnMark
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drawing_marks import list_labelled_marks, list_marks
+from pantocheck.conformance.simulation.drawing_marks import list_labelled_marks
 from pantocheck.conformance.simulation.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg
-from pantocheck.model import discretise
+from pantocheck.model import Catenary, discretise
 
 DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
     ".svg": lambda drawing: draw_line_svg(drawing).encode(),
@@ -77,3 +79,22 @@ def _build_case(name: str, folders: list[Path] | None) -> LineDrawing:
     line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
     marks = list_marks(case, line.catenary)
     return LineDrawing(line, case.line.title, case.line.geometry, marks, case.line.section_places)
+
+
+def list_marks(case: Case, catenary: Catenary) -> tuple[DrawnMark, ...]:
+    """Masses of a line, and sensors and dropped masses of its case, numbered from 1 as in its file."""
+    drops = case.file.mass_drop
+    return (*list_labelled_marks(catenary), *(() if drops is None else _list_drop_marks(drops, catenary)))
+
+
+def _list_drop_marks(drops: MassDrop, catenary: Catenary) -> Iterator[DrawnMark]:
+    for number, sensor in enumerate(drops.sensor, 1):
+        yield DrawnMark("sensor", _find_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m, f"S{number}")
+    for number, drop in enumerate(drops.drop, 1):
+        text = f"drop {number}: {drop.mass_kg:g} kg"
+        yield DrawnMark("mass", _find_wire(catenary, drop.wire, drop.x_m), drop.x_m, text)
+
+
+def _find_wire(catenary: Catenary, name: str, position: float) -> str:
+    """First wire of a kind, named as in a case file, at a position."""
+    return next(w.name for w in catenary.wires if w.kind is KINDS[name] and w.start <= position <= w.end)

@@ -68,10 +68,8 @@ DriftOption = Annotated[
 def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
     """Administrative data from a file, with the number of the report from the command line in place of its own.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or is wrong.
+    Raises:
+        InputError: The file cannot be read or is wrong.
     """
     stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
     return stated if report_number is None else {**stated, "report_number": report_number}
@@ -86,19 +84,14 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
 
     Administrative data replace those of the plan key by key.
 
-    Parameters
-    ----------
-    plan : Path or None
-        File of the plan.
-    formats : str or None
-        Names of formats, separated by commas.
-    options : object
-        Other options of the command line by their key in a plan; they replace those of the plan unless they are None.
+    Args:
+        plan: File of the plan.
+        formats: Names of formats, separated by commas.
+        options: Other options of the command line by their key in a plan; they replace those of the plan unless they
+            are None.
 
-    Raises
-    ------
-    InputError
-        The plan cannot be read, or a value of the plan or of the command line is wrong.
+    Raises:
+        InputError: The plan cannot be read, or a value of the plan or of the command line is wrong.
     """
     if formats is not None:
         options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
@@ -129,23 +122,15 @@ def choose_case(
 ) -> Case:
     """Find the only case of a kind.
 
-    Parameters
-    ----------
-    name : str
-        Id, glob or path.
-    accept : callable
-        Condition on a case.
-    kind : str
-        Condition in words, for the message.
-    changes : sequence of InputChange
-        Changes of the inputs of the case.
-    catalogue : Catalogue
-        Cases that have an id.
+    Args:
+        name: Id, glob or path.
+        accept: Condition on a case.
+        kind: Condition in words, for the message.
+        changes: Changes of the inputs of the case.
+        catalogue: Cases that have an id.
 
-    Raises
-    ------
-    InputError
-        No case, or several cases, meet the condition.
+    Raises:
+        InputError: No case, or several cases, meet the condition.
     """
     cases = [case for case in select_cases([name], changes, catalogue) if accept(case)]
     if len(cases) != 1:
@@ -157,10 +142,8 @@ def choose_case(
 def read_line(name: str) -> LineFile:
     """Read the line of a line file, or of the cases that an id or path selects.
 
-    Raises
-    ------
-    InputError
-        The file is invalid, or the cases have different lines.
+    Raises:
+        InputError: The file is invalid, or the cases have different lines.
     """
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
         return read_model(Path(name), LineFile, "line")

@@ -34,22 +34,15 @@ ERROR_HANDLER = "pantocheck.symbols"
 def replace_symbols(error: UnicodeError) -> tuple[str, int]:
     """Replacement of characters that an encoding lacks, as an error handler of `codecs`.
 
-    Parameters
-    ----------
-    error : UnicodeError
-        Error with the text and the range of the characters.
+    Args:
+        error: Error with the text and the range of the characters.
 
-    Returns
-    -------
-    str
+    Returns:
         Replacement.
-    int
         Position at which encoding continues.
 
-    Raises
-    ------
-    UnicodeError
-        The error is not one of encoding.
+    Raises:
+        UnicodeError: The error is not one of encoding.
     """
     if not isinstance(error, UnicodeEncodeError):
         raise error

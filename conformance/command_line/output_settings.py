@@ -31,21 +31,14 @@ FLAGS: Mapping[str, tuple[tuple[str, ...], str]] = {
 
 @dataclass(frozen=True)
 class OutputSettings:
-    """Settings of the output of a command.
-
-    Parameters
-    ----------
-    detail : {'quiet', 'normal', 'verbose'}
-        Amount of text.
-    form : {'text', 'json'}
-        Text for a reader, or JSON for a program.
-    colour : {'automatic', 'none'}
-        Colour and bold text on a terminal, or none.
-    """
+    """Settings of the output of a command."""
 
     detail: Literal["quiet", "normal", "verbose"] = "normal"
+    """Amount of text."""
     form: Literal["text", "json"] = "text"
+    """Text for a reader, or JSON for a program."""
     colour: Literal["automatic", "none"] = "automatic"
+    """Colour and bold text on a terminal, or none."""
 
 
 DEFAULT_SETTINGS = OutputSettings()
@@ -71,15 +64,11 @@ def use_settings(settings: OutputSettings) -> Iterator[None]:
 def combine_flags(given: Collection[str]) -> OutputSettings:
     """Settings of the given options.
 
-    Parameters
-    ----------
-    given : collection of str
-        Names of options of `FLAGS`.
+    Args:
+        given: Names of options of `FLAGS`.
 
-    Raises
-    ------
-    typer.BadParameter
-        More and less output are requested at once.
+    Raises:
+        typer.BadParameter: More and less output are requested at once.
     """
     if {"verbose", "quiet"} <= set(given):
         raise typer.BadParameter("-v and -q contradict each other. Give one of them.")
@@ -98,12 +87,9 @@ def list_given(flags: Mapping[str, bool]) -> frozenset[str]:
 def add_flags(function: Callable[..., None], visibility: Literal["shown", "hidden"]) -> Callable[..., None]:
     """Let a function with `**flags` declare the options of the output to typer.
 
-    Parameters
-    ----------
-    function : callable
-        Function that receives the options as `flags`.
-    visibility : {'shown', 'hidden'}
-        Whether the help lists the options: the help of `pantocheck` does, that of a command refers to it.
+    Args:
+        function: Function that receives the options as `flags`.
+        visibility: Whether the help lists the options: the help of `pantocheck` does, that of a command refers to it.
     """
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]

@@ -17,15 +17,11 @@ MAX_PASSPHRASE_BYTES = 4096
 def read_passphrase(file: Path | None) -> bytes:
     """Passphrase from a file without the end of its first line, else from the environment, else typed by the user.
 
-    Parameters
-    ----------
-    file : Path or None
-        File of the passphrase; None to read the variable `PANTOCHECK_PASSPHRASE` or to ask.
+    Args:
+        file: File of the passphrase; None to read the variable `PANTOCHECK_PASSPHRASE` or to ask.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or there is neither a file, nor the variable, nor a terminal.
+    Raises:
+        InputError: The file cannot be read, or there is neither a file, nor the variable, nor a terminal.
     """
     if file is not None:
         lines = read_bytes(file, f"passphrase file '{file.name}'", MAX_PASSPHRASE_BYTES).splitlines()

@@ -14,20 +14,15 @@ from pantocheck.conformance.reports.mass_drop.population_report import build_pop
 def write_population(population: Population, out: Path) -> tuple[tuple[str, ...], list[Path]]:
     """Write population.json, .html and .pdf to a folder.
 
-    Returns
-    -------
-    tuple of str
+    Returns:
         Lines for the terminal.
-    list of Path
         Written files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     content = analyse_population(population)
-    document = build_population_document(content.model_dump(mode="json", by_alias=True))
+    document = build_population_document(content)
     write_model(out / "population.json", content)
     pages = write_document(document, out / "population")
     warnings = (f"warning: {text}" for text in content.warnings)

@@ -43,10 +43,8 @@ SMALLEST_SHARE = 0.1
 def show_line(describe: Callable[[], str]) -> Iterator[None]:
     """Show a line of progress while a computation runs.
 
-    Parameters
-    ----------
-    describe : callable
-        Function that gives the current line; an empty line is not shown.
+    Args:
+        describe: Function that gives the current line; an empty line is not shown.
     """
     errors = error_console()
     if current_settings().detail == "quiet":
@@ -91,14 +89,10 @@ def _print_periodically(describe: Callable[[], str], output: Console) -> Iterato
 class TaskProgress(logging.Handler):
     """Progress of tasks that report their steps to the loggers `pantocheck.*`.
 
-    Parameters
-    ----------
-    title : str
-        Purpose of the tasks.
-    total : int
-        Number of tasks.
-    clock : callable
-        Time [s].
+    Args:
+        title: Purpose of the tasks.
+        total: Number of tasks.
+        clock: Time [s].
     """
 
     def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -134,10 +128,8 @@ class TaskProgress(logging.Handler):
     def finish_task(self, name: str = "") -> None:
         """Count a finished task.
 
-        Parameters
-        ----------
-        name : str
-            Begin of the names of its steps; empty: no other task runs.
+        Args:
+            name: Begin of the names of its steps; empty: no other task runs.
         """
         self._finished += 1
         self._steps = {task: step for task, step in self._steps.items() if not task.startswith(name)}
@@ -177,12 +169,9 @@ class TaskProgress(logging.Handler):
 def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
     """Show the progress of tasks while they run.
 
-    Parameters
-    ----------
-    title : str
-        Purpose of the tasks.
-    total : int
-        Number of tasks.
+    Args:
+        title: Purpose of the tasks.
+        total: Number of tasks.
     """
     progress, logger = TaskProgress(title, total), logging.getLogger(ROOT_LOGGER)
     if current_settings().detail == "quiet":

@@ -12,10 +12,8 @@ STANDING_REMARKS = ("20-50 Hz: lumped models",)
 def list_footnotes(cases: Sequence[CaseResult]) -> list[str]:
     """Remarks that are printed once, in their order: standing ones, and those that several cases have in common.
 
-    Parameters
-    ----------
-    cases : sequence of CaseResult
-        All cases of a run.
+    Args:
+        cases: All cases of a run.
     """
     counts = Counter(warning for case in cases for warning in dict.fromkeys(case.warnings))
     return [text for text, count in counts.items() if count > 1 or text.startswith(STANDING_REMARKS)]

@@ -28,10 +28,8 @@ ALONG_SPAN = "_along_span_mm_N"
 def build_rest_tables(case: Case) -> list[RenderableType]:
     """Quantities of the line at rest, elasticity along a span and of listed spans, apparent mass of each pantograph.
 
-    Parameters
-    ----------
-    case : Case
-        Any case, with or without a speed.
+    Args:
+        case: Any case, with or without a speed.
     """
     element = case.file.discretisation.element_m
     line = discretise(build_catenary(case.line), element)

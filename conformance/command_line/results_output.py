@@ -51,24 +51,19 @@ def build_results_output(
 ) -> CommandOutput:
     """Verdict, criteria and values of each case, and remarks.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    files : sequence of Path
-        Written files.
-    exit_code : int
-        Exit code of the command.
-    remarks : sequence of str
-        Remarks on the files.
+    Args:
+        results: Results of a run.
+        files: Written files.
+        exit_code: Exit code of the command.
+        remarks: Remarks on the files.
     """
     system = f"{results.system.name} {results.system.version}".strip()
-    headline = f"{build_headline(results.to_dict())} System: {system}"
+    headline = f"{build_headline(results)} System: {system}"
     parts: list[RenderableType] = [
         escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"),
     ]
     if results.administration is not None:
-        stated = list_administration(results.model_dump(include={"administration"}))
+        stated = list_administration(results.administration)
         parts.append(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
     footnotes = list_footnotes(results.cases)
     for case in results.cases:
@@ -95,8 +90,8 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
     marks = mark_footnotes(case, footnotes)
     title = f" {name_case(case.id, case.library)}  {case.title}{f' {marks}' if marks else ''}"
     yield style_verdict(case.verdict) + escape_text(title)
-    record = None if case.record is None or case.reason else describe_record(case.model_dump())
-    changes = [describe_changes(case.model_dump(include={"changes", "library"}))]
+    record = None if case.record is None or case.reason else describe_record(case)
+    changes = [describe_changes(case)]
     changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
     warnings = (f"warning: {warning}" for warning in case.warnings if warning not in footnotes)
     for line in filter(None, [case.reason, record, *changes, *warnings]):
@@ -116,7 +111,7 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         yield from _list_criteria(case.verification.criteria)
     if case.baseline is not None:
         yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
-        yield indent_text(describe_comparison(case.baseline.model_dump()))
+        yield indent_text(describe_comparison(case.baseline))
         yield from _list_criteria([item for item in case.criteria if item.is_drift])
 
 

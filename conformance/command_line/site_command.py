@@ -19,7 +19,6 @@ from pantocheck.conformance.reports.site.case_page import build_case_page
 from pantocheck.conformance.reports.site.published_results import PublishedResults, name_file, publish_results
 from pantocheck.conformance.reports.site.site_index import build_site_index
 from pantocheck.conformance.results.report_files import FILES
-from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 
 MOST_RESULTS = 2000
@@ -45,7 +44,7 @@ def site_command(
     contents = []
     for path in paths:
         with follow_steps(str(path)):
-            results = read_results(path).to_dict()
+            results = read_results(path)
             contents.append((results, tuple(find_discrepancies(results))))
     published = publish_results(contents)
     pages = _name_case_pages(published)
@@ -97,11 +96,11 @@ def _walk_results(folder: Path, out: Path) -> Iterator[Path]:
 
 def _name_case_pages(published: list[PublishedResults]) -> dict[str, str]:
     """Page of each case, by id; a number keeps names apart that differ in signs only."""
-    ids = sorted({case["id"] for run in published for case in run.results["cases"]})
+    ids = sorted({case.id for run in published for case in run.results.cases})
     return {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
 
 
 def _write_run(run: PublishedResults, out: Path) -> None:
     """Write the certificate and the results of a run."""
     write_pages(run.results, out / run.folder, ("html",))
-    write_atomically(out / run.folder / FILES["json"], Results.model_validate(run.results).to_json())
+    write_atomically(out / run.folder / FILES["json"], run.results.to_json())

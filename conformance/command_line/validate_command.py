@@ -40,6 +40,7 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import build_hea
 from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_all
 from pantocheck.conformance.reports.words import read_words
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.report_files import check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import RunInterrupted
@@ -77,30 +78,29 @@ def validate_command(
         typer.echo("Interrupted: the results of the finished steps are written.", err=True)
     results = results.model_copy(update={"administration": options.administration})
     files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)))
-    headline = escape_text(f" {build_headline(results.to_dict())}")
+    headline = escape_text(f" {build_headline(results)}")
     return CommandOutput(
         style_verdict(results.verdict) + headline,
         results,
-        [*_describe_results(results)],
+        [] if results.procedure is None else [*_describe_results(results, results.procedure)],
         files=files,
         remarks=remark_missing_formats(options.formats),
         exit_code=interrupted or EXIT_CODES[results.verdict],
     )
 
 
-def _describe_results(results: Results) -> Iterator[RenderableType]:
+def _describe_results(results: Results, procedure: Procedure) -> Iterator[RenderableType]:
     """Table of the steps, and their reasons."""
-    content = results.to_dict()
     table = build_table("step", "state", "verdict", "margin", "+-", right=("margin", "+-"))
-    for step in content["procedure"]["steps"]:
-        name = read_words()["procedure"][step["step"]]
+    for step in procedure.steps:
+        name = read_words()["procedure"][step.step]
         numbers = (
-            format_number(step["margin"], 3),
-            format_width(step["uncertainty"], list_step_missing(step, content["cases"])),
+            format_number(step.margin, 3),
+            format_width(step.uncertainty, list_step_missing(step, results.cases)),
         )
-        table.add_row(name, name_state(step), style_verdict(step["verdict"]), *numbers)
+        table.add_row(name, name_state(step), style_verdict(step.verdict), *numbers)
     yield table
-    for sentence in (*describe_steps(content), *_describe_cases(results)):
+    for sentence in (*describe_steps(procedure), *_describe_cases(results)):
         yield indent_text(sentence)
 
 

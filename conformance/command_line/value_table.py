@@ -22,14 +22,10 @@ def build_quantities_table(
 ) -> FittedTable:
     """Table of quantities that are single numbers; those of the line come last.
 
-    Parameters
-    ----------
-    values, uncertainty : NamedValues
-        Values and their uncertainties.
-    names : collection of str
-        Quantities of the table, in its order.
-    missing : sequence of str
-        Components that the uncertainties lack.
+    Args:
+        values, uncertainty: Values and their uncertainties.
+        names: Quantities of the table, in its order.
+        missing: Components that the uncertainties lack.
     """
     numbers = ("value", "+-") if uncertainty else ("value",)
     headings = ("quantity", *numbers, "unit")

@@ -67,51 +67,34 @@ _PLACES = ("band_Hz", "static_forces_N", "heights_m", "sensors", "motion", "wind
 class ComparisonLimit(InputTable):
     """Bounds of the difference between a model and measured values, and the places at which they hold."""
 
-    quantity: Annotated[
-        ComparedQuantityName,
-        Field(
-            description="of drops: RMS of the model over that of the record, or correlation of their samples; of "
-            "responses: RMS deviation over the band of modulus, phase or both (complex), or the largest deviation"
-        ),
-    ]
-    band_Hz: Annotated[
-        tuple[Positive, Positive] | None,
-        Field(
-            strict=False,
-            description="edges of a compared band [Hz]; of drops: 0.3-5, 5-20, 20-50 or 0.3-20; of responses: 0.5-5, "
-            "5-20 or 20-50",
-        ),
-    ] = None
-    static_forces_N: Annotated[
-        NonNegativeList | None,
-        Field(max_length=50, description="static forces that must be measured [N]; one without a response is a skip"),
-    ] = None
-    heights_m: Annotated[
-        NumberList | None,
-        Field(
-            max_length=50,
-            description="heights of the head that must be measured under each static force [m]; default: every height "
-            "that was measured",
-        ),
-    ] = None
+    quantity: ComparedQuantityName
+    """Of drops: RMS of the model over that of the record, or correlation of their samples; of responses: RMS
+    deviation over the band of modulus, phase or both (complex), or the largest deviation.
+    """
+    band_Hz: Annotated[tuple[Positive, Positive] | None, Field(strict=False)] = None
+    """Edges of a compared band [Hz]; of drops: 0.3-5, 5-20, 20-50 or 0.3-20; of responses: 0.5-5, 5-20 or 20-50."""
+    static_forces_N: Annotated[NonNegativeList | None, Field(max_length=50)] = None
+    """Static forces that must be measured [N]; one without a response is a skip."""
+    heights_m: Annotated[NumberList | None, Field(max_length=50)] = None
+    """Heights of the head that must be measured under each static force [m]; default: every height that was
+    measured.
+    """
     sensors: Annotated[
-        tuple[Annotated[int, Field(ge=1)], ...] | None,
-        Field(
-            strict=False,
-            min_length=1,
-            max_length=100,
-            description="numbers of the sensors; a sensor without a record leaves its limit open (skip)",
-        ),
+        tuple[Annotated[int, Field(ge=1)], ...] | None, Field(strict=False, min_length=1, max_length=100)
     ] = None
-    motion: Annotated[ComparedMotion | None, Field(description="compared motion; default: acceleration")] = None
-    window_s: Annotated[
-        tuple[NonNegative, Positive] | None,
-        Field(strict=False, description="start and end of a compared window after the release [s]"),
-    ] = None
-    lower: Annotated[float | None, Field(ge=-1, le=1e3, description="lower bound, in the unit of the quantity")] = None
-    upper: Annotated[float | None, Field(ge=-1, le=1e4, description="upper bound, in the unit of the quantity")] = None
-    source: Annotated[str, Field(min_length=1, max_length=500, description="source of the limit")] = NO_SOURCE
-    note: Annotated[str | None, Field(description="reason for the bounds", max_length=4000)] = None
+    """Numbers of the sensors; a sensor without a record leaves its limit open (skip)."""
+    motion: ComparedMotion | None = None
+    """Compared motion; default: acceleration."""
+    window_s: Annotated[tuple[NonNegative, Positive] | None, Field(strict=False)] = None
+    """Start and end of a compared window after the release [s]."""
+    lower: Annotated[float | None, Field(ge=-1, le=1e3)] = None
+    """Lower bound, in the unit of the quantity."""
+    upper: Annotated[float | None, Field(ge=-1, le=1e4)] = None
+    """Upper bound, in the unit of the quantity."""
+    source: Annotated[str, Field(min_length=1, max_length=500)] = NO_SOURCE
+    """Source of the limit."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Reason for the bounds."""
 
     @property
     def kind(self) -> LimitKind:
@@ -156,10 +139,8 @@ class ComparisonLimit(InputTable):
 class ComparisonLimits(InputTable):
     """File of the limits of a comparison."""
 
-    schema_: Annotated[
-        Literal["pantocheck.comparison-limits/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.comparison-limits/1"'),
-    ]
+    schema_: Annotated[Literal["pantocheck.comparison-limits/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.comparison-limits/1"."""
     limit: Annotated[tuple[ComparisonLimit, ...], Field(strict=False, min_length=1, max_length=1000)]
 
 

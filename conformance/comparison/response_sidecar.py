@@ -18,7 +18,11 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.sourced_table import NO_SOURCE, NonNegative, Positive, validation_problem
 from pantocheck.conformance.records.table_sidecar import NamedTableSidecar
-from pantocheck.conformance.results.comparison_format import HeadPoint, ResponseKind
+
+HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
+"""Point of the head: its centre, one of its contact strips, or another one."""
+
+ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]
 
 RESPONSE_SCHEMA = "pantocheck.response/1"
 
@@ -78,48 +82,32 @@ def list_response_columns(kind: ResponseKind) -> list[str]:
 class ResponseSidecar(NamedTableSidecar):
     """Sidecar of a table of frequency, modulus and phase."""
 
-    schema_: Annotated[
-        Literal["pantocheck.response/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.response/1"'),
-    ]
-    kind: Annotated[
-        ResponseKind,
-        Field(
-            description="measured quantity; force over motion: apparent_mass, impedance, dynamic_stiffness; motion "
-            "over force: accelerance, mobility, receptance"
-        ),
-    ]
-    rows: Annotated[
-        int, Field(ge=1, le=100_000, description="number of rows of the complete table, so that a lost row is noticed")
-    ]
-    static_force_N: Annotated[
-        NonNegative, Field(le=2000, description="static force on the head during the measurement [N]")
-    ]
-    height_m: Annotated[
-        float | None, Field(ge=-10, le=20, description="height of the head during the measurement, any datum [m]")
-    ] = None
-    excited_at: Annotated[HeadPoint, Field(description="point of the force; strips are shown, not graded")] = (
-        "head_centre"
-    )
-    measured_at: Annotated[HeadPoint, Field(description="point of the motion; strips are shown, not graded")] = (
-        "head_centre"
-    )
-    force_and_motion: Annotated[
-        Literal["same_direction", "opposite_directions"],
-        Field(description="directions in which force and motion count as positive"),
-    ] = "same_direction"
-    scale: Annotated[
-        Positive, Field(le=1e12, description="factor from the table to the unit in the name of its columns")
-    ] = 1.0
-    modulus_uncertainty_pct: Annotated[
-        Positive | None, Field(le=100, description="half-width of the 95 % interval of the modulus [%]")
-    ] = None
-    phase_uncertainty_deg: Annotated[
-        Positive | None, Field(le=180, description="half-width of the 95 % interval of the phase [degrees]")
-    ] = None
-    source: Annotated[str, Field(min_length=1, max_length=500, description="test report, test rig and date")] = (
-        NO_SOURCE
-    )
+    schema_: Annotated[Literal["pantocheck.response/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.response/1"."""
+    kind: ResponseKind
+    """Measured quantity; force over motion: apparent_mass, impedance, dynamic_stiffness; motion over force:
+    accelerance, mobility, receptance.
+    """
+    rows: Annotated[int, Field(ge=1, le=100_000)]
+    """Number of rows of the complete table, so that a lost row is noticed."""
+    static_force_N: Annotated[NonNegative, Field(le=2000)]
+    """Static force on the head during the measurement [N]."""
+    height_m: Annotated[float | None, Field(ge=-10, le=20)] = None
+    """Height of the head during the measurement, any datum [m]."""
+    excited_at: HeadPoint = "head_centre"
+    """Point of the force; strips are shown, not graded."""
+    measured_at: HeadPoint = "head_centre"
+    """Point of the motion; strips are shown, not graded."""
+    force_and_motion: Literal["same_direction", "opposite_directions"] = "same_direction"
+    """Directions in which force and motion count as positive."""
+    scale: Annotated[Positive, Field(le=1e12)] = 1.0
+    """Factor from the table to the unit in the name of its columns."""
+    modulus_uncertainty_pct: Annotated[Positive | None, Field(le=100)] = None
+    """Half-width of the 95 % interval of the modulus [%]."""
+    phase_uncertainty_deg: Annotated[Positive | None, Field(le=180)] = None
+    """Half-width of the 95 % interval of the phase [degrees]."""
+    source: Annotated[str, Field(min_length=1, max_length=500)] = NO_SOURCE
+    """Test report, test rig and date."""
 
     @cross_check
     def _check_uncertainty(self) -> Problems:

@@ -35,42 +35,26 @@ LARGEST_TABLE = 300_000
 class StaticSidecar(NamedTableSidecar):
     """Sidecar of a table of contact wire heights and elasticities."""
 
-    schema_: Annotated[
-        Literal["pantocheck.static/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.static/1"'),
-    ]
-    force_N: Annotated[
-        PositiveList | None,
-        Field(
-            max_length=2,
-            description="static force of the elasticity [N]: one force, for the uplift from rest over the force; or "
-            "two, for the difference of the uplifts over the difference of the forces",
-        ),
-    ] = None
-    line_start_m: Annotated[
-        float, Field(ge=-1e7, le=1e7, description="position of the start of the line, as the table counts [m]")
-    ] = 0.0
-    positions: Annotated[
-        Literal["increasing", "decreasing"],
-        Field(description="direction in which the table counts positions, from the start of the line to its end"),
-    ] = "increasing"
-    datum_m: Annotated[
-        float, Field(ge=-100, le=100, description="height of the datum of the line, as the table counts [m]")
-    ] = 0.0
-    evaluated_spans: Annotated[
-        tuple[int, int] | None,
-        Field(strict=False, description="first and last span of the evaluated section, from 1; default: all spans"),
-    ] = None
-    largest_distance_m: Annotated[
-        Positive | None,
-        Field(description="largest distance between neighbouring measured positions of a complete record [m]"),
-    ] = None
-    elasticity_uncertainty_mm_N: Annotated[
-        Positive | None, Field(description="half-width of the 95 % interval of a measured elasticity [mm/N]")
-    ] = None
-    height_uncertainty_mm: Annotated[
-        Positive | None, Field(description="half-width of the 95 % interval of a measured contact wire height [mm]")
-    ] = None
+    schema_: Annotated[Literal["pantocheck.static/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.static/1"."""
+    force_N: Annotated[PositiveList | None, Field(max_length=2)] = None
+    """Static force of the elasticity [N]: one force, for the uplift from rest over the force; or two, for the
+    difference of the uplifts over the difference of the forces.
+    """
+    line_start_m: Annotated[float, Field(ge=-1e7, le=1e7)] = 0.0
+    """Position of the start of the line, as the table counts [m]."""
+    positions: Literal["increasing", "decreasing"] = "increasing"
+    """Direction in which the table counts positions, from the start of the line to its end."""
+    datum_m: Annotated[float, Field(ge=-100, le=100)] = 0.0
+    """Height of the datum of the line, as the table counts [m]."""
+    evaluated_spans: Annotated[tuple[int, int] | None, Field(strict=False)] = None
+    """First and last span of the evaluated section, from 1; default: all spans."""
+    largest_distance_m: Positive | None = None
+    """Largest distance between neighbouring measured positions of a complete record [m]."""
+    elasticity_uncertainty_mm_N: Positive | None = None
+    """Half-width of the 95 % interval of a measured elasticity [mm/N]."""
+    height_uncertainty_mm: Positive | None = None
+    """Half-width of the 95 % interval of a measured contact wire height [mm]."""
 
     @cross_check
     def _check_consistency(self) -> Problems:

@@ -23,18 +23,12 @@ CheckName = Literal[
 
 @dataclass(frozen=True)
 class Finding:
-    """Finding of a check.
-
-    Parameters
-    ----------
-    kind : {'contradiction', 'doubt', 'unchecked'}
-        `contradiction` (the record cannot be graded), `doubt` (a warning), `unchecked` (the record lacks a channel).
-    text : str
-        One line for the reader of the report.
-    """
+    """Finding of a check."""
 
     kind: Literal["contradiction", "doubt", "unchecked"]
+    """`contradiction` (the record cannot be graded), `doubt` (a warning), `unchecked` (the record lacks a channel)."""
     text: str
+    """One line for the reader of the report."""
 
 
 def worst_finding(findings: Iterable[Finding]) -> Finding | None:
@@ -44,24 +38,15 @@ def worst_finding(findings: Iterable[Finding]) -> Finding | None:
 
 @dataclass(frozen=True)
 class Check:
-    """Consistency check of a record.
-
-    Parameters
-    ----------
-    name : CheckName
-        Name in messages and documents.
-    must_hold : str
-        Condition on the record.
-    why : str
-        Fault that would otherwise go unnoticed.
-    needs : str
-        Channels without which the check is not made.
-    run : callable
-        Function of the case and the signals of the record; returns a finding, or None if the condition holds.
-    """
+    """Consistency check of a record."""
 
     name: CheckName
+    """Name in messages and documents."""
     must_hold: str
+    """Condition on the record."""
     why: str
+    """Fault that would otherwise go unnoticed."""
     needs: str
+    """Channels without which the check is not made."""
     run: Callable[[Case, RecordSignals], Finding | None]
+    """Function of the case and the signals of the record; returns a finding, or None if the condition holds."""

@@ -80,14 +80,10 @@ def bending_length(case: Case) -> float:
 def force_content(signals: RecordSignals, number: int, upper: float) -> float:
     """RMS of the force in the upper band over that in the lower band, before the stated filter [-].
 
-    Parameters
-    ----------
-    signals : RecordSignals
-        Signals of a record.
-    number : int
-        Number of the pantograph from 1.
-    upper : float
-        Upper edge of the upper band [Hz].
+    Args:
+        signals: Signals of a record.
+        number: Number of the pantograph from 1.
+        upper: Upper edge of the upper band [Hz].
     """
     record, force = signals.record, signals.pantographs[number].delivered
     frequency = np.asarray(np.fft.rfftfreq(force.size, 1 / record.rate), dtype=np.float64)
@@ -102,14 +98,10 @@ def force_content(signals: RecordSignals, number: int, upper: float) -> float:
 def kink_content(case: Case, number: int, upper: float) -> float:
     """The same ratio of the force that a kink of the contact wire causes [-].
 
-    Parameters
-    ----------
-    case : Case
-        Case with line and pantographs.
-    number : int
-        Number of the pantograph from 1.
-    upper : float
-        Upper edge of the upper band [Hz].
+    Args:
+        case: Case with line and pantographs.
+        number: Number of the pantograph from 1.
+        upper: Upper edge of the upper band [Hz].
     """
     file, wire = case.pantographs[number - 1], case.line.contact_wire
     frequency = np.arange(LOWER_BAND_HZ[0], upper, FREQUENCY_STEP_HZ)

@@ -38,18 +38,12 @@ SMALLEST_SQUARE = 1e-12
 
 @dataclass(frozen=True)
 class Likeness:
-    """Part of a force that is most like a part of another force.
-
-    Parameters
-    ----------
-    remainder : float
-        Standard deviation of the difference after a fit of gain and constant, over the standard deviation [-].
-    lag : float
-        Time of the part in the other force less that in the force [samples].
-    """
+    """Part of a force that is most like a part of another force."""
 
     remainder: float
+    """Standard deviation of the difference after a fit of gain and constant, over the standard deviation [-]."""
     lag: float
+    """Time of the part in the other force less that in the force [samples]."""
 
 
 def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
@@ -71,16 +65,11 @@ def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
 def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
     """Find the part of a force that is most like a part of another force.
 
-    Parameters
-    ----------
-    part : (n,) ndarray
-        Part of a force [N].
-    force : (m,) ndarray
-        Other force [N].
+    Args:
+        part: Part of a force, (n,) [N].
+        force: Other force, (m,) [N].
 
-    Returns
-    -------
-    Likeness or None
+    Returns:
         The best part, between samples by a parabola; None if the force is shorter than the part, or constant.
     """
     n = part.size

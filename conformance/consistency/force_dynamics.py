@@ -45,25 +45,17 @@ SAMPLES_PER_PERIOD = 20
 
 @dataclass(frozen=True)
 class ResponseFit:
-    """Fit of the recorded motion by the response to the force.
-
-    Parameters
-    ----------
-    misfit : float
-        RMS of motion minus response, over RMS of the response.
-    gain : float
-        Gain of the force that explains the motion best; 1 for a correct record.
-    unexplained : float
-        Share of the motion that remains with that gain.
-    motion, response : (n,) ndarray
-        Compared motions, without their free parts [m].
-    """
+    """Fit of the recorded motion by the response to the force."""
 
     misfit: float
+    """RMS of motion minus response, over RMS of the response."""
     gain: float
+    """Gain of the force that explains the motion best; 1 for a correct record."""
     unexplained: float
+    """Share of the motion that remains with that gain."""
     motion: RealArray
     response: RealArray
+    """Compared motions, without their free parts, (n,) [m]."""
 
 
 def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
@@ -90,18 +82,12 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
 def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Pantograph of the case.
-    force, height : (n,) ndarray
-        Contact force [N] and height of the contact point [m].
-    step : float
-        Time between samples [s].
+    Args:
+        file: Pantograph of the case.
+        force, height: Contact force [N] and height of the contact point [m], (n,).
+        step: Time between samples [s].
 
-    Returns
-    -------
-    ResponseFit or None
+    Returns:
         The fit; None if both the recorded and the computed motion are too small.
     """
     response, free = head_responses(file, force, step)
@@ -131,14 +117,10 @@ def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple
 
     Modes faster than the samples do not appear in filtered motions.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Pantograph of the case.
-    force : (n,) ndarray
-        Contact force [N].
-    step : float
-        Time between samples [s].
+    Args:
+        file: Pantograph of the case.
+        force: Contact force, (n,) [N].
+        step: Time between samples [s].
     """
     model = build_pantograph(file, 0.0, 0.0)
     m = model.head.size

@@ -77,16 +77,11 @@ def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
 def force_error(file: PantographFile, signals: RecordSignals, number: int, low_pass: LowPass) -> float:
     """Largest error of the filtered force over the analysis section, over the standard deviation of the force.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Pantograph of the case.
-    signals : RecordSignals
-        Signals of a record with contact height.
-    number : int
-        Number of the pantograph from 1.
-    low_pass : LowPass
-        Filter of the force.
+    Args:
+        file: Pantograph of the case.
+        signals: Signals of a record with contact height.
+        number: Number of the pantograph from 1.
+        low_pass: Filter of the force.
     """
     record = signals.record
     assert record.contact_height is not None

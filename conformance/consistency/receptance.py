@@ -11,17 +11,12 @@ from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 def head_receptance(file: PantographFile, omega: RealArray) -> NDArray[np.complex128]:
     """Displacement of the head over a force on the head, e_h (K + i w C - w^2 M)^-1 e_h.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Pantograph of the case.
-    omega : (n,) ndarray
-        Angular frequencies [rad/s].
+    Args:
+        file: Pantograph of the case.
+        omega: Angular frequencies, (n,) [rad/s].
 
-    Returns
-    -------
-    (n,) ndarray
-        Receptance [m/N].
+    Returns:
+        Receptance, (n,) [m/N].
     """
     model, w = build_pantograph(file, 0.0, 0.0), omega[:, None, None]
     dynamic = model.stiffness + 1j * w * model.damping - w**2 * model.mass

@@ -22,18 +22,14 @@ def record_state(
 ) -> tuple[Literal["verified", "unverified", "contradicted"], str]:
     """State of a record and its reason.
 
-    Parameters
-    ----------
-    findings : mapping of str to Finding
-        Findings of `check_record`; a check without a finding has confirmed the record or does not apply to it.
+    Args:
+        findings: Findings of `check_record`; a check without a finding has confirmed the record or does not apply to
+            it.
 
-    Returns
-    -------
-    state : {'verified', 'unverified', 'contradicted'}
-        `contradicted` if a check refutes the record; `unverified` if a check doubts it or could not be made;
-        `verified` otherwise.
-    reason : str
-        One line: the texts of the findings that decide; the confirming checks if there are none.
+    Returns:
+        state: `contradicted` if a check refutes the record; `unverified` if a check doubts it or could not be made;
+            `verified` otherwise.
+        reason: One line: the texts of the findings that decide; the confirming checks if there are none.
     """
     for state in ("contradicted", "unverified"):
         texts = [finding.text for finding in findings.values() if STATES[finding.kind] == state]

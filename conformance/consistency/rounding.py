@@ -14,10 +14,8 @@ SMALLEST_STEP = 1e-9
 def rounding_step(values: RealArray) -> float:
     """Smallest difference between two values [m]: the step to which they are rounded; infinite for a constant.
 
-    Parameters
-    ----------
-    values : (n,) ndarray
-        Samples of a channel [m].
+    Args:
+        values: Samples of a channel, (n,) [m].
     """
     steps = np.diff(np.unique(values))
     return float(steps[steps > SMALLEST_STEP].min(initial=np.inf))

@@ -44,24 +44,16 @@ HELD_SPANS = 0.5
 
 @dataclass(frozen=True)
 class _Passages:
-    """Passages of the supports by one pantograph in contact.
-
-    Parameters
-    ----------
-    support : (m,) ndarray
-        Positions of the supports [m].
-    uplift : (m,) ndarray
-        Uplift of the support at its passage [m].
-    wire : (m,) ndarray
-        Height of the wire from the contact height, less its height at rest [m].
-    kink : float
-        Largest change of the uplift by the kink within one sample, or within the rounding by a stated filter [m].
-    """
+    """Passages of the supports by one pantograph in contact."""
 
     support: RealArray
+    """Positions of the supports, (m,) [m]."""
     uplift: RealArray
+    """Uplift of the support at its passage, (m,) [m]."""
     wire: RealArray
+    """Height of the wire from the contact height, less its height at rest, (m,) [m]."""
     kink: float
+    """Largest change of the uplift by the kink within one sample, or within the rounding by a stated filter [m]."""
 
     @property
     def constant(self) -> RealArray:

@@ -17,12 +17,9 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
     is the height of the lowest wire. The irregularity of the contact wire is added. Where the wire hangs in droppers
     with a tolerance of their lengths, its height is unknown: nan.
 
-    Parameters
-    ----------
-    case : Case
-        Case of a record.
-    supports : (n,) ndarray
-        Positions of supports [m].
+    Args:
+        case: Case of a record.
+        supports: Positions of supports, (n,) [m].
     """
     line, layout = case.line, case.line.layout
     tolerance = line.has_varied_droppers

@@ -97,12 +97,9 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
 class _Passages:
     """Passages of the supports of the analysis section by shifted pantographs.
 
-    Parameters
-    ----------
-    case : Case
-        Case with the tension and the mass of the contact wires.
-    signals : RecordSignals
-        Signals of the record, with uplift at supports.
+    Args:
+        case: Case with the tension and the mass of the contact wires.
+        signals: Signals of the record, with uplift at supports.
     """
 
     def __init__(self, case: Case, signals: RecordSignals) -> None:

@@ -42,48 +42,32 @@ PLAUSIBLE_SPANS_M = (20.0, 120.0)
 
 @dataclass(frozen=True)
 class AssessedRecord:
-    """A record prepared for grading by a profile.
-
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    header : RecordSidecar or RecordSummary
-        The sidecar, or the summary itself.
-    line : LineTable
-        Facts on the line, from the record and the command line.
-    digest : str
-        SHA-256 of all files that were read and of the facts on the line, in hexadecimal.
-    record_digest : str
-        SHA-256 of the files of the record.
-    force_digest : str or None
-        SHA-256 of the samples of the force, in any format of file; None for a summary.
-    values : Evaluation
-        Quantities, including those that follow from the line.
-    uncertainty : Uncertainty
-        Half-widths of the 95 % intervals by component.
-    prepared : PreparedRecord or None
-        Signals of the quantities; None for a summary.
-    notes : tuple of str
-        Remarks for the reader of the report.
-    warnings : tuple of str
-        Caveats for the reader of the report.
-    events : tuple of EventFacts
-        Events of the analysis section.
-    """
+    """A record prepared for grading by a profile."""
 
     name: str
+    """Name of the file."""
     header: RecordSidecar | RecordSummary
+    """The sidecar, or the summary itself."""
     line: LineTable
+    """Facts on the line, from the record and the command line."""
     digest: str
+    """SHA-256 of all files that were read and of the facts on the line, in hexadecimal."""
     record_digest: str
+    """SHA-256 of the files of the record."""
     force_digest: str | None
+    """SHA-256 of the samples of the force, in any format of file; None for a summary."""
     values: Evaluation
+    """Quantities, including those that follow from the line."""
     uncertainty: Uncertainty
+    """Half-widths of the 95 % intervals by component."""
     prepared: PreparedRecord | None
+    """Signals of the quantities; None for a summary."""
     notes: tuple[str, ...]
+    """Remarks for the reader of the report."""
     warnings: tuple[str, ...]
+    """Caveats for the reader of the report."""
     events: tuple[EventFacts, ...] = ()
+    """Events of the analysis section."""
 
     @property
     def pantographs(self) -> tuple[int, ...]:
@@ -107,19 +91,13 @@ class AssessedRecord:
 def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> AssessedRecord:
     """Read a record and compute its quantities for a profile.
 
-    Parameters
-    ----------
-    path : Path
-        Sidecar, table beside its sidecar, or summary record.
-    profile : Profile
-        Profile with the filter and the speed tolerance.
-    line : LineTable
-        Facts on the line that replace those of the record.
+    Args:
+        path: Sidecar, table beside its sidecar, or summary record.
+        profile: Profile with the filter and the speed tolerance.
+        line: Facts on the line that replace those of the record.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read, is impossible, or was filtered in another way than the profile requires.
+    Raises:
+        InputError: The record cannot be read, is impossible, or was filtered in another way than the profile requires.
     """
     header = open_record(path)
     known_line = header.line.model_copy(update=line.model_dump(exclude_none=True))
@@ -167,12 +145,9 @@ def find_missing_statement(samples: RecordSamples, sidecar: RecordSidecar) -> st
 
     Without them, a record that was cut short or ran at another speed could not be told from a complete one.
 
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples as read.
-    sidecar : RecordSidecar
-        Sidecar of the record.
+    Args:
+        samples: Samples as read.
+        sidecar: Sidecar of the record.
     """
     if sidecar.evaluated_m is None:
         return "the analysis section is not stated: add evaluated_m to the sidecar"

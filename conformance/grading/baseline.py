@@ -43,10 +43,8 @@ class _Key(NamedTuple):
 def read_baseline(path: Path) -> Results:
     """Read earlier results before a run, so that no comparison fails after it.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not in the format of the suite, or its values are too many or too large.
+    Raises:
+        InputError: The file cannot be read, is not in the format of the suite, or its values are too many or too large.
     """
     baseline = read_results(path)
     for case in baseline.cases:
@@ -69,16 +67,11 @@ def compare_with_baseline(results: Results, baseline: Results, drift_pct: float,
     A value of the baseline that is no longer delivered becomes a skipped criterion, so that its loss is noticed. These
     criteria give a verdict of their own; they do not belong to the EN 50318 criteria.
 
-    Parameters
-    ----------
-    results : Results
-        Results of this run.
-    baseline : Results
-        Results of the earlier run.
-    drift_pct : float
-        Largest accepted drift [%].
-    name : str
-        Name of the baseline in reports.
+    Args:
+        results: Results of this run.
+        baseline: Results of the earlier run.
+        drift_pct: Largest accepted drift [%].
+        name: Name of the baseline in reports.
     """
     earlier = {case.id: case for case in baseline.cases}
     cases = [_compare_case(case, earlier.get(case.id), drift_pct, name) for case in results.cases]

@@ -30,18 +30,12 @@ NO_RECORD = Component("not known: there is no record of one passage")
 
 @dataclass(frozen=True)
 class CaseEvaluation:
-    """A delivery of a system, evaluated for its case.
-
-    Parameters
-    ----------
-    case : Case
-        Case with its limits.
-    delivered : Delivered
-        Data that the system delivered.
-    """
+    """A delivery of a system, evaluated for its case."""
 
     case: Case
+    """Case with its limits."""
     delivered: Delivered
+    """Data that the system delivered."""
 
     @cached_property
     def mismatch(self) -> str | None:

@@ -20,12 +20,10 @@ from pantocheck.conformance.results.extreme_places import find_force_places, fin
 from pantocheck.conformance.results.figure_data import ExtremePlace
 from pantocheck.conformance.results.input_values import list_input_values
 from pantocheck.conformance.results.lift_force_facts import list_law_forces
-from pantocheck.conformance.results.origin_format import describe_case_origin
 from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.results.results_building import describe_uncertainty, key_by_owner, select_finite
+from pantocheck.conformance.results.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.results.results_format import (
     CaseResult,
-    FilterFacts,
     InputGroup,
     LibraryIdentity,
     RunFacts,
@@ -48,14 +46,10 @@ _EMPTY: dict[str, object] = {
 def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
     """Grade the outcome of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Case with its limits.
-    outcome : Outcome
-        Outcome of the case on a system.
-    lowest_trust : Trust
-        Lowest trust of the limits that count.
+    Args:
+        case: Case with its limits.
+        outcome: Outcome of the case on a system.
+        lowest_trust: Lowest trust of the limits that count.
     """
     match outcome:
         case Skipped(reason):
@@ -102,7 +96,9 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),
-        **describe_uncertainty(values.uncertainty),
+        uncertainty=key_by_owner(select_finite(values.uncertainty.combined)),
+        uncertainty_components=list_components(values.uncertainty),
+        uncertainty_basis=values.uncertainty.basis,
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
         uplift=[] if signals is None else build_uplift_traces(signals),
         contact_losses=None if signals is None else build_contact_losses(signals.pantographs),
@@ -147,7 +143,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "stated_limits_digest": limits_digest(case.file.limit),
             "limit_changes": list_limit_changes(case),
             "library": library,
-            "origin": None if library == "identical" else describe_case_origin(case),
+            "origin": None if library == "identical" else case.origin,
             "edition": file.edition,
             "superseded_by": file.superseded_by,
             "steps": _list_steps(case, library),
@@ -155,7 +151,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
                 **delivered.run.model_dump(),
                 speed_km_h=file.speed_km_h,
                 rate_Hz=None if record is None else float(f"{record.rate:.9g}"),
-                filter=FilterFacts(**file.filter.model_dump()),
+                filter=file.filter,
                 evaluated_m=None if case.is_static else case.analysis_section,
                 law_forces=list_law_forces(case),
             ),

@@ -15,7 +15,7 @@ from pantocheck.conformance.quantities.limit_text import format_bounds, name_val
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
 _FINDING_TEXTS = {"section", "sentence", "printed", "tolerance", "sensitivity"}
-_REMARKS: dict[str, Any] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
+_REMARKS: dict[str, bool | set[str]] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
 """Texts of a limit, which do not change its grade."""
 
 
@@ -78,12 +78,9 @@ def list_limit_changes(case: Case) -> list[str]:
 def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     """Change of a limit by the limit that replaces it; None if it is as strict and of the same trust.
 
-    Parameters
-    ----------
-    stated : Limit
-        Limit of the case or profile.
-    limit : Limit or None
-        Limit of the user that replaces it; None if it was removed.
+    Args:
+        stated: Limit of the case or profile.
+        limit: Limit of the user that replaces it; None if it was removed.
     """
     name = name_value(stated.quantity, stated.item) + (f" of pantograph {stated.owner}" if stated.owner else "")
     bounds = format_bounds(stated.lower, stated.upper)

@@ -18,15 +18,11 @@ BOTH: tuple[VerdictName, ...] = ("criteria", "verification")
 def choose_verdicts(choice: VerdictChoice | None, system: str, cases: Sequence[str]) -> tuple[VerdictName, ...]:
     """Verdicts that decide a run.
 
-    Parameters
-    ----------
-    choice : {"criteria", "verification", "both"} or None
-        Choice of the user. By default, the built-in simulator, which computed the converged values, is judged by the
-        criteria; any other system by both verdicts, where a case has converged values.
-    system : str
-        System under test, `builtin` or any other.
-    cases : sequence of str
-        Ids of the cases.
+    Args:
+        choice: Choice of the user. By default, the built-in simulator, which computed the converged values, is judged
+            by the criteria; any other system by both verdicts, where a case has converged values.
+        system: System under test, `builtin` or any other.
+        cases: Ids of the cases.
     """
     if choice is not None:
         return BOTH if choice == "both" else (choice,)
@@ -36,18 +32,12 @@ def choose_verdicts(choice: VerdictChoice | None, system: str, cases: Sequence[s
 
 @dataclass(frozen=True)
 class CaseSelection:
-    """Cases that count for the requested verdicts.
-
-    Parameters
-    ----------
-    trust : Trust
-        Lowest trust of the limits that count.
-    requested : tuple of {"criteria", "verification"}
-        Verdicts that decide.
-    """
+    """Cases that count for the requested verdicts."""
 
     trust: Trust
+    """Lowest trust of the limits that count."""
     requested: tuple[VerdictName, ...]
+    """Verdicts that decide."""
 
     def keep_counting(self, cases: Sequence[Case]) -> list[Case]:
         """Cases that count and have no `on_request`, and the cases that they require."""

@@ -18,10 +18,9 @@ from pantocheck.conformance.quantities.evaluation import Evaluation, SectionedSi
 def discretisation_component(coarse: Evaluation | None, value: Evaluation, fine: Evaluation | None) -> Component:
     """Uncertainty from mesh and time step.
 
-    Parameters
-    ----------
-    coarse, value, fine : Evaluation
-        Quantities with element length and time step doubled, as in the case, and halved; None: not known.
+    Args:
+        coarse, value, fine: Quantities with element length and time step doubled, as in the case, and halved; None: not
+            known.
     """
     if fine is None:
         return Component("not known: the system delivered one mesh and one time step only")
@@ -55,14 +54,10 @@ def _same_items(a: Value | None, b: Value) -> bool:
 def start_component(case: Case, signals: SectionedSignals, others: Sequence[Evaluation]) -> Component:
     """Uncertainty from the start and the run-in.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the run.
-    signals : SectionedSignals
-        Signals of the run.
-    others : sequence of Evaluation
-        Quantities of the same case with other starts.
+    Args:
+        case: Case of the run.
+        signals: Signals of the run.
+        others: Quantities of the same case with other starts.
     """
     run_in = f"a run-in of {run_in_spans(case):.3g} spans"
     if others:

@@ -13,16 +13,11 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, V
 def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdict:
     """Verdict of a case: its worst counted criterion, lowered by the state of its record.
 
-    Parameters
-    ----------
-    criteria : iterable of Verdict
-        Verdicts of the criteria; `info` marks a criterion that does not count.
-    record : RecordFacts or None
-        State of the record; None for a case without a record.
+    Args:
+        criteria: Verdicts of the criteria; `info` marks a criterion that does not count.
+        record: State of the record; None for a case without a record.
 
-    Returns
-    -------
-    Verdict
+    Returns:
         `info` if no criterion counts; `unverified` if all counted criteria pass on an unverified record; `error` if the
         record is contradicted.
     """
@@ -36,46 +31,32 @@ def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdi
 def judge_baseline(drifts: Iterable[Verdict], values: int) -> Verdict:
     """Verdict of a case by its baseline: the worst of the criteria of drift; `info` if no value was compared.
 
-    Parameters
-    ----------
-    drifts : iterable of Verdict
-        Verdicts of the values that drifted or are missing, and of a comparison that is impossible.
-    values : int
-        Number of compared values.
+    Args:
+        drifts: Verdicts of the values that drifted or are missing, and of a comparison that is impossible.
+        values: Number of compared values.
     """
     return worst_verdict([*drifts, "pass" if values else "info"])
 
 
 @dataclass(frozen=True)
 class Participation:
-    """Cases and verdicts that decide the verdict of a run, and records that need no verification.
-
-    Parameters
-    ----------
-    information : tuple of str
-        Ids of the cases that are shown for information.
-    accepted_unverified : tuple of str
-        Names of systems whose unverified records count as a pass.
-    requested : tuple of {"criteria", "verification"}
-        Verdicts that decide; the worst of them is the verdict of the run.
-    verification_only : tuple of str
-        Ids of the cases that take part in the verification only.
-    """
+    """Cases and verdicts that decide the verdict of a run, and records that need no verification."""
 
     information: tuple[str, ...] = ()
+    """Ids of the cases that are shown for information."""
     accepted_unverified: tuple[str, ...] = ()
+    """Names of systems whose unverified records count as a pass."""
     requested: tuple[VerdictName, ...] = ("criteria",)
+    """Verdicts that decide; the worst of them is the verdict of the run."""
     verification_only: tuple[str, ...] = ()
+    """Ids of the cases that take part in the verification only."""
 
     def judge_run(self, cases: Iterable[tuple[str, Verdict]], system: str) -> Verdict:
         """Verdict of a run: the worst case that takes part; `info` if none does.
 
-        Parameters
-        ----------
-        cases : iterable of tuple of (str, Verdict)
-            Id and verdict of each case.
-        system : str
-            Name of the graded system.
+        Args:
+            cases: Id and verdict of each case.
+            system: Name of the graded system.
         """
         accepted = system in self.accepted_unverified
         return worst_verdict(

@@ -16,6 +16,7 @@ from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.finding_format import IMPOSED_REASON, count_verdict, grade_finding
+from pantocheck.conformance.results.results_part import select_item
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""
@@ -23,77 +24,51 @@ ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Requirement:
-    """Limits of one number.
-
-    Parameters
-    ----------
-    quantity : str
-        Name of the quantity.
-    owner : int
-        Number of the pantograph, 0 for the line.
-    item : int or None
-        Number among several values (dropper, mode), from 1.
-    lower, upper : float or None
-        Limits in the unit of the quantity; both None if they are not known.
-    trust : Trust or None
-        Trust of the limits; None: bounds of a baseline.
-    source : str
-        Source of the limits.
-    finding : PublishedFinding or None
-        Finding of a publication that the limits grade.
-    unit : str or None
-        Unit of a value that is no quantity of a run; None: that of the quantity.
-    baseline : float or None
-        Earlier value, if the limits bound the drift from it.
-    """
+    """Limits of one number."""
 
     quantity: str
+    """Name of the quantity."""
     owner: int
+    """Number of the pantograph, 0 for the line."""
     item: int | None
+    """Number among several values (dropper, mode), from 1."""
     lower: float | None
     upper: float | None
+    """Limits in the unit of the quantity; both None if they are not known."""
     trust: Trust | Computed | None
+    """Trust of the limits; None: bounds of a baseline."""
     source: str
+    """Source of the limits."""
     finding: PublishedFinding | None = None
+    """Finding of a publication that the limits grade."""
     unit: str | None = None
+    """Unit of a value that is no quantity of a run; None: that of the quantity."""
     baseline: float | None = None
+    """Earlier value, if the limits bound the drift from it."""
 
 
 @dataclass(frozen=True)
 class GradedValues:
-    """Quantities of a run, with their uncertainty.
-
-    Parameters
-    ----------
-    evaluation : Evaluation
-        Quantities, and the reasons why others are not available.
-    refined : Evaluation or None
-        Quantities of the same case with element length and time step halved.
-    spread : mapping
-        Largest change when the analysis section is shifted span by span.
-    uncertainty : Uncertainty
-        Half-widths of the 95 % intervals by component.
-    """
+    """Quantities of a run, with their uncertainty."""
 
     evaluation: Evaluation
+    """Quantities, and the reasons why others are not available."""
     refined: Evaluation | None = None
+    """Quantities of the same case with element length and time step halved."""
     spread: ErrorsByQuantity = field(default_factory=dict)
+    """Largest change when the analysis section is shifted span by span."""
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    """Half-widths of the 95 % intervals by component."""
 
 
 def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
     """Grade a quantity by a limit.
 
-    Parameters
-    ----------
-    limit : Limit
-        Limit of one quantity.
-    values : GradedValues
-        Quantities of the run.
-    lowest_trust : Trust
-        Lowest trust of the limits that count.
-    limit_uncertainty : float
-        Uncertainty of the limit itself, if it comes from a measured record.
+    Args:
+        limit: Limit of one quantity.
+        values: Quantities of the run.
+        lowest_trust: Lowest trust of the limits that count.
+        limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
     """
     number, source = (limit.quantity, limit.owner, limit.item), source_text(limit.source)
     requirement = Requirement(*number, limit.lower, limit.upper, limit.trust, source, limit.finding)
@@ -117,7 +92,7 @@ def grade_requirement(
         components={
             part: item
             for part, width in components.items()
-            if (item := _select_item(width, requirement.item)) is not None
+            if (item := select_item(width, requirement.item)) is not None
         },
         limit_uncertainty=limit_uncertainty,
     )
@@ -133,18 +108,12 @@ def build_criterion(
 ) -> Criterion:
     """Grade a value by its limits.
 
-    Parameters
-    ----------
-    requirement : Requirement
-        Limits of the value.
-    value : float or None
-        Value; None if it is not available.
-    missing : str or None
-        Reason why there is no value or no limit.
-    lowest_trust : Trust
-        Lowest trust of the limits that count.
-    errors : ValueErrors
-        Errors of the value.
+    Args:
+        requirement: Limits of the value.
+        value: Value; None if it is not available.
+        missing: Reason why there is no value or no limit.
+        lowest_trust: Lowest trust of the limits that count.
+        errors: Errors of the value.
     """
     name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
     unit = unit_of(name) if requirement.unit is None else requirement.unit
@@ -192,24 +161,12 @@ def criterion_name(criterion: Criterion) -> str:
 def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
     """Value that limits apply to; None if there is none, or no finite one.
 
-    Parameters
-    ----------
-    requirement : Requirement or Limit
-        Limits of one quantity, or of one item of it.
-    values : mapping of int to mapping of str to Value
-        Quantities by pantograph (0: the line) and name.
+    Args:
+        requirement: Limits of one quantity, or of one item of it.
+        values: Quantities by pantograph (0: the line) and name.
     """
-    value = values.get(requirement.owner, {}).get(requirement.quantity)
-    number = None if value is None else _select_item(value, requirement.item)
+    number = select_item(values.get(requirement.owner, {}).get(requirement.quantity), requirement.item)
     return number if number is not None and math.isfinite(number) else None
-
-
-def _select_item(value: Value, item: int | None) -> float | None:
-    """Item of a value with several items, by default the first; None if there is none."""
-    if not isinstance(value, tuple):
-        return value
-    index = (item or 1) - 1
-    return value[index] if index < len(value) else None
 
 
 def _distance_outside(value: float, requirement: Requirement, unit: str) -> str:

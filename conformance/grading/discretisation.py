@@ -28,10 +28,8 @@ LARGE_SAFETY_FACTOR = 3.0
 def observed_order(coarse: float, value: float, fine: float) -> float | None:
     """Order of convergence of three values, each with half of the steps of the one before; None: no convergence.
 
-    Parameters
-    ----------
-    coarse, value, fine : float
-        Values with steps doubled, as in the case, and halved.
+    Args:
+        coarse, value, fine: Values with steps doubled, as in the case, and halved.
     """
     first, second = coarse - value, value - fine
     return math.log2(first / second) if second and first / second > 0 else None
@@ -40,16 +38,11 @@ def observed_order(coarse: float, value: float, fine: float) -> float | None:
 def discretisation_half_width(coarse: float | None, value: float, fine: float) -> float:
     """Half-width of the 95 % interval of a value from mesh and time step.
 
-    Parameters
-    ----------
-    coarse : float or None
-        Value with element length and time step doubled; None if it is not known.
-    value, fine : float
-        Value of the case, and with element length and time step halved.
+    Args:
+        coarse: Value with element length and time step doubled; None if it is not known.
+        value, fine: Value of the case, and with element length and time step halved.
 
-    Returns
-    -------
-    float
+    Returns:
         Richardson error times `SAFETY_FACTOR` where an order is observed, else a difference times
         `LARGE_SAFETY_FACTOR`.
     """

@@ -18,23 +18,15 @@ def apply_exclusions(
 ) -> tuple[Stretches, tuple[EventFacts, ...], tuple[str, ...]]:
     """Decide which events of a record are left out.
 
-    Parameters
-    ----------
-    events : sequence of RecordEvent
-        Events of the analysis section.
-    section : tuple of float
-        Start and end of the analysis section [m].
-    rule : ExclusionRule or None
-        Rule of the profile; None: nothing may be left out.
+    Args:
+        events: Events of the analysis section.
+        section: Start and end of the analysis section [m].
+        rule: Rule of the profile; None: nothing may be left out.
 
-    Returns
-    -------
-    excluded : tuple of tuple of float
-        Stretches that are left out [m, m].
-    facts : tuple of EventFacts
-        Every event, with the reason why it is left out or not.
-    warnings : tuple of str
-        Sentences on what is left out, and on exclusions that are not applied.
+    Returns:
+        excluded: Stretches that are left out [m, m].
+        facts: Every event, with the reason why it is left out or not.
+        warnings: Sentences on what is left out, and on exclusions that are not applied.
     """
     wanted = [event for event in events if event.reason is not None]
     permitted = [event for event in wanted if rule is not None and event.kind in rule.kinds]

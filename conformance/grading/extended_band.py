@@ -25,14 +25,10 @@ def extended_band_warnings(evaluation: Evaluation, refined: Evaluation | None, d
 
     Rate and filter of the record are checked where the values are computed: unsupported values are skipped.
 
-    Parameters
-    ----------
-    evaluation : Evaluation
-        Quantities of the run.
-    refined : Evaluation or None
-        Quantities of the same case with element length and time step halved; None if that was not run.
-    dt_s : float or None
-        Time step of the run [s], if known.
+    Args:
+        evaluation: Quantities of the run.
+        refined: Quantities of the same case with element length and time step halved; None if that was not run.
+        dt_s: Time step of the run [s], if known.
     """
     band_values, warnings = _band_values(evaluation), find_unvalidated(evaluation)
     if not band_values:

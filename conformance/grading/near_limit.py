@@ -21,24 +21,16 @@ REMEDIES: Mapping[str, str] = MappingProxyType(
 
 @dataclass(frozen=True)
 class ValueErrors:
-    """Errors of a value, in its unit.
-
-    Parameters
-    ----------
-    discretisation : float or None
-        Change when element length and time step are halved; None: not known.
-    spread : float or None
-        Largest change when the analysis section is shifted span by span; None: not known.
-    components : mapping of ComponentName to float
-        Half-widths of the 95 % interval by component; unknown components are left out.
-    limit_uncertainty : float
-        Half-width of the 95 % interval of the limit itself, if it comes from a measured record.
-    """
+    """Errors of a value, in its unit."""
 
     discretisation: float | None = None
+    """Change when element length and time step are halved; None: not known."""
     spread: float | None = None
+    """Largest change when the analysis section is shifted span by span; None: not known."""
     components: Mapping[ComponentName, float] = field(default_factory=dict)
+    """Half-widths of the 95 % interval by component; unknown components are left out."""
     limit_uncertainty: float = 0.0
+    """Half-width of the 95 % interval of the limit itself, if it comes from a measured record."""
 
     @property
     def uncertainty(self) -> float | None:
@@ -54,20 +46,13 @@ def near_limit_remarks(
 ) -> list[str]:
     """Remark on a value whose uncertainty, combined with that of its limit, exceeds its distance from the nearer limit.
 
-    Parameters
-    ----------
-    value : float or None
-        Graded value; None if there is none.
-    limits : tuple of float or None
-        Lower and upper limit. Equal limits have no remark: any error would exceed the distance.
-    unit : str
-        Unit of the value.
-    errors : ValueErrors
-        Errors of the value.
+    Args:
+        value: Graded value; None if there is none.
+        limits: Lower and upper limit. Equal limits have no remark: any error would exceed the distance.
+        unit: Unit of the value.
+        errors: Errors of the value.
 
-    Returns
-    -------
-    list of str
+    Returns:
         One remark, or none.
     """
     lower, upper = limits

@@ -25,18 +25,12 @@ def judge_procedure(steps: Iterable[ProcedureStep]) -> Verdict:
 def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted: bool) -> Procedure:
     """Procedure with the verdicts of its steps and claims.
 
-    Parameters
-    ----------
-    procedure : Procedure
-        Procedure whose verdicts are not decided, or are checked.
-    cases : sequence of CaseResult
-        Results of all cases, with their verdicts.
-    accepted : bool
-        Whether the user accepts unverified records of the system.
+    Args:
+        procedure: Procedure whose verdicts are not decided, or are checked.
+        cases: Results of all cases, with their verdicts.
+        accepted: Whether the user accepts unverified records of the system.
 
-    Returns
-    -------
-    Procedure
+    Returns:
         The same procedure with its verdicts, margins and uncertainties.
     """
     by_id = {case.id: case for case in cases}
@@ -63,14 +57,10 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
 def judge_step(step: ProcedureStep, parts: Sequence[Verdict], accepted: bool) -> Verdict:
     """Verdict of a step.
 
-    Parameters
-    ----------
-    step : ProcedureStep
-        The step with its own criteria.
-    parts : sequence of Verdict
-        Verdicts of its cases and claims.
-    accepted : bool
-        Whether the user accepts unverified records of the system.
+    Args:
+        step: The step with its own criteria.
+        parts: Verdicts of its cases and claims.
+        accepted: Whether the user accepts unverified records of the system.
     """
     if step.state != "done":
         return "error" if step.state == "error" else "skip"
@@ -82,16 +72,12 @@ def judge_step(step: ProcedureStep, parts: Sequence[Verdict], accepted: bool) ->
 def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[str, str | float | None]:
     """Keys of a step on its counted criterion with the smallest margin.
 
-    Parameters
-    ----------
-    criteria : iterable of tuple of (str or None, Criterion)
-        Criteria with the ids of their cases.
+    Args:
+        criteria: Criteria with the ids of their cases.
 
-    Returns
-    -------
-    dict
-        `closest`, `margin`, and `uncertainty` on the scale of the margin; None without a criterion that has a range
-        and a value beside its limits.
+    Returns:
+        `closest`, `margin`, and `uncertainty` on the scale of the margin; None without a criterion that has a range and
+        a value beside its limits.
     """
     counted = [
         (case, row)
@@ -122,14 +108,10 @@ def _equals_its_limit(row: Criterion) -> bool:
 def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence: Sequence[Evidence]) -> ValidityClaim:
     """Claim with its verdict: verified for every claimed line with every claimed pantograph, or not verified.
 
-    Parameters
-    ----------
-    claim : ValidityClaim
-        The claim.
-    claims : sequence of ValidityClaim
-        All claims; those on lines and pantographs limit the runs that count.
-    evidence : sequence of Evidence
-        Conditions of all runs.
+    Args:
+        claim: The claim.
+        claims: All claims; those on lines and pantographs limit the runs that count.
+        evidence: Conditions of all runs.
     """
     passed = [item for item in evidence if item.passed]
     lines, pantographs = (
@@ -161,12 +143,9 @@ def rest_claim_on_steps(claim: ValidityClaim, steps: Sequence[ProcedureStep]) ->
 
     A step that fails or has an error leaves the claim not verified: `skip`. Its removal then never improves the claim.
 
-    Parameters
-    ----------
-    claim : ValidityClaim
-        Claim with the verdict of its runs.
-    steps : sequence of ProcedureStep
-        Steps before the limits of validity, with their verdicts.
+    Args:
+        claim: Claim with the verdict of its runs.
+        steps: Steps before the limits of validity, with their verdicts.
     """
     missing = [(number, step) for number, step in enumerate(steps, 1) if step.verdict != "pass"]
     if not missing:

@@ -24,12 +24,12 @@ from pantocheck.conformance.results.extreme_places import find_force_places
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_building import (
     build_results,
-    describe_uncertainty,
     key_by_owner,
+    list_components,
     select_finite,
     utc_now,
 )
-from pantocheck.conformance.results.results_format import CaseResult, FilterFacts, Results, RunFacts, SystemIdentity
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
 from pantocheck.conformance.results.traces import build_pantograph_traces
 
 
@@ -43,25 +43,16 @@ def assess_record(
 ) -> Results:
     """Grade a record by a profile.
 
-    Parameters
-    ----------
-    subject : AssessedRecord
-        Graded record.
-    profile : Profile
-        Profile with the rules.
-    trust : Trust
-        Lowest trust of the rules that count.
-    measured : AssessedRecord or None
-        Measured record, for a profile that compares.
-    limits : sequence of Limit
-        The user's own limits, which replace the rules of the same quantity.
-    participation : Participation
-        Accepted unverified records.
+    Args:
+        subject: Graded record.
+        profile: Profile with the rules.
+        trust: Lowest trust of the rules that count.
+        measured: Measured record, for a profile that compares.
+        limits: The user's own limits, which replace the rules of the same quantity.
+        participation: Accepted unverified records.
 
-    Raises
-    ------
-    InputError
-        A measured record is missing, not needed, or does not fit the record.
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
     """
     check_pair(subject, measured, profile)
     case = grade_record(subject, profile, trust, measured, limits)
@@ -113,7 +104,9 @@ def grade_record(
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},
-        **describe_uncertainty(subject.uncertainty),
+        uncertainty=key_by_owner(select_finite(subject.uncertainty.combined)),
+        uncertainty_components=list_components(subject.uncertainty),
+        uncertainty_basis=subject.uncertainty.basis,
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,
@@ -132,10 +125,8 @@ def grade_record(
 def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
     """Check that a measured record belongs to a record, and is not a copy of it; parameters as in `assess_record`.
 
-    Raises
-    ------
-    InputError
-        A measured record is missing, not needed, or does not fit the record.
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
     """
     where = f"profile '{profile.name}'"
     if measured is None:
@@ -177,7 +168,7 @@ def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:
         element_m=run.element_m,
         speed_km_h=subject.header.speed_km_h,
         rate_Hz=None if prepared is None else prepared.rate,
-        filter=FilterFacts(**profile.filter.model_dump()),
+        filter=profile.filter,
         evaluated_m=None if section is None else (section[0], section[1]),
     )
 

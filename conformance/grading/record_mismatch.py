@@ -23,12 +23,9 @@ gives the same error at a distance of 100 m."""
 def find_record_mismatch(case: Case, record: Record) -> str | None:
     """Reason why a record is no run of a case; None if it is one.
 
-    Parameters
-    ----------
-    case : Case
-        Case with its train.
-    record : Record
-        Delivered record.
+    Args:
+        case: Case with its train.
+        record: Delivered record.
     """
     other = _find_other_run(case, record.pantographs, 3.6 * record.speed, record.evaluated)
     return f"the record {other}" if other is not None else _find_other_spacing(case, record)
@@ -37,12 +34,9 @@ def find_record_mismatch(case: Case, record: Record) -> str | None:
 def find_summary_mismatch(case: Case, summary: RecordSummary) -> str | None:
     """Reason why a summary record is not of a run of a case; None if it is.
 
-    Parameters
-    ----------
-    case : Case
-        Case with its train.
-    summary : RecordSummary
-        Delivered summary record.
+    Args:
+        case: Case with its train.
+        summary: Delivered summary record.
     """
     other = _find_other_run(case, len(summary.pantograph), summary.speed_km_h, summary.evaluated_m)
     if other is not None:
@@ -81,12 +75,9 @@ def _find_other_spacing(case: Case, record: Record) -> str | None:
 def find_other_case(case: Case, case_digest: str | None) -> str | None:
     """Reason why a record was made with other inputs than those of a case; None if it was not, or does not state it.
 
-    Parameters
-    ----------
-    case : Case
-        Case that is graded.
-    case_digest : str or None
-        Digest of the inputs of the case, as the record states it.
+    Args:
+        case: Case that is graded.
+        case_digest: Digest of the inputs of the case, as the record states it.
     """
     if case_digest in {None, case.digest}:
         return None

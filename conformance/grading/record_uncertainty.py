@@ -22,14 +22,10 @@ ONE_RUN = Component("not known: the record holds one run")
 def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Uncertainty:
     """Uncertainty of the quantities of a record without a case.
 
-    Parameters
-    ----------
-    record : PreparedRecord
-        Signals of the record.
-    span_m : float
-        Length of a span [m].
-    digest : str
-        SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
+    Args:
+        record: Signals of the record.
+        span_m: Length of a span [m].
+        digest: SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
     """
     return Uncertainty(
         {
@@ -44,12 +40,9 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
 def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> Component:
     """Uncertainty from the position of the analysis section: the largest change when it is shifted, widened.
 
-    Parameters
-    ----------
-    signals : SectionedSignals
-        Signals of the record.
-    sections : sequence of tuple of float
-        Shifted sections [m, m].
+    Args:
+        signals: Signals of the record.
+        sections: Shifted sections [m, m].
     """
     widths = section_spread(signals, sections)
     if not widths:
@@ -62,16 +55,11 @@ def length_component(
 ) -> Component:
     """Uncertainty from the length of the record, by a moving-block bootstrap with blocks of one span.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals or SignalsOutside
-        Signals by number from 1.
-    span_m : float
-        Length of a span [m].
-    speed : float
-        Speed of the train [m/s].
-    digest : str
-        SHA-256 in hexadecimal, the seed of the random numbers.
+    Args:
+        pantographs: Signals by number from 1.
+        span_m: Length of a span [m].
+        speed: Speed of the train [m/s].
+        digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
     widths = {
         number: bootstrap_uncertainties(signals, span_m / speed, digest) for number, signals in pantographs.items()
@@ -84,18 +72,13 @@ def length_component(
 def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
     """Largest difference of each quantity from its value when the analysis section is shifted.
 
-    Parameters
-    ----------
-    signals : SectionedSignals
-        Signals of the run.
-    sections : sequence of tuple of float
-        Start and end of every section of the same length [m, m].
+    Args:
+        signals: Signals of the run.
+        sections: Start and end of every section of the same length [m, m].
 
-    Returns
-    -------
-    dict of int to dict of str to float
-        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than
-        `MIN_SECTIONS` sections are left out.
+    Returns:
+        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than `MIN_SECTIONS`
+        sections are left out.
     """
     shifted = [signals.evaluate_section(section).values for section in sections]
     return largest_changes(signals.evaluation.values, shifted, MIN_SECTIONS)
@@ -109,14 +92,10 @@ def widen_changes(changes: Mapping[int, Mapping[str, float]]) -> dict[int, dict[
 def largest_changes(values: ValuesByOwner, others: Sequence[ValuesByOwner], fewest: int) -> dict[int, dict[str, float]]:
     """Largest difference of each quantity from its value in other evaluations.
 
-    Parameters
-    ----------
-    values : mapping of int to mapping of str to Value
-        Quantities by pantograph and name.
-    others : sequence of mapping
-        The same quantities of other runs or sections.
-    fewest : int
-        Smallest number of evaluations with a quantity; a quantity with fewer is left out.
+    Args:
+        values: Quantities by pantograph and name.
+        others: The same quantities of other runs or sections.
+        fewest: Smallest number of evaluations with a quantity; a quantity with fewer is left out.
     """
     changes: dict[int, dict[str, float]] = {}
     for owner, quantities in values.items():

@@ -20,21 +20,14 @@ from pantocheck.conformance.results.criterion_format import Criterion
 
 @dataclass(frozen=True)
 class RuleGrading:
-    """Grading of a record by rules.
-
-    Parameters
-    ----------
-    subject : AssessedRecord
-        Graded record.
-    measured : AssessedRecord or None
-        Measured record for rules that compare.
-    trust : Trust
-        Lowest trust of the rules that count.
-    """
+    """Grading of a record by rules."""
 
     subject: AssessedRecord
+    """Graded record."""
     measured: AssessedRecord | None
+    """Measured record for rules that compare."""
     trust: Trust
+    """Lowest trust of the rules that count."""
 
     def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> list[Criterion]:
         """Criteria of the rules of a profile, and of the user's own limits, which replace rules of the same quantity.

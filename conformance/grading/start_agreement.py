@@ -20,29 +20,20 @@ The standard deviation of the 2002 model at 250 km/h moves by 2 N along a span o
 
 @dataclass(frozen=True)
 class StartAgreement:
-    """Agreement of the start of a record with that of its case.
-
-    Parameters
-    ----------
-    state : StartState
-        Whether the starts are the same, differ, or are not comparable because the record states none.
-    text : str
-        Remark for the reader of the report.
-    """
+    """Agreement of the start of a record with that of its case."""
 
     state: StartState
+    """Whether the starts are the same, differ, or are not comparable because the record states none."""
     text: str
+    """Remark for the reader of the report."""
 
 
 def compare_starts(case: Case, stated: StartTable | None) -> StartAgreement:
     """Compare the stated start of a record with that of its case.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    stated : StartTable or None
-        Start that the record states.
+    Args:
+        case: Case with a speed.
+        stated: Start that the record states.
     """
     if stated is None:
         return StartAgreement(
@@ -66,9 +57,7 @@ def compare_starts(case: Case, stated: StartTable | None) -> StartAgreement:
 def list_verification_components(start: StartState | None) -> tuple[ComponentName, ...]:
     """Components of the uncertainty that count against converged values, which have the section of the case.
 
-    Parameters
-    ----------
-    start : StartState or None
-        Start of the record against that of its case; None without a record.
+    Args:
+        start: Start of the record against that of its case; None without a record.
     """
     return ("discretisation", "start") if start == "differs" else ("discretisation",)

@@ -14,31 +14,20 @@ from pantocheck.conformance.results.criterion_format import ComponentName
 
 @dataclass(frozen=True)
 class Component:
-    """One component of the uncertainty of all values of a case.
-
-    Parameters
-    ----------
-    basis : str
-        How the half-widths were determined, or why there are none.
-    half_widths : mapping of int to mapping of str to Value
-        Half-widths in the units of the quantities, by pantograph (0: the line) and name.
-    """
+    """One component of the uncertainty of all values of a case."""
 
     basis: str
+    """How the half-widths were determined, or why there are none."""
     half_widths: ValuesByOwner = field(default_factory=dict)
+    """Half-widths in the units of the quantities, by pantograph (0: the line) and name."""
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Uncertainty of all values of a case.
-
-    Parameters
-    ----------
-    components : mapping of ComponentName to Component
-        Components; those without half-widths included.
-    """
+    """Uncertainty of all values of a case."""
 
     components: Mapping[ComponentName, Component] = field(default_factory=dict)
+    """Components; those without half-widths included."""
 
     def list_components(self, owner: int, quantity: str) -> dict[ComponentName, Value]:
         """Half-widths of a quantity by component; an unknown component is left out."""
@@ -53,6 +42,11 @@ class Uncertainty:
     def unknown_components(self) -> tuple[ComponentName, ...]:
         """Components without a half-width of any quantity."""
         return tuple(name for name, part in self.components.items() if not part.half_widths)
+
+    @property
+    def basis(self) -> dict[ComponentName, str]:
+        """How each component was determined, or why it is not known."""
+        return {name: part.basis for name, part in self.components.items()}
 
     @property
     def by_quantity(self) -> dict[int, dict[str, dict[ComponentName, Value]]]:
@@ -79,14 +73,10 @@ class Uncertainty:
 def combine_half_widths(components: Mapping[ComponentName, Value]) -> Value:
     """Combine the half-widths of independent components: the root of the sum of their squares.
 
-    Parameters
-    ----------
-    components : mapping of ComponentName to Value
-        Half-widths; of a quantity with several values, one per item.
+    Args:
+        components: Half-widths; of a quantity with several values, one per item.
 
-    Returns
-    -------
-    Value
+    Returns:
         Combined half-width; zero without a component.
     """
     return map_items(math.hypot, *components.values())
@@ -99,10 +89,8 @@ def _is_finite(value: Value) -> bool:
 def map_items(function: Callable[..., float], *values: Value) -> Value:
     """Apply a function to numbers, or item by item to tuples of equal length.
 
-    Raises
-    ------
-    ValueError
-        The values have different numbers of items.
+    Raises:
+        ValueError: The values have different numbers of items.
     """
     if all(isinstance(value, float | int) for value in values):
         return function(*values)

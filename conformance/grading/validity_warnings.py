@@ -27,12 +27,9 @@ matters: the accepted error of the mean force in the consistency check."""
 def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
     """Warnings on speed, start, working height and lost contact of a passage; none for a static case.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the run.
-    evaluation : Evaluation
-        Quantities of the run.
+    Args:
+        case: Case of the run.
+        evaluation: Quantities of the run.
     """
     if case.is_static or not case.pantographs:
         return []
@@ -47,14 +44,10 @@ def validity_warnings(case: Case, evaluation: Evaluation) -> list[str]:
 def speed_warnings(case: Case) -> Iterator[str]:
     """Warn of a speed near the wave speed sqrt(T / m) of the contact wire, the slowest wave that meets the head.
 
-    Parameters
-    ----------
-    case : Case
-        Case of a passage.
+    Args:
+        case: Case of a passage.
 
-    Yields
-    ------
-    str
+    Yields:
         Warning with the reason and the remedy.
     """
     wires = [case.line.section_file(place).contact_wire for place in case.line.section_places]

@@ -22,16 +22,11 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
     limit, it is divided by the absolute limit (by 1 if the limit is 0). With two equal limits, it is divided by the
     absolute limit, but at least by 1.
 
-    Parameters
-    ----------
-    value : float
-        Graded value.
-    lower, upper : float or None
-        Limits in the unit of the value; at least one must be given.
+    Args:
+        value: Graded value.
+        lower, upper: Limits in the unit of the value; at least one must be given.
 
-    Returns
-    -------
-    float
+    Returns:
         Margin [-].
     """
     if lower is not None and lower == upper:
@@ -44,16 +39,11 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
 def normalise_distance(distance: float, lower: float | None, upper: float | None) -> float:
     """Distance divided by half the difference of two limits, or by the absolute limit (by 1 if the limit is 0).
 
-    Parameters
-    ----------
-    distance : float
-        Distance in the unit of the limits.
-    lower, upper : float or None
-        Limits that are not equal; at least one must be given.
+    Args:
+        distance: Distance in the unit of the limits.
+        lower, upper: Limits that are not equal; at least one must be given.
 
-    Returns
-    -------
-    float
+    Returns:
         Distance [-].
     """
     if lower is not None and upper is not None:

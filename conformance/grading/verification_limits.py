@@ -52,13 +52,10 @@ VERIFIED_QUANTITIES = (*RELATIVE, *EXTREMES)
 def build_requirements(converged: ConvergedFile, is_static: bool) -> tuple[Requirement, ...]:
     """Verification limits of a case.
 
-    Parameters
-    ----------
-    converged : ConvergedFile
-        Converged values of the case.
-    is_static : bool
-        Whether the case is a check of the line at rest. A record of a passage has no quantities of the line at rest,
-        so that those are required of a static case only.
+    Args:
+        converged: Converged values of the case.
+        is_static: Whether the case is a check of the line at rest. A record of a passage has no quantities of the line
+            at rest, so that those are required of a static case only.
     """
     source = f"converged solution, confirmed by {converged.second.name}"
     means = {value.owner: value.value for value in converged.value if value.quantity == "mean_force_N"}
@@ -98,19 +95,13 @@ def include_start(requirement: Requirement, converged: ConvergedFile) -> Require
 def tolerance(quantity: str, value: float, mean: float | None) -> float:
     """Tolerance of a converged value, in its unit.
 
-    Parameters
-    ----------
-    quantity : str
-        One of `VERIFIED_QUANTITIES`.
-    value : float
-        Converged value.
-    mean : float or None
-        Converged mean contact force of the pantograph [N]; None for a quantity of the line.
+    Args:
+        quantity: One of `VERIFIED_QUANTITIES`.
+        value: Converged value.
+        mean: Converged mean contact force of the pantograph [N]; None for a quantity of the line.
 
-    Raises
-    ------
-    ValueError
-        An extreme without a mean contact force.
+    Raises:
+        ValueError: An extreme without a mean contact force.
     """
     if quantity in RELATIVE:
         return RELATIVE[quantity] * abs(value)

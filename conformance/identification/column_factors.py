@@ -5,10 +5,9 @@ Householder's method, because it consists of matrix products. A second pass make
 refinements make a solution accurate to rounding, as long as the columns are not nearly dependent. Such columns are left
 to Householder's method.
 
-References
-----------
-.. [1] Y. Yamamoto, Y. Nakatsukasa, Y. Yanagisawa, T. Fukaya, Roundoff error analysis of the CholeskyQR2 algorithm,
-   Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
+References:
+    [1] Y. Yamamoto, Y. Nakatsukasa, Y. Yanagisawa, T. Fukaya, Roundoff error analysis of the CholeskyQR2 algorithm,
+        Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
 """
 
 from dataclasses import dataclass
@@ -32,39 +31,27 @@ REFINEMENTS = 2
 
 @dataclass(frozen=True)
 class Elimination:
-    """Signals without their part in the span of columns.
-
-    Parameters
-    ----------
-    coefficients : (m, c) ndarray
-        Coefficients of the columns in x; of dependent columns those with the smallest norm.
-    residual : (n, c) ndarray
-        Residual of x.
-    remainder : (n, d) ndarray
-        Residual of the other signals.
-    """
+    """Signals without their part in the span of columns."""
 
     coefficients: RealArray
+    """Coefficients of the columns in x, (m, c); of dependent columns those with the smallest norm."""
     residual: RealArray
+    """Residual of x, (n, c)."""
     remainder: RealArray
+    """Residual of the other signals, (n, d)."""
 
 
 def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> Elimination:
     """Subtract from signals their part in the span of columns.
 
-    Parameters
-    ----------
-    columns : (n, m) ndarray
-        Columns, n >= m.
-    x : (n, c) ndarray
-        Signals whose coefficients and residual are accurate to rounding.
-    others : (n, d) ndarray
-        Signals whose coefficients are not needed. Their solution is not refined: the error of the remainder lies in the
-        span of the columns, so that products of remainders have the square of its relative error.
+    Args:
+        columns: Columns, n >= m, (n, m).
+        x: Signals whose coefficients and residual are accurate to rounding, (n, c).
+        others: Signals whose coefficients are not needed, (n, d). Their solution is not refined: the error of the
+            remainder lies in the span of the columns, so that products of remainders have the square of its relative
+            error.
 
-    Returns
-    -------
-    Elimination
+    Returns:
         Coefficients and residual of x, and remainder of the other signals.
     """
     try:
@@ -80,19 +67,13 @@ def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> El
 def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
     """Solve columns c = x by least squares.
 
-    Parameters
-    ----------
-    columns : (n, m) ndarray
-        Columns, n >= m.
-    x : (n, c) ndarray
-        Right-hand sides.
+    Args:
+        columns: Columns, n >= m, (n, m).
+        x: Right-hand sides, (n, c).
 
-    Returns
-    -------
-    (m, c) ndarray
-        Coefficients; of dependent columns those with the smallest norm.
-    (n, c) ndarray
-        Residual.
+    Returns:
+        Coefficients, (m, c); of dependent columns those with the smallest norm.
+        Residual, (n, c).
     """
     solved = eliminate_columns(columns, x, np.zeros((x.shape[0], 0)))
     return solved.coefficients, solved.residual
@@ -101,17 +82,12 @@ def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, Re
 def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
     """Factor columns into an orthonormal basis and a triangular matrix, columns = Q R.
 
-    Parameters
-    ----------
-    columns : (n, m) ndarray
-        Columns, n >= m.
+    Args:
+        columns: Columns, n >= m, (n, m).
 
-    Returns
-    -------
-    (n, m) ndarray
-        Orthonormal basis Q.
-    (m, m) ndarray
-        Upper triangular factor R.
+    Returns:
+        Orthonormal basis Q, (n, m).
+        Upper triangular factor R, (m, m).
     """
     try:
         first = _factor_gram_matrix(columns)

@@ -17,22 +17,15 @@ LOWEST_FREQUENCY = 0.3
 
 @dataclass(frozen=True)
 class FrequencyBand:
-    """Band of the reported modes, with margins above it for fit and filters.
-
-    Parameters
-    ----------
-    low, high : float
-        Edges of the band of the reported modes [Hz].
-    fitted : float
-        Upper edge of the fit [Hz]; its distance from `high` keeps errors at the edge away from the reported modes.
-    stop : float
-        Lower edge of the stop band of the low-pass [Hz].
-    """
+    """Band of the reported modes, with margins above it for fit and filters."""
 
     low: float
     high: float
+    """Edges of the band of the reported modes [Hz]."""
     fitted: float
+    """Upper edge of the fit [Hz]; its distance from `high` keeps errors at the edge away from the reported modes."""
     stop: float
+    """Lower edge of the stop band of the low-pass [Hz]."""
 
     @classmethod
     def up_to(cls, high: float, rate: float) -> "FrequencyBand":
@@ -45,19 +38,13 @@ class FrequencyBand:
 def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> RealArray:
     """Taps of a linear-phase low-pass (Kaiser window).
 
-    Parameters
-    ----------
-    rate : float
-        Sampling rate [Hz].
-    passes, stops : float
-        Edges of the transition band [Hz].
-    attenuation : float
-        Attenuation of the stop band [dB].
+    Args:
+        rate: Sampling rate [Hz].
+        passes, stops: Edges of the transition band [Hz].
+        attenuation: Attenuation of the stop band [dB].
 
-    Returns
-    -------
-    (t,) ndarray
-        Taps; t is odd.
+    Returns:
+        Taps, (t,); t is odd.
     """
     length, beta = scipy.signal.kaiserord(attenuation, (stops - passes) / (rate / 2))
     taps = scipy.signal.firwin(length | 1, (passes + stops) / 2, window=("kaiser", beta), fs=rate)

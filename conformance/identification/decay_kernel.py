@@ -16,21 +16,14 @@ from pantocheck.conformance.array_types import ComplexArray, IntegerArray, RealA
 def decay_kernel(poles: ComplexArray, omega: RealArray, dt: float, n: int) -> ComplexArray:
     """Transform of exp(lambda n dt), n = 0..N-1, at spectral lines of the record.
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles lambda [1/s].
-    omega : (k,) ndarray
-        Angular frequencies, multiples of 2 pi / (n dt) [rad/s].
-    dt : float
-        Sampling interval [s].
-    n : int
-        Number of samples N.
+    Args:
+        poles: Poles lambda, (m,) [1/s].
+        omega: Angular frequencies, multiples of 2 pi / (n dt), (k,) [rad/s].
+        dt: Sampling interval [s].
+        n: Number of samples N.
 
-    Returns
-    -------
-    (k, m) ndarray
-        Sum of the geometric series [-].
+    Returns:
+        Sum of the geometric series, (k, m) [-].
     """
     return np.asarray(-np.expm1(poles * (n * dt)) / _one_minus_q(poles, omega, dt))
 
@@ -63,15 +56,12 @@ def join_conjugates(poles: ComplexArray) -> ComplexArray:
 def real_columns(kernels: ComplexArray) -> RealArray:
     """Real least-squares columns of A K(lambda) + conj(A) K(conj lambda).
 
-    Parameters
-    ----------
-    kernels : (k, 2 m) complex ndarray
-        K (or its derivative) at the poles lambda, then at their conjugates.
+    Args:
+        kernels: K (or its derivative) at the poles lambda, then at their conjugates, (k, 2 m).
 
-    Returns
-    -------
-    (2 k, 2 m) ndarray
-        Rows: real parts, then imaginary parts. Columns: factors of Re A of all poles, then of Im A of all poles.
+    Returns:
+        Rows, (2 k, 2 m): real parts, then imaginary parts. Columns: factors of Re A of all poles, then of Im A of all
+        poles.
     """
     k, m = kernels.shape[0], kernels.shape[1] // 2
     total, difference = kernels[:, :m] + kernels[:, m:], kernels[:, :m] - kernels[:, m:]

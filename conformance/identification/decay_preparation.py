@@ -21,38 +21,27 @@ GUARD = 2.0
 
 @dataclass(frozen=True)
 class LinearDecay:
-    """Linear decay of one record, low-pass filtered and decimated, with unchanged poles.
-
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Channels [unit of the record].
-    dt : float
-        Sampling interval [s].
-    taps : (t,) ndarray
-        Taps of the low-pass, at the original sampling rate.
-    rate : float
-        Original sampling rate [Hz].
-    start, end : float
-        Start and end of the used part, in the time of the record [s].
-    first : float
-        Time of the first sample, with the delay of the filter removed, in the time of the record [s].
-    poles : (m,) complex ndarray
-        Poles of the search for the linear part [1/s]. They are the start poles of an identification if its records
-        have different sampling rates; otherwise start poles are searched in all records together.
-    warnings : tuple of str
-        Reasons why the decay is shorter than the record.
-    """
+    """Linear decay of one record, low-pass filtered and decimated, with unchanged poles."""
 
     samples: RealArray
+    """Channels, (n, c) [unit of the record]."""
     dt: float
+    """Sampling interval [s]."""
     taps: RealArray
+    """Taps of the low-pass, at the original sampling rate, (t,)."""
     rate: float
+    """Original sampling rate [Hz]."""
     start: float
     end: float
+    """Start and end of the used part, in the time of the record [s]."""
     first: float
+    """Time of the first sample, with the delay of the filter removed, in the time of the record [s]."""
     poles: ComplexArray
+    """Poles of the search for the linear part, (m,) [1/s]. They are the start poles of an identification if its
+    records have different sampling rates; otherwise start poles are searched in all records together.
+    """
     warnings: tuple[str, ...] = ()
+    """Reasons why the decay is shorter than the record."""
 
     @property
     def duration(self) -> float:
@@ -62,30 +51,20 @@ class LinearDecay:
 
 @dataclass(frozen=True)
 class PreparedDecay:
-    """Record that is ready for identification.
-
-    Parameters
-    ----------
-    record : DropRecord
-        The record as read.
-    columns : tuple of int
-        Indices of the vertical channels that are used.
-    release : Release
-        Release of the mass.
-    linear : LinearDecay
-        Linear decay of those channels.
-    lateral : (n, l) ndarray
-        Lateral channels with the same filter, at the same times.
-    warnings : tuple of str
-        Caveats on the record.
-    """
+    """Record that is ready for identification."""
 
     record: DropRecord
+    """The record as read."""
     columns: tuple[int, ...]
+    """Indices of the vertical channels that are used."""
     release: Release
+    """Release of the mass."""
     linear: LinearDecay
+    """Linear decay of those channels."""
     lateral: RealArray
+    """Lateral channels with the same filter, at the same times, (n, l)."""
     warnings: tuple[str, ...]
+    """Caveats on the record."""
 
     @property
     def channels(self) -> tuple[DropChannel, ...]:
@@ -107,22 +86,12 @@ class PreparedDecay:
 def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     """Find the release and the linear decay of a record.
 
-    Parameters
-    ----------
-    record : DropRecord
-        The record.
-    band : FrequencyBand
-        Band of the identification.
+    Args:
+        record: The record.
+        band: Band of the identification.
 
-    Returns
-    -------
-    PreparedDecay
-        Record with its release and linear decay.
-
-    Raises
-    ------
-    InputError
-        The record has no vertical channel, or no usable free decay.
+    Raises:
+        InputError: The record has no vertical channel, or no usable free decay.
     """
     name = record.name
     vertical = record.along("z")
@@ -164,28 +133,18 @@ def find_linear_decay(
 ) -> LinearDecay:
     """Find the longest part after the release that equals a sum of decays within the noise.
 
-    Parameters
-    ----------
-    record : DropRecord
-        The record.
-    columns : tuple of int
-        Indices of the vertical channels that are used.
-    release : Release
-        Release of the mass.
-    band : FrequencyBand
-        Band of the identification.
-    clipped_until : float
-        Time of the last clipped sample [s]; 0: no sample is clipped.
+    Args:
+        record: The record.
+        columns: Indices of the vertical channels that are used.
+        release: Release of the mass.
+        band: Band of the identification.
+        clipped_until: Time of the last clipped sample [s]; 0: no sample is clipped.
 
-    Returns
-    -------
-    LinearDecay
+    Returns:
         Filtered and decimated samples.
 
-    Raises
-    ------
-    InputError
-        The linear decay is shorter than `SHORTEST_DECAY`, or a channel is constant after the release.
+    Raises:
+        InputError: The linear decay is shorter than `SHORTEST_DECAY`, or a channel is constant after the release.
     """
     signals, rate, name = record.signals[:, list(columns)], record.rate, record.name
     begin = int(release.time * rate)

@@ -15,23 +15,24 @@ from pantocheck.conformance.input_files.toml_file import read_model
 class _Pole(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
-    frequency_Hz: Annotated[float, Field(gt=0, le=1000, description="undamped frequency [Hz]")]
-    damping_ratio: Annotated[float, Field(gt=0, lt=1, description="damping ratio [-]")] = 0.002
+    frequency_Hz: Annotated[float, Field(gt=0, le=1000)]
+    """Undamped frequency [Hz]."""
+    damping_ratio: Annotated[float, Field(gt=0, lt=1)] = 0.002
+    """Damping ratio [-]."""
 
 
 class _Poles(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    pole: Annotated[tuple[_Pole, ...], Field(strict=False, min_length=1, max_length=1000, description="start poles")]
+    pole: Annotated[tuple[_Pole, ...], Field(strict=False, min_length=1, max_length=1000)]
+    """Start poles."""
 
 
 def read_poles(path: Path) -> ComplexArray:
     """Read start poles, (m,) [1/s], from a TOML file with tables `[[pole]]`, or from a modes.json.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, its content is invalid, or it holds no pole.
+    Raises:
+        InputError: The file cannot be read, its content is invalid, or it holds no pole.
     """
     rows: list[tuple[float, float]]
     if path.suffix == ".json":

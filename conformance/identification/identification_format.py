@@ -15,39 +15,54 @@ Curve = list[float]
 class RecordSensor(RoundedModel):
     """Sensor of a vertical channel."""
 
-    channel: Annotated[str, Field(description="name of the channel")]
-    wire: Annotated[str, Field(description="wire: CW (contact wire) or MW (messenger wire); empty: unknown")]
-    position_m: Annotated[float | None, Field(description="distance from the first support [m]; null: unknown")]
+    channel: str
+    """Name of the channel."""
+    wire: str
+    """wire: CW (contact wire) or MW (messenger wire); empty: unknown."""
+    position_m: float | None
+    """Distance from the first support [m]; null: unknown."""
 
 
 class IdentifiedRecord(RoundedModel):
     """Mass-drop record, and the part of it in the identification."""
 
     name: str
-    source: Annotated[str, Field(description="name of the file")]
+    source: str
+    """Name of the file."""
     sampling_rate_Hz: float
     length_s: Rounded
     mass_kg: float | None
     drop_wire: str
     drop_position_m: float | None
-    release_s: Annotated[Rounded, Field(description="release, in the time of the record [s]")]
-    used_from_s: Annotated[Rounded, Field(description="start of the linear decay, in the time of the record [s]")]
-    used_to_s: Annotated[Rounded, Field(description="end of the linear decay, in the time of the record [s]")]
-    channels: Annotated[tuple[str, ...], Field(description="names of the vertical channels")]
-    sensors: Annotated[tuple[RecordSensor, ...], Field(description="sensors of these channels")] = ()
+    release_s: Rounded
+    """Release, in the time of the record [s]."""
+    used_from_s: Rounded
+    """Start of the linear decay, in the time of the record [s]."""
+    used_to_s: Rounded
+    """End of the linear decay, in the time of the record [s]."""
+    channels: tuple[str, ...]
+    """Names of the vertical channels."""
+    sensors: tuple[RecordSensor, ...] = ()
+    """Sensors of these channels."""
 
 
 class ModeGroup(RoundedModel):
     """Group of span modes: one mode per span, around a multiple of the frequency of the first group."""
 
-    group: Annotated[int, Field(description="number of the group, from 1")]
-    modes: Annotated[int, Field(description="number of modes")]
-    certain: Annotated[int, Field(description="number of modes whose damping ratio is certain")]
+    group: int
+    """Number of the group, from 1."""
+    modes: int
+    """Number of modes."""
+    certain: int
+    """Number of modes whose damping ratio is certain."""
     from_Hz: Rounded
     to_Hz: Rounded
-    median_damping_ratio: Annotated[Rounded | None, Field(description="median of the certain modes [-]")]
-    lowest: Annotated[Rounded | None, Field(description="lowest damping ratio of the certain modes [-]")]
-    highest: Annotated[Rounded | None, Field(description="highest damping ratio of the certain modes [-]")]
+    median_damping_ratio: Rounded | None
+    """Median of the certain modes [-]."""
+    lowest: Rounded | None
+    """Lowest damping ratio of the certain modes [-]."""
+    highest: Rounded | None
+    """Highest damping ratio of the certain modes [-]."""
 
 
 class Comparison(RoundedModel):
@@ -59,12 +74,15 @@ class Comparison(RoundedModel):
     first: str
     second: str
     channel: str
-    shift_s: Annotated[Rounded, Field(description="delay of the second record [s]")]
+    shift_s: Rounded
+    """Delay of the second record [s]."""
     correlation_at_start: Rounded
     correlation_later: Rounded | None
-    possible_at_start: Annotated[Rounded, Field(description="correlation of equal signals with the same noise [-]")]
+    possible_at_start: Rounded
+    """Correlation of equal signals with the same noise [-]."""
     possible_later: Rounded | None
-    residual_at_start: Annotated[Rounded, Field(description="RMS of the difference over RMS of the first record [-]")]
+    residual_at_start: Rounded
+    """RMS of the difference over RMS of the first record [-]."""
     residual_later: Rounded | None
 
 
@@ -80,7 +98,8 @@ class CurveWindow(RoundedModel):
     """Motion at one channel in a time window after the release, low-pass filtered."""
 
     time_s: Curve
-    signal: Annotated[Curve, Field(description="measured quantity [SI unit]")]
+    signal: Curve
+    """Measured quantity [SI unit]."""
     velocity_m_s: Curve
     acceleration_m_s2: Curve
 
@@ -102,13 +121,13 @@ class Overlay(RoundedModel):
 class SpectrogramPart(RoundedModel):
     """Levels of the amplitude of one channel over time and frequency."""
 
-    window_s: Annotated[float, Field(description="length of a window [s]")]
-    time_s: Annotated[Curve, Field(description="middle of each window after the release [s]")]
+    window_s: float
+    """Length of a window [s]."""
+    time_s: Curve
+    """Middle of each window after the release [s]."""
     frequency_Hz: Curve
-    level_dB: Annotated[
-        tuple[tuple[int, ...], ...],
-        Field(description="levels at each time, one per frequency [dB]; 0 dB: largest amplitude; lowest: -60 dB"),
-    ]
+    level_dB: tuple[tuple[int, ...], ...]
+    """Levels at each time, one per frequency [dB]; 0 dB: largest amplitude; lowest: -60 dB."""
 
 
 class Spectrogram(RoundedModel):
@@ -116,8 +135,10 @@ class Spectrogram(RoundedModel):
 
     record: str
     channel: str
-    whole: Annotated[SpectrogramPart, Field(description="whole record")]
-    start: Annotated[SpectrogramPart, Field(description="around the release")]
+    whole: SpectrogramPart
+    """Whole record."""
+    start: SpectrogramPart
+    """Around the release."""
 
 
 class BandOrders(RoundedModel):
@@ -125,12 +146,13 @@ class BandOrders(RoundedModel):
 
     from_Hz: Rounded
     to_Hz: Rounded
-    selected_order: Annotated[int, Field(description="order with the lowest Bayesian information criterion; 0: none")]
-    order: Annotated[tuple[int, ...], Field(description="number of poles in the band and its flanks")]
+    selected_order: int
+    """Order with the lowest Bayesian information criterion; 0: none."""
+    order: tuple[int, ...]
+    """Number of poles in the band and its flanks."""
     frequency_Hz: Curve
-    stable: Annotated[
-        tuple[bool, ...], Field(description="true: frequency and damping ratio differ little from the order before")
-    ]
+    stable: tuple[bool, ...]
+    """true: frequency and damping ratio differ little from the order before."""
 
 
 class SearchStep(RoundedModel):
@@ -143,7 +165,8 @@ class SearchStep(RoundedModel):
 class OrderSearch(RoundedModel):
     """Search for the model order: trials of start poles, and steps that add and remove poles."""
 
-    bands: Annotated[tuple[BandOrders, ...], Field(description="bands of the trials; empty: start poles were given")]
+    bands: tuple[BandOrders, ...]
+    """Bands of the trials; empty: start poles were given."""
     steps: tuple[SearchStep, ...]
 
 
@@ -156,7 +179,8 @@ class RecordSpectra(RoundedModel):
     measured: tuple[Curve, ...]
     fitted: tuple[Curve, ...]
     residual: tuple[Curve, ...]
-    poles_Hz: Annotated[tuple[Rounded, ...], Field(description="frequencies of the identified modes [Hz]")]
+    poles_Hz: tuple[Rounded, ...]
+    """Frequencies of the identified modes [Hz]."""
 
 
 class ResponseCurve(RoundedModel):
@@ -164,7 +188,8 @@ class ResponseCurve(RoundedModel):
 
     model_config = ConfigDict(populate_by_name=True)
 
-    magnitude: Annotated[Curve, Field(alias="abs", description="magnitude [m/s2/N]")]
+    magnitude: Annotated[Curve, Field(alias="abs")]
+    """Magnitude [m/s2/N]."""
     phase_rad: Curve
 
 
@@ -181,38 +206,45 @@ class RecordResponses(RoundedModel):
 class HalfPowerLines(RoundedModel):
     """Modes with few spectral lines in their half-power band."""
 
-    recommended: Annotated[int, Field(description="recommended number of spectral lines in the half-power band")]
-    modes: Annotated[int, Field(description="number of modes")]
-    fewer: Annotated[int, Field(description="number of modes with fewer spectral lines")]
-    needed_s: Annotated[
-        Rounded | None, Field(description="linear decay that gives the recommended number to every certain mode [s]")
-    ]
+    recommended: int
+    """Recommended number of spectral lines in the half-power band."""
+    modes: int
+    """Number of modes."""
+    fewer: int
+    """Number of modes with fewer spectral lines."""
+    needed_s: Rounded | None
+    """Linear decay that gives the recommended number to every certain mode [s]."""
 
 
 class IdentifiedLine(RoundedModel):
     """Identification of one line from all its records."""
 
-    quantity: Annotated[MotionQuantity, Field(description="measured quantity")]
-    band_Hz: Annotated[tuple[float, float], Field(description="band of the reported modes [Hz]")]
-    misfit: Annotated[
-        Rounded, Field(description="squared residual over its expectation for noise [-]; 1: complete model")
-    ]
+    quantity: MotionQuantity
+    """Measured quantity."""
+    band_Hz: tuple[float, float]
+    """Band of the reported modes [Hz]."""
+    misfit: Rounded
+    """Squared residual over its expectation for noise [-]; 1: complete model."""
     warnings: tuple[str, ...]
-    spans_m: Annotated[tuple[float, ...], Field(description="lengths of the spans [m]; empty: unknown")] = ()
+    spans_m: tuple[float, ...] = ()
+    """Lengths of the spans [m]; empty: unknown."""
     records: tuple[IdentifiedRecord, ...]
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]
-    half_power: Annotated[HalfPowerLines, Field(description="spectral lines in the half-power band")]
-    repeatability: Annotated[tuple[Repeatability, ...], Field(description="repeatability of each repeated drop")]
-    overlays: Annotated[
-        tuple[Overlay, ...], Field(description="signals of each repeated drop; of the first drop if none is repeated")
-    ]
-    spectrogram: Annotated[Spectrogram, Field(description="spectrogram of the first record")]
-    order_search: Annotated[OrderSearch, Field(description="search for the number of poles")]
-    spectra: Annotated[tuple[RecordSpectra, ...], Field(description="spectra of each record")]
-    frequency_responses: Annotated[
-        tuple[RecordResponses, ...], Field(description="frequency responses of each record with a known mass")
-    ]
+    half_power: HalfPowerLines
+    """Spectral lines in the half-power band."""
+    repeatability: tuple[Repeatability, ...]
+    """Repeatability of each repeated drop."""
+    overlays: tuple[Overlay, ...]
+    """Signals of each repeated drop; of the first drop if none is repeated."""
+    spectrogram: Spectrogram
+    """Spectrogram of the first record."""
+    order_search: OrderSearch
+    """Search for the number of poles."""
+    spectra: tuple[RecordSpectra, ...]
+    """Spectra of each record."""
+    frequency_responses: tuple[RecordResponses, ...]
+    """Frequency responses of each record with a known mass."""
 
 
 class IdentificationFile(RoundedModel):

@@ -30,40 +30,26 @@ SHARED_POLES = 1.5
 
 @dataclass(frozen=True)
 class PoleSearch:
-    """Steps of the search for the poles of a line.
-
-    Parameters
-    ----------
-    trials : tuple of BandTrials
-        Poles of all orders of the search for start poles; empty if there was none.
-    steps : tuple of (str, (m,) complex ndarray)
-        Name of each step, and the poles after it [1/s].
-    """
+    """Steps of the search for the poles of a line."""
 
     trials: tuple[BandTrials, ...] = ()
+    """Poles of all orders of the search for start poles; empty if there was none."""
     steps: tuple[tuple[str, ComplexArray], ...] = ()
+    """Name of each step, and the poles after it, (m,) [1/s]."""
 
 
 @dataclass(frozen=True)
 class Identification:
-    """Modes of one line.
-
-    Parameters
-    ----------
-    fit : LineFit
-        Poles, residues and residual of its records.
-    modes : tuple of Mode
-        Modes in the reported band, by frequency.
-    warnings : tuple of str
-        Caveats on the whole identification.
-    search : PoleSearch
-        Steps of the search for the poles.
-    """
+    """Modes of one line."""
 
     fit: LineFit
+    """Poles, residues and residual of its records."""
     modes: tuple[Mode, ...]
+    """Modes in the reported band, by frequency."""
     warnings: tuple[str, ...]
+    """Caveats on the whole identification."""
     search: PoleSearch = PoleSearch()
+    """Steps of the search for the poles."""
 
 
 @use_one_thread
@@ -77,26 +63,18 @@ def identify_modes(
 
     Records of one line (same spans and tensions) have common poles; the residues differ between records.
 
-    Parameters
-    ----------
-    records : tuple of DropRecord
-        Repeated drops, or drops at several positions.
-    highest : float
-        Highest frequency of a reported mode [Hz].
-    poles : (m,) complex ndarray or None
-        Start poles placed by hand [1/s], whose number is kept; None: start poles are searched in the records.
-    progress : callable
-        Function that receives the name of each step.
+    Args:
+        records: Repeated drops, or drops at several positions.
+        highest: Highest frequency of a reported mode [Hz].
+        poles: Start poles placed by hand, (m,) [1/s], whose number is kept; None: start poles are searched in the
+            records.
+        progress: Function that receives the name of each step.
 
-    Returns
-    -------
-    tuple of Identification
+    Returns:
         One identification per line.
 
-    Raises
-    ------
-    InputError
-        A record cannot be used.
+    Raises:
+        InputError: A record cannot be used.
     """
     return tuple(_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records))
 
@@ -104,10 +82,8 @@ def identify_modes(
 def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
     """Records of each line, in the order of the records.
 
-    Raises
-    ------
-    InputError
-        There is no record.
+    Raises:
+        InputError: There is no record.
     """
     if not records:
         raise InputError("records", "missing", "Name at least one record.")
@@ -151,10 +127,8 @@ def identify_decays(
 def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
     """Band up to a frequency [Hz], or up to a lower one if the slowest record requires it.
 
-    Raises
-    ------
-    InputError
-        The sampling rate of a record is too low for any mode.
+    Raises:
+        InputError: The sampling rate of a record is too low for any mode.
     """
     slowest = min(records, key=lambda record: record.rate)
     band = FrequencyBand.up_to(highest, slowest.rate)

@@ -54,45 +54,30 @@ class RecordFit:
 
 @dataclass(frozen=True)
 class LineFit:
-    """Fit of all records of one line.
-
-    Parameters
-    ----------
-    band : FrequencyBand
-        Band of the identification.
-    poles : (m,) complex ndarray
-        Poles, including those outside the band of the reported modes [1/s].
-    covariance : (2 m, 2 m) ndarray
-        Covariance of the decay rates [1/s] and angular frequencies [rad/s] of the poles.
-    blocks : tuple of FittedBlock
-        Data of the fit.
-    records : tuple of RecordFit
-        Parts of the fit for the records, in the order of the input.
-    misfit : float
-        Squared residual over its expectation for noise [-]; 1 for a complete model.
-    """
+    """Fit of all records of one line."""
 
     band: FrequencyBand
+    """Band of the identification."""
     poles: ComplexArray
+    """Poles, including those outside the band of the reported modes, (m,) [1/s]."""
     covariance: RealArray
+    """Covariance of the decay rates [1/s] and angular frequencies [rad/s] of the poles, (2 m, 2 m)."""
     blocks: tuple[FittedBlock, ...]
+    """Data of the fit."""
     records: tuple[RecordFit, ...]
+    """Parts of the fit for the records, in the order of the input."""
     misfit: float
+    """Squared residual over its expectation for noise [-]; 1 for a complete model."""
 
 
 def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
     """Put records of about equal length into one block, cut to the shortest.
 
-    Parameters
-    ----------
-    decays : list of PreparedDecay
-        The records.
+    Args:
+        decays: The records.
 
-    Returns
-    -------
-    list of ((n, c) ndarray, float)
-        Samples and sampling interval [s] of each block.
-    list of (int, slice)
+    Returns:
+        Samples and sampling interval [s] of each block, each (n, c).
         Block of each record, and its channels in the block.
     """
     blocks: list[tuple[RealArray, float]] = []
@@ -121,24 +106,15 @@ def fit_line(
 ) -> LineFit:
     """Refine the poles once more and solve for the residues of every record.
 
-    Parameters
-    ----------
-    decays : list of PreparedDecay
-        The records.
-    places : list of (int, slice)
-        Block of each record, and its channels in the block.
-    data : list of DataBlock
-        The blocks.
-    poles : (m,) complex ndarray
-        Selected poles [1/s].
-    noise : list of (c,) ndarray
-        Noise of the channels of each block [unit of the spectrum].
-    band : FrequencyBand
-        Band of the identification.
+    Args:
+        decays: The records.
+        places: Block of each record, and its channels in the block.
+        data: The blocks.
+        poles: Selected poles, (m,) [1/s].
+        noise: Noise of the channels of each block, each (c,) [unit of the spectrum].
+        band: Band of the identification.
 
-    Returns
-    -------
-    LineFit
+    Returns:
         Poles with covariance, and residues.
     """
     white = whiten(data, noise)

@@ -45,22 +45,14 @@ def restrict_fit(
 ) -> LocalFit:
     """Restrict a fit to the neighbourhood of one frequency.
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        All poles [1/s].
-    blocks : list of DataBlock
-        Data, each channel in units of its noise.
-    fits : list of ProjectionFit
-        Fits of the blocks with all poles.
-    centre : float
-        Centre of the neighbourhood [rad/s].
-    min_half : float
-        Lower limit of the half-width of the neighbourhood [rad/s].
+    Args:
+        poles: All poles, (m,) [1/s].
+        blocks: Data, each channel in units of its noise.
+        fits: Fits of the blocks with all poles.
+        centre: Centre of the neighbourhood [rad/s].
+        min_half: Lower limit of the half-width of the neighbourhood [rad/s].
 
-    Returns
-    -------
-    LocalFit
+    Returns:
         Poles and spectral lines in the neighbourhood.
     """
     resolution = 2 * np.pi / min(data.duration for data in blocks)

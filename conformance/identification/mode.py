@@ -17,12 +17,18 @@ class SensorShape(RoundedModel):
 
     model_config = ConfigDict(allow_inf_nan=False)
 
-    sensor: Annotated[int, Field(description="number of the sensor")]
-    wire: Annotated[str, Field(description="wire: CW (contact wire) or MW (messenger wire); empty: unknown")] = ""
-    position_m: Annotated[float | None, Field(description="distance from the first support [m]; null: unknown")] = None
-    re: Annotated[Rounded, Field(description="real part [-]; the largest component of a shape is 1")]
-    im: Annotated[Rounded, Field(description="imaginary part [-]")]
-    std: Annotated[Rounded | None, Field(description="standard deviation of real and imaginary part [-]")] = None
+    sensor: int
+    """Number of the sensor."""
+    wire: str = ""
+    """wire: CW (contact wire) or MW (messenger wire); empty: unknown."""
+    position_m: float | None = None
+    """Distance from the first support [m]; null: unknown."""
+    re: Rounded
+    """Real part [-]; the largest component of a shape is 1."""
+    im: Rounded
+    """Imaginary part [-]."""
+    std: Rounded | None = None
+    """Standard deviation of real and imaginary part [-]."""
 
 
 class MeasuredLine(RoundedModel):
@@ -30,13 +36,12 @@ class MeasuredLine(RoundedModel):
 
     model_config = ConfigDict(allow_inf_nan=False)
 
-    spans_m: Annotated[tuple[Rounded, ...], Field(description="lengths of the spans [m]; empty: unknown")] = ()
-    contact_wire_tension_N: Annotated[
-        Rounded | None, Field(description="tension of one contact wire [N]; null: unknown")
-    ] = None
-    messenger_wire_tension_N: Annotated[
-        Rounded | None, Field(description="tension of one messenger wire [N]; null: unknown")
-    ] = None
+    spans_m: tuple[Rounded, ...] = ()
+    """Lengths of the spans [m]; empty: unknown."""
+    contact_wire_tension_N: Rounded | None = None
+    """Tension of one contact wire [N]; null: unknown."""
+    messenger_wire_tension_N: Rounded | None = None
+    """Tension of one messenger wire [N]; null: unknown."""
 
 
 class Mode(RoundedModel):
@@ -44,36 +49,40 @@ class Mode(RoundedModel):
 
     model_config = ConfigDict(allow_inf_nan=False)
 
-    frequency_Hz: Annotated[Rounded, Field(gt=0, description="undamped natural frequency [Hz]")]
-    frequency_std_Hz: Annotated[Rounded | None, Field(description="standard deviation of the frequency [Hz]")] = None
-    damping_ratio: Annotated[Rounded, Field(gt=0, lt=1, description="damping ratio [-]")]
-    damping_ratio_std: Annotated[Rounded, Field(ge=0, description="standard deviation of the damping ratio [-]")]
-    group: Annotated[int | None, Field(description="number of the group of span modes, from 1; null: none")] = None
-    sensor_shape: Annotated[tuple[SensorShape, ...], Field(description="mode shape at the sensors of `record`")]
-    error: Annotated[Rounded | None, Field(description="residual over measured signal in the half-power band [-]")] = (
-        None
-    )
-    record: Annotated[str, Field(description="name of the record with the largest signal of the mode over noise")] = ""
-    line: Annotated[MeasuredLine | None, Field(description="line of `record`; null: unknown")] = None
-    warnings: Annotated[tuple[str, ...], Field(description="caveats on the mode")] = ()
-    certain: Annotated[bool, Field(description="true: standard deviation below 5 % of the damping ratio")] = True
-    outlier: Annotated[bool, Field(description="true: damping ratio far from those of its group")] = False
-    lateral: Annotated[
-        bool, Field(description="true: lateral mode, measured by vertical channels because of oblique mounting")
-    ] = False
-    amplitude_at_release: Annotated[
-        Rounded | None, Field(description="largest amplitude of a sensor at the release [unit of the record]")
-    ] = None
-    phase_collinearity: Annotated[
-        Rounded | None, Field(description="modal phase collinearity [-], 1 for a normal mode; null: single sensor")
-    ] = None
-    lateral_over_vertical: Annotated[
-        Rounded | None,
-        Field(description="largest lateral over largest vertical amplitude [-]; null: no lateral channel"),
-    ] = None
-    half_power_points: Annotated[
-        Rounded | None, Field(description="number of spectral lines in the half-power band")
-    ] = None
+    frequency_Hz: Annotated[Rounded, Field(gt=0)]
+    """Undamped natural frequency [Hz]."""
+    frequency_std_Hz: Rounded | None = None
+    """Standard deviation of the frequency [Hz]."""
+    damping_ratio: Annotated[Rounded, Field(gt=0, lt=1)]
+    """Damping ratio [-]."""
+    damping_ratio_std: Annotated[Rounded, Field(ge=0)]
+    """Standard deviation of the damping ratio [-]."""
+    group: int | None = None
+    """Number of the group of span modes, from 1; null: none."""
+    sensor_shape: tuple[SensorShape, ...]
+    """Mode shape at the sensors of `record`."""
+    error: Rounded | None = None
+    """Residual over measured signal in the half-power band [-]."""
+    record: str = ""
+    """Name of the record with the largest signal of the mode over noise."""
+    line: MeasuredLine | None = None
+    """Line of `record`; null: unknown."""
+    warnings: tuple[str, ...] = ()
+    """Caveats on the mode."""
+    certain: bool = True
+    """true: standard deviation below 5 % of the damping ratio."""
+    outlier: bool = False
+    """true: damping ratio far from those of its group."""
+    lateral: bool = False
+    """true: lateral mode, measured by vertical channels because of oblique mounting."""
+    amplitude_at_release: Rounded | None = None
+    """Largest amplitude of a sensor at the release [unit of the record]."""
+    phase_collinearity: Rounded | None = None
+    """Modal phase collinearity [-], 1 for a normal mode; null: single sensor."""
+    lateral_over_vertical: Rounded | None = None
+    """Largest lateral over largest vertical amplitude [-]; null: no lateral channel."""
+    half_power_points: Rounded | None = None
+    """Number of spectral lines in the half-power band."""
 
 
 class ModesFile(RootModel[tuple[Mode, ...]]):
@@ -83,10 +92,8 @@ class ModesFile(RootModel[tuple[Mode, ...]]):
 def read_modes(path: Path) -> tuple[Mode, ...]:
     """Read a modes.json.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not JSON, or is not a list of modes.
+    Raises:
+        InputError: The file cannot be read, is not JSON, or is not a list of modes.
     """
     data = read_json(path, "modes", MAX_MODES_BYTES)
     hint = "Give the modes.json that `pantocheck drop identify` writes."

@@ -29,10 +29,8 @@ MODE_FORMATS: dict[str, ModeWriter] = {
 def select_mode_writer(path: Path) -> ModeWriter:
     """Writer of the format that the suffix of a file names.
 
-    Raises
-    ------
-    InputError
-        No writer has this suffix, or its package is not installed.
+    Raises:
+        InputError: No writer has this suffix, or its package is not installed.
     """
     if (writer := MODE_FORMATS.get(path.suffix.lower())) is None:
         raise InputError(

@@ -39,19 +39,13 @@ def assign_groups(modes: list[Mode], spans: int | None) -> tuple[Mode, ...]:
 def number_groups(certain: RealArray, all_modes: RealArray, spans: int | None) -> IntegerArray:
     """Number of the group of each mode.
 
-    Parameters
-    ----------
-    certain : (n,) ndarray
-        Frequencies of the certain vertical modes, which determine the groups [Hz].
-    all_modes : (m,) ndarray
-        Frequencies to number [Hz].
-    spans : int or None
-        Number of spans; None if unknown.
+    Args:
+        certain: Frequencies of the certain vertical modes, which determine the groups, (n,) [Hz].
+        all_modes: Frequencies to number, (m,) [Hz].
+        spans: Number of spans; None if unknown.
 
-    Returns
-    -------
-    (m,) int ndarray
-        Numbers from 1; 0 beyond `LAST_GROUP`, and for all modes if fewer than three are certain.
+    Returns:
+        Numbers from 1, (m,); 0 beyond `LAST_GROUP`, and for all modes if fewer than three are certain.
     """
     if certain.size < 3:
         return np.zeros(all_modes.size, dtype=np.int64)

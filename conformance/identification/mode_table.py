@@ -45,10 +45,8 @@ class SensorPlace(NamedTuple):
 def write_modes_csv(modes: tuple[Mode, ...], path: Path) -> None:
     """Write one row per mode; a cell is empty if its value is unknown or the mode was not measured at this sensor.
 
-    Raises
-    ------
-    InputError
-        The file cannot be written.
+    Raises:
+        InputError: The file cannot be written.
     """
     places = list_sensor_places(modes)
     text = io.StringIO()

@@ -28,10 +28,8 @@ def write_modes_uff(modes: tuple[Mode, ...], path: Path) -> None:
     The nodes lie on a straight line at height 0, because modes.json holds no heights; they are left out if a position
     is unknown. Shapes are vertical displacements, scaled to 1 at their largest component, so that modal A and B are 0.
 
-    Raises
-    ------
-    InputError
-        The file cannot be written.
+    Raises:
+        InputError: The file cannot be written.
     """
     nodes = number_nodes(list_sensor_places(modes))
     shapes = [_build_shape_set(mode, number, nodes) for number, mode in enumerate(modes, 1)]

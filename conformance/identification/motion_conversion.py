@@ -19,19 +19,13 @@ def convert_motion(samples: RealArray, rate: float, given: MotionQuantity, wante
 
     A high-pass (`HIGH_PASS`) leaves out offset and drift, which an integral amplifies without limit.
 
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Channels that begin at rest.
-    rate : float
-        Sampling rate [Hz].
-    given, wanted : MotionQuantity
-        Quantity of the samples, and that of the result.
+    Args:
+        samples: Channels that begin at rest, (n, c).
+        rate: Sampling rate [Hz].
+        given, wanted: Quantity of the samples, and that of the result.
 
-    Returns
-    -------
-    (n, c) ndarray
-        Motion in SI units; the samples themselves if the quantity is the wanted one.
+    Returns:
+        Motion in SI units, (n, c); the samples themselves if the quantity is the wanted one.
     """
     power = POWER_OF_OMEGA[given] - POWER_OF_OMEGA[wanted]
     if power == 0:

@@ -19,14 +19,10 @@ ratio of up to 11 %. Separate modes have errors of up to 0.7 %, as their standar
 def warn_about_overlap(modes: Sequence[Mode]) -> tuple[str, ...]:
     """Warning with the number and frequencies of the pairs of modes that overlap.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes of a line; uncertain and lateral ones do not count.
+    Args:
+        modes: Identified modes of a line; uncertain and lateral ones do not count.
 
-    Returns
-    -------
-    tuple of str
+    Returns:
         One warning, or none.
     """
     clear = [mode for mode in modes if mode.certain and not mode.lateral]

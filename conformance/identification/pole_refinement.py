@@ -22,21 +22,14 @@ SMALLEST_DAMPING_RATIO = 1e-6
 
 @dataclass(frozen=True)
 class RefinedPoles:
-    """Poles with the smallest output error, in the order of frequency [1/s].
-
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles [1/s].
-    cost : float
-        Sum of squared residuals, with channels in units of their noise [-].
-    information : (2 m, 2 m) ndarray
-        Fisher information of the decay rates [s], followed by the angular frequencies [s/rad].
-    """
+    """Poles with the smallest output error, in the order of frequency [1/s]."""
 
     poles: ComplexArray
+    """Poles, (m,) [1/s]."""
     cost: float
+    """Sum of squared residuals, with channels in units of their noise [-]."""
     information: RealArray
+    """Fisher information of the decay rates [s], followed by the angular frequencies [s/rad], (2 m, 2 m)."""
 
     @property
     def covariance(self) -> RealArray:
@@ -51,20 +44,13 @@ def refine_poles(
 ) -> RefinedPoles:
     """Minimise the output error over the poles.
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Start values [1/s].
-    blocks : list of DataBlock
-        Data, each channel in units of its noise.
-    iterations : int
-        Largest number of steps.
-    tolerance : float
-        Reduction of the cost in one step, below which the refinement ends [-].
+    Args:
+        poles: Start values, (m,) [1/s].
+        blocks: Data, each channel in units of its noise.
+        iterations: Largest number of steps.
+        tolerance: Reduction of the cost in one step, below which the refinement ends [-].
 
-    Returns
-    -------
-    RefinedPoles
+    Returns:
         Poles with cost and information.
     """
     poles = poles[np.argsort(poles.imag)]
@@ -121,16 +107,11 @@ class NormalEquations:
 def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
     """Build the normal equations of the poles over all blocks; the residues of each channel are eliminated.
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles lambda = -delta + i omega [1/s].
-    blocks : list of DataBlock
-        Data, each channel in units of its noise.
+    Args:
+        poles: Poles lambda = -delta + i omega, (m,) [1/s].
+        blocks: Data, each channel in units of its noise.
 
-    Returns
-    -------
-    NormalEquations
+    Returns:
         Sum over the blocks.
     """
     m = poles.size

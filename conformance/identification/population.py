@@ -55,21 +55,15 @@ def identify_population(
 
     A record that cannot be identified on its own is left out of both.
 
-    Parameters
-    ----------
-    records, highest, poles, progress
-        As in `identify_modes`.
+    Args:
+        records, highest, poles, progress: As in `identify_modes`.
 
-    Returns
-    -------
-    Population
+    Returns:
         At least one test; the tests of a line follow each other.
 
-    Raises
-    ------
-    InputError
-        No record can be identified; the error is that of the first one. Or the sampling rate of one record is too
-        low for any mode, so that its line has no band.
+    Raises:
+        InputError: No record can be identified; the error is that of the first one. Or the sampling rate of one record
+            is too low for any mode, so that its line has no band.
     """
     lines = [_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records)]
     population = Population(*(tuple(chain.from_iterable(parts)) for parts in zip(*lines, strict=True)))

@@ -22,22 +22,16 @@ def median_interval(values: list[RealArray], deviations: list[RealArray]) -> tup
     The values of one test are not independent of each other, so that whole tests are redrawn. In each replicate every
     value also varies by its standard deviation.
 
-    Parameters
-    ----------
-    values : list of (n,) ndarray
-        Values of each test.
-    deviations : list of (n,) ndarray
-        Standard deviations of the values of each test.
+    Args:
+        values: Values of each test, each (n,).
+        deviations: Standard deviations of the values of each test, each (n,).
 
-    Returns
-    -------
-    float, float
+    Returns:
         Quantiles of 2.5 % and 97.5 % of the median.
 
-    References
-    ----------
-    .. [1] A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application, Cambridge University Press, 1997,
-       section 3.8.
+    References:
+        [1] A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application, Cambridge University Press, 1997,
+            section 3.8.
     """
     random = np.random.default_rng(REDRAW_SEED)
     tests = len(values)
@@ -53,16 +47,12 @@ def median_interval(values: list[RealArray], deviations: list[RealArray]) -> tup
 def measure_variability(groups: list[RealArray], sides: list[OutlierSide | None]) -> Variability:
     """Measure how the dispersion of damping ratios over tests depends on frequency.
 
-    Parameters
-    ----------
-    groups : list of (n,) ndarray
-        Damping ratios of all tests, in the order of the groups; groups with fewer than four values are left out.
-    sides : list of {"above", "below", None}
-        Side on which each value is an outlier.
+    Args:
+        groups: Damping ratios of all tests, in the order of the groups, each (n,); groups with fewer than four values
+            are left out.
+        sides: Side on which each value is an outlier.
 
-    Returns
-    -------
-    Variability
+    Returns:
         Dispersion against frequency, and share of the outliers that overestimate.
     """
     ranges = np.array([np.subtract(*np.percentile(values, [75, 25])) for values in groups if values.size >= FEWEST])

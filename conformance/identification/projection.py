@@ -4,12 +4,11 @@ For given poles the residues and the residual terms solve a linear least-squares
 r = (I - Q Q') x, where Q is an orthonormal basis of the columns Phi of the model. With Kaufman's Jacobian,
 -(I - Q Q') dPhi a, the Gauss-Newton matrix at the minimum is the Fisher information of the poles for unknown residues.
 
-References
-----------
-.. [1] G. H. Golub, V. Pereyra, Separable nonlinear least squares: the variable projection method and its
-   applications, Inverse Problems 19 (2003) R1-R26. doi:10.1088/0266-5611/19/2/201
-.. [2] E. Balmes, Frequency domain identification of structural dynamics using the pole/residue parametrization,
-   IMAC XIV (1996) 540-546.
+References:
+    [1] G. H. Golub, V. Pereyra, Separable nonlinear least squares: the variable projection method and its applications,
+        Inverse Problems 19 (2003) R1-R26. doi:10.1088/0266-5611/19/2/201
+    [2] E. Balmes, Frequency domain identification of structural dynamics using the pole/residue parametrization, IMAC
+        XIV (1996) 540-546.
 """
 
 from dataclasses import dataclass, replace
@@ -38,27 +37,18 @@ FAR_DEGREE = 3
 
 @dataclass(frozen=True)
 class DataBlock:
-    """Channels with common sample times: those of one record, or of repeats with equal length.
-
-    Parameters
-    ----------
-    lines : (k,) ndarray
-        Indices of the spectral lines that are used.
-    spectrum : (k, c) complex ndarray
-        Transforms of the channels at those lines.
-    dt : float
-        Sampling interval [s].
-    n : int
-        Number of samples.
-    residual_terms : (2 k, r) ndarray
-        Columns for the drift of the offset and for modes outside the band.
-    """
+    """Channels with common sample times: those of one record, or of repeats with equal length."""
 
     lines: IntegerArray
+    """Indices of the spectral lines that are used, (k,)."""
     spectrum: ComplexArray
+    """Transforms of the channels at those lines, (k, c)."""
     dt: float
+    """Sampling interval [s]."""
     n: int
+    """Number of samples."""
     residual_terms: RealArray
+    """Columns for the drift of the offset and for modes outside the band, (2 k, r)."""
 
     @property
     def omega(self) -> RealArray:
@@ -73,36 +63,21 @@ class DataBlock:
 
 @dataclass(frozen=True)
 class ProjectionFit:
-    """Least-squares solution of one block for known poles.
-
-    Parameters
-    ----------
-    residues : (m, c) complex ndarray
-        Residues A at the first sample of the block [unit of the spectrum].
-    residual : (k, c) complex ndarray
-        Spectrum minus the fitted poles and residual terms.
-    """
+    """Least-squares solution of one block for known poles."""
 
     residues: ComplexArray
+    """Residues A at the first sample of the block, (m, c) [unit of the spectrum]."""
     residual: ComplexArray
+    """Spectrum minus the fitted poles and residual terms, (k, c)."""
 
 
 def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataBlock:
     """Transform channels to spectral lines of a band, and build the residual terms.
 
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Channels.
-    dt : float
-        Sampling interval [s].
-    low, high : float
-        Edges of the band [Hz].
-
-    Returns
-    -------
-    DataBlock
-        Spectral lines and residual terms.
+    Args:
+        samples: Channels, (n, c).
+        dt: Sampling interval [s].
+        low, high: Edges of the band [Hz].
     """
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
@@ -121,10 +96,8 @@ def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
 def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     """Solve for the residues of known poles, (m,) [1/s], by least squares.
 
-    Raises
-    ------
-    InputError
-        The block has fewer equations than unknowns, so that the residues are not determined.
+    Raises:
+        InputError: The block has fewer equations than unknowns, so that the residues are not determined.
     """
     columns = np.hstack([pole_columns(poles, data), data.residual_terms])
     if columns.shape[0] < columns.shape[1]:

@@ -19,46 +19,31 @@ MIN_REST = 1.0
 
 @dataclass(frozen=True)
 class Release:
-    """Measured release.
-
-    Parameters
-    ----------
-    time : float
-        First motion of a sensor, in the time of the record [s].
-    rest_end : float
-        End of the rest before the release [s]; 0 if the record has no rest.
-    warnings : tuple of str
-        Caveats on the release.
-    """
+    """Measured release."""
 
     time: float
+    """First motion of a sensor, in the time of the record [s]."""
     rest_end: float
+    """End of the rest before the release [s]; 0 if the record has no rest."""
     warnings: tuple[str, ...] = ()
+    """Caveats on the release."""
 
 
 def find_release(signals: RealArray, rate: float, nominal: float | None, name: str) -> Release:
     """Find the release: the first lasting motion of a channel.
 
-    Parameters
-    ----------
-    signals : (n, c) ndarray
-        Channels.
-    rate : float
-        Sampling rate [Hz].
-    nominal : float or None
-        Planned release, in the time of the record [s]; None if unknown.
-    name : str
-        Name of the record, for messages.
+    Args:
+        signals: Channels, (n, c).
+        rate: Sampling rate [Hz].
+        nominal: Planned release, in the time of the record [s]; None if unknown.
+        name: Name of the record, for messages.
 
-    Returns
-    -------
-    Release
+    Returns:
         Time of the release.
 
-    Raises
-    ------
-    InputError
-        No channel moves, the record ends too early, or it has neither a planned release nor a rest at its start.
+    Raises:
+        InputError: No channel moves, the record ends too early, or it has neither a planned release nor a rest at its
+            start.
     """
     n = signals.shape[0]
     if nominal is not None and nominal - TRIGGER_TOLERANCE < MIN_REST:

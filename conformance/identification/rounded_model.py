@@ -35,10 +35,8 @@ class RoundedModel(BaseModel):
 def write_model(path: Path, model: BaseModel) -> None:
     """Write a model as JSON; equal models give equal bytes.
 
-    Raises
-    ------
-    InputError
-        The file cannot be written.
+    Raises:
+        InputError: The file cannot be written.
     """
     text = json.dumps(model.model_dump(mode="json", by_alias=True), indent=1, allow_nan=False)
     write_atomically(path, (text + "\n").encode("ascii"))

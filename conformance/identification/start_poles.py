@@ -4,10 +4,9 @@ Each band is shifted to zero frequency, low-pass filtered and decimated. Only sa
 are kept, so that every decay keeps its pole. The order of a band is that with the lowest Bayesian information
 criterion of the fitted signal; poles without decay are left out.
 
-References
-----------
-.. [1] J. N. Juang, R. S. Pappa, An eigensystem realization algorithm for modal parameter identification and model
-   reduction, J. Guidance 8 (1985) 620-627. doi:10.2514/3.20031
+References:
+    [1] J. N. Juang, R. S. Pappa, An eigensystem realization algorithm for modal parameter identification and model
+        reduction, J. Guidance 8 (1985) 620-627. doi:10.2514/3.20031
 """
 
 from dataclasses import dataclass
@@ -28,22 +27,17 @@ LARGEST_ORDER = 24
 
 @dataclass(frozen=True)
 class BandTrials:
-    """Poles of all orders in one band.
-
-    Parameters
-    ----------
-    low, high : float
-        Edges of the band [Hz].
-    poles : tuple of (m,) complex ndarray
-        Poles in the band for the orders 1, 2, ..., an order being the number of poles in the band and its flanks [1/s].
-    selected : int
-        Order with the lowest Bayesian information criterion; 0 if there is none.
-    """
+    """Poles of all orders in one band."""
 
     low: float
     high: float
+    """Edges of the band [Hz]."""
     poles: tuple[ComplexArray, ...]
+    """Poles in the band for the orders 1, 2, ..., an order being the number of poles in the band and its flanks,
+    each (m,) [1/s].
+    """
     selected: int
+    """Order with the lowest Bayesian information criterion; 0 if there is none."""
 
     @property
     def start_poles(self) -> ComplexArray:
@@ -54,19 +48,14 @@ class BandTrials:
 def find_start_poles(records: list[RealArray], rate: float, low: float, high: float) -> ComplexArray:
     """Find the poles between two frequencies, band by band.
 
-    Parameters
-    ----------
-    records : list of (n, c) ndarray
-        Channels over the linear decay of each record, scaled to unit variance; all records have the same poles.
-    rate : float
-        Sampling rate [Hz].
-    low, high : float
-        Edges of the frequency range [Hz].
+    Args:
+        records: Channels over the linear decay of each record, scaled to unit variance, each (n, c); all records have
+            the same poles.
+        rate: Sampling rate [Hz].
+        low, high: Edges of the frequency range [Hz].
 
-    Returns
-    -------
-    (m,) ndarray
-        Poles, in the order of frequency [1/s].
+    Returns:
+        Poles, in the order of frequency, (m,) [1/s].
     """
     return join_start_poles(try_orders(records, rate, low, high))
 

@@ -12,17 +12,12 @@ from pantocheck.conformance.input_files.input_error import InputError
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file under a temporary name and move it into place.
 
-    Parameters
-    ----------
-    path : Path
-        File to write; a missing folder is created.
-    content : bytes
-        Complete content.
+    Args:
+        path: File to write; a missing folder is created.
+        content: Complete content.
 
-    Raises
-    ------
-    InputError
-        The folder cannot be created or written.
+    Raises:
+        InputError: The folder cannot be created or written.
     """
     produce_atomically(path, lambda temporary: temporary.write_bytes(content))
 
@@ -30,17 +25,12 @@ def write_atomically(path: Path, content: bytes) -> None:
 def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
     """Write a temporary file beside `path`, then move it into place; a failure leaves no file.
 
-    Parameters
-    ----------
-    path : Path
-        File to write; a missing folder is created.
-    produce : callable
-        Function that writes the content to the path of the temporary file.
+    Args:
+        path: File to write; a missing folder is created.
+        produce: Function that writes the content to the path of the temporary file.
 
-    Raises
-    ------
-    InputError
-        The folder cannot be created or written.
+    Raises:
+        InputError: The folder cannot be created or written.
     """
     with _convert_write_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -58,10 +48,8 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
 def check_writable(folder: Path) -> None:
     """Create a folder and a test file in it, so that a long computation does not end without a place for its results.
 
-    Raises
-    ------
-    InputError
-        The folder cannot be created or written.
+    Raises:
+        InputError: The folder cannot be created or written.
     """
     with _convert_write_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)

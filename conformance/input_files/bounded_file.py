@@ -60,27 +60,18 @@ class BoundedFile(io.BufferedReader):
 def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[BoundedFile]:
     """Open a regular file for reading; kind and size are checked on the open file, whose name may meanwhile change.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    where : str
-        Name of the file in messages, e.g. `results 'results.json'`.
-    largest : int
-        Largest accepted size [bytes].
-    flags : int
-        Further flags of `os.open`, such as `NO_LINK`.
+    Args:
+        path: The file.
+        where: Name of the file in messages, e.g. `results 'results.json'`.
+        largest: Largest accepted size [bytes].
+        flags: Further flags of `os.open`, such as `NO_LINK`.
 
-    Yields
-    ------
-    BoundedFile
+    Yields:
         Open file; it is closed at the end of the block.
 
-    Raises
-    ------
-    InputError
-        The file is missing, is not a regular file, is too large, or grows while it is read. A pipe or device is
-        refused because it may never end.
+    Raises:
+        InputError: The file is missing, is not a regular file, is too large, or grows while it is read. A pipe or
+            device is refused because it may never end.
     """
     with convert_read_errors(path, where):
         descriptor = os.open(path, _FLAGS | flags)

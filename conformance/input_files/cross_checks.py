@@ -29,24 +29,16 @@ def cross_check(check: C) -> C:
 def validate_table(model: type[T], data: Any, handler: ModelWrapValidatorHandler[T]) -> T:
     """Validate a table with its cross checks.
 
-    Parameters
-    ----------
-    model : type of BaseModel
-        Model of the table.
-    data : Any
-        Content of the table.
-    handler : callable
-        Validation of the keys, one by one.
+    Args:
+        model: Model of the table.
+        data: Content of the table.
+        handler: Validation of the keys, one by one.
 
-    Returns
-    -------
-    BaseModel
+    Returns:
         Valid table.
 
-    Raises
-    ------
-    ValidationError
-        Keys are invalid, or contradict each other: the error lists all of them.
+    Raises:
+        ValidationError: Keys are invalid, or contradict each other: the error lists all of them.
     """
     try:
         table = handler(data)

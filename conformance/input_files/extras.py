@@ -42,15 +42,11 @@ class MissingPackage(InputError):
 def refuse_missing_package(where: str) -> Iterator[None]:
     """Convert the failed import of a package of an extra inside a block into a message for the user.
 
-    Parameters
-    ----------
-    where : str
-        File, option or function that needs the package.
+    Args:
+        where: File, option or function that needs the package.
 
-    Raises
-    ------
-    MissingPackage
-        The package is not installed.
+    Raises:
+        MissingPackage: The package is not installed.
     """
     try:
         yield
@@ -64,17 +60,12 @@ def refuse_missing_package(where: str) -> Iterator[None]:
 def require_package(package: str, where: str) -> None:
     """Require a package of an extra before a long computation, without the time of its import.
 
-    Parameters
-    ----------
-    package : str
-        Name of the package in an import.
-    where : str
-        File, option or function that needs the package.
+    Args:
+        package: Name of the package in an import.
+        where: File, option or function that needs the package.
 
-    Raises
-    ------
-    MissingPackage
-        The package is not installed.
+    Raises:
+        MissingPackage: The package is not installed.
     """
     if not is_installed(package):
         raise MissingPackage(where, package)

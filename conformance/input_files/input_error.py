@@ -25,16 +25,11 @@ MOST_MESSAGES = 50
 class InputError(ValueError):
     """Input that cannot be used. It is refused, because wrong input would give a wrong number in a certificate.
 
-    Parameters
-    ----------
-    where : str
-        File, and the key, line or channel inside it.
-    found : str
-        Content found there.
-    hint : str
-        Content expected there, or the next step of the user.
-    further : sequence of InputError
-        Further errors of the same input.
+    Args:
+        where: File, and the key, line or channel inside it.
+        found: Content found there.
+        hint: Content expected there, or the next step of the user.
+        further: Further errors of the same input.
     """
 
     def __init__(self, where: str, found: str, hint: str, further: Sequence["InputError"] = ()) -> None:

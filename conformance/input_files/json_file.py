@@ -17,24 +17,16 @@ T = TypeVar("T")
 def read_json(path: Path, kind: str, largest: int) -> Any:
     """Read a JSON file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : str
-        Name of its kind in messages, e.g. `results`.
-    largest : int
-        Largest accepted size [bytes].
+    Args:
+        path: The file.
+        kind: Name of its kind in messages, e.g. `results`.
+        largest: Largest accepted size [bytes].
 
-    Returns
-    -------
-    Any
+    Returns:
         Parsed content.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is too large or is not JSON.
+    Raises:
+        InputError: The file cannot be read, is too large or is not JSON.
     """
     where = f"{kind} '{path.name}'"
     return parse_json(read_bytes(path, where, largest), where, largest)
@@ -59,26 +51,17 @@ def parse_json(content: bytes, where: str, largest: int) -> Any:
 def validate_json(data: Any, model: TypeAdapter[T], where: str, hint: str) -> T:
     """Validate parsed JSON.
 
-    Parameters
-    ----------
-    data : Any
-        Parsed JSON.
-    model : TypeAdapter
-        Required structure.
-    where : str
-        Name of the file in messages.
-    hint : str
-        Next step of the user, such as the command that writes a valid file.
+    Args:
+        data: Parsed JSON.
+        model: Required structure.
+        where: Name of the file in messages.
+        hint: Next step of the user, such as the command that writes a valid file.
 
-    Returns
-    -------
-    T
+    Returns:
         Validated model.
 
-    Raises
-    ------
-    InputError
-        The data do not fit the model; there is one message for each key at fault.
+    Raises:
+        InputError: The data do not fit the model; there is one message for each key at fault.
     """
     try:
         return model.validate_python(data)

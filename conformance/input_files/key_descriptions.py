@@ -63,12 +63,9 @@ def describe_field(model: type[BaseModel], name: str) -> str:
 def describe_key(model: type[BaseModel], name: str) -> str:
     """Sentences with the meaning of a key and its allowed values.
 
-    Parameters
-    ----------
-    model : type of BaseModel
-        Table of the key.
-    name : str
-        Name of the field of the model.
+    Args:
+        model: Table of the key.
+        name: Name of the field of the model.
     """
     field = model.model_fields[name]
     nested = list_models(field.annotation)

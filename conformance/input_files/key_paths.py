@@ -74,25 +74,16 @@ def check_path(
 ) -> None:
     """Check that a key exists.
 
-    Parameters
-    ----------
-    models : sequence of type of BaseModel
-        Models of the tables that may hold the key.
-    path : KeyPath
-        Path of the key.
-    value : object
-        New value, for a suggestion in another unit.
-    where : str
-        Name of the key in messages.
-    everywhere : list of str
-        Dotted keys of all files, for a suggestion.
-    prefix : KeyPath
-        Path of these tables in the key of the user, for a suggestion.
+    Args:
+        models: Models of the tables that may hold the key.
+        path: Path of the key.
+        value: New value, for a suggestion in another unit.
+        where: Name of the key in messages.
+        everywhere: Dotted keys of all files, for a suggestion.
+        prefix: Path of these tables in the key of the user, for a suggestion.
 
-    Raises
-    ------
-    InputError
-        A part does not exist; the hint suggests keys.
+    Raises:
+        InputError: A part does not exist; the hint suggests keys.
     """
     found = max(len(find_holders(model, path)) for model in models)
     if found == len(path):
@@ -118,10 +109,8 @@ def follow_path(tree: dict[str, Any], path: KeyPath, where: str) -> tuple[Any, s
 
     Missing tables are added.
 
-    Raises
-    ------
-    InputError
-        A list item does not exist, or a part above the last one is neither a table nor a list.
+    Raises:
+        InputError: A list item does not exist, or a part above the last one is neither a table nor a list.
     """
     node: Any = tree
     for i, part in enumerate(path):

@@ -39,33 +39,22 @@ ChannelNames = tuple[str, ...] | EveryChannel
 
 @dataclass(frozen=True)
 class TableColumn:
-    """Description of a column; None and empty text stand for facts that the file does not hold.
-
-    Parameters
-    ----------
-    name : str or None
-        Name in the file.
-    row : int
-        Row of its data set, from 1, where a data set of the file has several rows.
-    unit : str or None
-        Unit as the file spells it.
-    sensor : int or None
-        Number of the sensor.
-    wire : str
-        Wire that carries the sensor.
-    position : float or None
-        Position of the sensor along the line [m].
-    direction : str or None
-        Direction of measurement, such as `+z`.
-    """
+    """Description of a column; None and empty text stand for facts that the file does not hold."""
 
     name: str | None = None
+    """Name in the file."""
     row: int = 1
+    """Row of its data set, from 1, where a data set of the file has several rows."""
     unit: str | None = None
+    """Unit as the file spells it."""
     sensor: int | None = None
+    """Number of the sensor."""
     wire: str = ""
+    """Wire that carries the sensor."""
     position: float | None = None
+    """Position of the sensor along the line [m]."""
     direction: str | None = None
+    """Direction of measurement, such as `+z`."""
 
     @property
     def label(self) -> str:
@@ -75,33 +64,22 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class MeasuredTable:
-    """Table of one run.
-
-    Parameters
-    ----------
-    source : str
-        Name of the file.
-    values : (n, c) ndarray
-        Samples in the units of the file.
-    columns : tuple of TableColumn
-        Descriptions of the c columns.
-    time : (n,) ndarray or None
-        Time column [s].
-    rate : float or None
-        Sampling rate that the file states [Hz].
-    run : int
-        Number of the run from 1; 0 in a file of one run.
-    attributes : dict[str, Any]
-        Data of the run under the names of the HDF5 attributes, such as `drop_mass_kg`.
-    """
+    """Table of one run."""
 
     source: str
+    """Name of the file."""
     values: RealArray
+    """Samples in the units of the file, (n, c)."""
     columns: tuple[TableColumn, ...]
+    """Descriptions of the c columns."""
     time: RealArray | None = None
+    """Time column, (n,) [s]."""
     rate: float | None = None
+    """Sampling rate that the file states [Hz]."""
     run: int = 0
+    """Number of the run from 1; 0 in a file of one run."""
     attributes: dict[str, Any] = field(default_factory=dict)
+    """Data of the run under the names of the HDF5 attributes, such as `drop_mass_kg`."""
 
     @property
     def where(self) -> str:
@@ -111,10 +89,8 @@ class MeasuredTable:
     def separate_time(self) -> "MeasuredTable":
         """Same table with its first column as time column [s], if the name of this column is a name of time.
 
-        Raises
-        ------
-        InputError
-            The table has no other column.
+        Raises:
+            InputError: The table has no other column.
         """
         if (self.columns[0].name or "").lower() not in TIME_NAMES:
             return self
@@ -127,14 +103,10 @@ class MeasuredTable:
 def refuse_damage(where: str, kind: str, *others: type[Exception]) -> Iterator[None]:
     """Convert exceptions that a library raises for a damaged file into `InputError`.
 
-    Parameters
-    ----------
-    where : str
-        Name of the file in messages.
-    kind : str
-        Kind of file, e.g. `HDF5`.
-    *others : type
-        Exceptions of this library beside `LIBRARY_ERRORS`.
+    Args:
+        where: Name of the file in messages.
+        kind: Kind of file, e.g. `HDF5`.
+        *others: Exceptions of this library beside `LIBRARY_ERRORS`.
     """
     try:
         yield
@@ -148,10 +120,8 @@ def refuse_damage(where: str, kind: str, *others: type[Exception]) -> Iterator[N
 def parse_direction(text: str, where: str) -> tuple[Axis, float]:
     """Axis and sign of a direction such as `+z` or `-x`; `where` is the place of the text in messages.
 
-    Raises
-    ------
-    InputError
-        The text is none of +x, -x, +y, -y, +z, -z.
+    Raises:
+        InputError: The text is none of +x, -x, +y, -y, +z, -z.
     """
     name = text.strip().lower()
     for axis in get_args(Axis):
@@ -163,10 +133,8 @@ def parse_direction(text: str, where: str) -> tuple[Axis, float]:
 def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealArray:
     """Samples of channels as columns, (n, c); `where` is the name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        The channels differ in length, or hold more than `largest` values together.
+    Raises:
+        InputError: The channels differ in length, or hold more than `largest` values together.
     """
     if len({channel.size for channel in channels}) > 1:
         raise InputError(where, "has channels of different length", SAMPLED_TOGETHER)

@@ -45,16 +45,14 @@ class InputTable(BaseModel):
 class SourcedTable(InputTable):
     """Table whose numbers share one source and one trust; `provisional` lists the exceptions."""
 
-    trust: Annotated[Trust, Field(description="trust in the numbers of this table")] = NO_TRUST
-    source: Annotated[
-        str | list[str],
-        Field(description="source of the numbers: keys of sources.toml, or free text", max_length=500),
-    ] = NO_SOURCE
-    provisional: Annotated[
-        tuple[str, ...],
-        Field(strict=False, description="keys of this table whose numbers have no printed source"),
-    ] = ()
-    note: Annotated[str | None, Field(description="reason for a number or a choice", max_length=4000)] = None
+    trust: Trust = NO_TRUST
+    """Trust in the numbers of this table."""
+    source: Annotated[str | list[str], Field(max_length=500)] = NO_SOURCE
+    """Source of the numbers: keys of sources.toml, or free text."""
+    provisional: Annotated[tuple[str, ...], Field(strict=False)] = ()
+    """Keys of this table whose numbers have no printed source."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Reason for a number or a choice."""
 
     @cross_check
     def _check_exceptions(self) -> Problems:
@@ -72,16 +70,11 @@ class SourcedTable(InputTable):
 def find_missing_source(trust: Trust, source: str | list[str]) -> Problems:
     """Problem of a trust above `provisional` without a source, because nobody could check the trust.
 
-    Parameters
-    ----------
-    trust : Trust
-        Trust of a table or a limit.
-    source : str or list of str
-        Its source, or `NO_SOURCE`.
+    Args:
+        trust: Trust of a table or a limit.
+        source: Its source, or `NO_SOURCE`.
 
-    Yields
-    ------
-    PydanticCustomError
+    Yields:
         The problem, if there is one.
     """
     if trust != NO_TRUST and source == NO_SOURCE:
@@ -93,18 +86,12 @@ def find_missing_source(trust: Trust, source: str | list[str]) -> Problems:
 def validation_problem(key: str, found: str, hint: str) -> PydanticCustomError:
     """Build the error that a cross check yields for keys that contradict each other.
 
-    Parameters
-    ----------
-    key : str
-        Dotted name of the wrong key, relative to the validated table.
-    found : str
-        Content found there.
-    hint : str
-        Content expected there.
+    Args:
+        key: Dotted name of the wrong key, relative to the validated table.
+        found: Content found there.
+        hint: Content expected there.
 
-    Returns
-    -------
-    PydanticCustomError
+    Returns:
         Error with these three parts as context.
     """
     return PydanticCustomError("inconsistent", "{found}. {hint}", {"key": key, "found": found, "hint": hint})

@@ -22,40 +22,26 @@ DELIMITERS = (";", "\t", ",")
 
 @dataclass(frozen=True)
 class SpreadsheetRow:
-    """Row of a table.
-
-    Parameters
-    ----------
-    number : int
-        Number of its line in the file, from 1.
-    cells : tuple of str
-        Texts of its cells, without spaces around them.
-    """
+    """Row of a table."""
 
     number: int
+    """Number of its line in the file, from 1."""
     cells: tuple[str, ...]
+    """Texts of its cells, without spaces around them."""
 
 
 @dataclass(frozen=True)
 class Spreadsheet:
-    """Table of text cells below one head line.
-
-    Parameters
-    ----------
-    where : str
-        Name of the file in messages.
-    delimiter : str
-        Separator of its columns.
-    head : SpreadsheetRow
-        Names of the columns.
-    rows : tuple of SpreadsheetRow
-        Rows below the head line; empty rows are left out.
-    """
+    """Table of text cells below one head line."""
 
     where: str
+    """Name of the file in messages."""
     delimiter: str
+    """Separator of its columns."""
     head: SpreadsheetRow
+    """Names of the columns."""
     rows: tuple[SpreadsheetRow, ...]
+    """Rows below the head line; empty rows are left out."""
 
     def locate(self, row: SpreadsheetRow, column: int) -> str:
         """Place of a cell in messages; columns count from 0."""
@@ -68,20 +54,12 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
     The encoding is UTF-8 or UTF-16 with a byte order mark, or else UTF-8 or Windows-1252. Lines before the head line
     that begin with `#` or `sep=` are skipped.
 
-    Parameters
-    ----------
-    path : Path
-        CSV file.
+    Args:
+        path: CSV file.
 
-    Returns
-    -------
-    Spreadsheet
-        The table.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, is no text, has no row or too many, or has rows of another width than its head line.
+    Raises:
+        InputError: The file cannot be read, is no text, has no row or too many, or has rows of another width than its
+            head line.
     """
     where = f"table '{path.name}'"
     content = read_bytes(path, where, MAX_SPREADSHEET_BYTES)

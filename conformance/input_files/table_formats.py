@@ -20,21 +20,14 @@ cannot be used."""
 
 @dataclass(frozen=True)
 class TableFormat:
-    """File format of measured tables.
-
-    Parameters
-    ----------
-    module : str
-        Module of its reader in `formats/`; the reader is called `read_` and the name of the module.
-    suffixes : tuple of str
-        Suffixes of its files in lower case, the usual one first.
-    library : str
-        Package of an extra that reads and writes it; empty if none is needed.
-    """
+    """File format of measured tables."""
 
     module: str
+    """Module of its reader in `formats/`; the reader is called `read_` and the name of the module."""
     suffixes: tuple[str, ...]
+    """Suffixes of its files in lower case, the usual one first."""
     library: str = ""
+    """Package of an extra that reads and writes it; empty if none is needed."""
 
     def read(self, path: Path, names: ChannelNames, largest: int, *layout: TextSettings) -> list[MeasuredTable]:
         """Read a file of this format; arguments and errors as in `Reader`.
@@ -49,10 +42,8 @@ class TableFormat:
     def require_library(self, path: Path) -> None:
         """Require the package of this format before a file of it is computed.
 
-        Raises
-        ------
-        InputError
-            The package is not installed.
+        Raises:
+            InputError: The package is not installed.
         """
         if self.library:
             require_package(self.library, f"record '{path.name}'")
@@ -82,10 +73,8 @@ def list_suffixes(formats: tuple[TableFormat, ...]) -> str:
 def find_table_format(path: Path, formats: tuple[TableFormat, ...]) -> TableFormat:
     """Find the format of a file by its suffix, among the accepted formats of the suite.
 
-    Raises
-    ------
-    InputError
-        The suffix belongs to none of the formats.
+    Raises:
+        InputError: The suffix belongs to none of the formats.
     """
     where, suffix = f"record '{path.name}'", path.suffix.lower()
     if suffix == ".toml":
@@ -110,28 +99,19 @@ def read_tables(
 ) -> list[MeasuredTable]:
     """Read all runs in a file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    names : tuple of str or EveryChannel
-        Names of the channels in its sidecar, in the order of the columns; empty for a file that describes itself.
-    largest : int
-        Largest accepted number of values.
-    formats : tuple of TableFormat
-        Accepted formats.
-    layout : TextSettings or None
-        Layout of a text table, as far as it is stated.
+    Args:
+        path: The file.
+        names: Names of the channels in its sidecar, in the order of the columns; empty for a file that describes
+            itself.
+        largest: Largest accepted number of values.
+        formats: Accepted formats.
+        layout: Layout of a text table, as far as it is stated.
 
-    Returns
-    -------
-    list of MeasuredTable
+    Returns:
         One table per run.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is damaged, too large or of another format.
+    Raises:
+        InputError: The file cannot be read, is damaged, too large or of another format.
     """
     table_format = find_table_format(path, formats)
     where = f"record '{path.name}'"

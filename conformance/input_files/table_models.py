@@ -49,16 +49,11 @@ def find_members(annotation: Any, data: Any) -> dict[int | str, tuple[Any, Any]]
 def find_model(annotation: Any, tags: Set[object]) -> tuple[type[BaseModel] | None, bool]:
     """Model of a nested table, and whether the locations of its errors begin with the name of the model.
 
-    Parameters
-    ----------
-    annotation : Any
-        Annotation of the key.
-    tags : set of object
-        First parts of the locations of all errors below the key.
+    Args:
+        annotation: Annotation of the key.
+        tags: First parts of the locations of all errors below the key.
 
-    Returns
-    -------
-    tuple of (type of BaseModel or None, bool)
+    Returns:
         None: the key has no table, or the errors do not tell its model.
     """
     models = list_models(annotation)

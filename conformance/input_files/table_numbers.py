@@ -9,18 +9,13 @@ _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 def append_table_number(key: str, tree: Any) -> str:
     """Append the number of the innermost table of a list that states one.
 
-    Parameters
-    ----------
-    key : str
-        Dotted key with the items of lists numbered from 1, e.g. `geometry.support[2].encumbrance_m`.
-    tree : Any
-        Content of the file.
+    Args:
+        key: Dotted key with the items of lists numbered from 1, e.g. `geometry.support[2].encumbrance_m`.
+        tree: Content of the file.
 
-    Returns
-    -------
-    str
-        The key, e.g. `geometry.support[2].encumbrance_m (number 7)`; unchanged without such a table,
-        and for the number itself.
+    Returns:
+        The key, e.g. `geometry.support[2].encumbrance_m (number 7)`; unchanged without such a table, and for the number
+        itself.
     """
     number: object = None
     for step in _STEP.finditer(key):

@@ -17,22 +17,15 @@ def find_encoding(file: BinaryIO, where: str) -> str:
     Western single-byte encodings differ in letters with accents only, never in digits. A wrong one makes the name of a
     column unknown, but changes no number.
 
-    Parameters
-    ----------
-    file : BinaryIO
-        Open file; it is at its start afterwards.
-    where : str
-        Name of the file in messages.
+    Args:
+        file: Open file; it is at its start afterwards.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    str
+    Returns:
         Name of the encoding for Python; a byte order mark is left out of the text.
 
-    Raises
-    ------
-    InputError
-        The file is not text in one of these encodings.
+    Raises:
+        InputError: The file is not text in one of these encodings.
     """
     start = file.read(2)
     file.seek(0)

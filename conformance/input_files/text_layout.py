@@ -12,24 +12,16 @@ SEPARATOR_NAMES = {";": "semicolon", "\t": "tab", ",": "comma", "|": "bar", " ":
 def find_text_layout(lines: list[NumberedLine], where: str, settings: TextSettings) -> TextLayout:
     """Find the layout of a text table.
 
-    Parameters
-    ----------
-    lines : list of (int, str)
-        First lines of the file that are not blank, numbered from 1.
-    where : str
-        Name of the file in messages.
-    settings : TextSettings
-        Stated keys of the layout.
+    Args:
+        lines: First lines of the file that are not blank, numbered from 1.
+        where: Name of the file in messages.
+        settings: Stated keys of the layout.
 
-    Returns
-    -------
-    TextLayout
+    Returns:
         The only layout in which the lines are a table.
 
-    Raises
-    ------
-    InputError
-        The lines are no table, or several layouts are valid; the error names the key that decides.
+    Raises:
+        InputError: The lines are no table, or several layouts are valid; the error names the key that decides.
     """
     separators = SEPARATORS if settings.separator is None else (settings.separator,)
     decimals: tuple[DecimalSign, ...] = (".", ",") if settings.decimal is None else (settings.decimal,)

@@ -18,36 +18,24 @@ SplitLine = tuple[int, str, list[str]]
 
 @dataclass(frozen=True)
 class TextLayout:
-    """Layout of a text table.
-
-    Parameters
-    ----------
-    separator : str
-        Separator of the columns; a blank stands for any number of blanks.
-    decimal : str or None
-        Decimal mark; None: no number of the first lines has one.
-    width : int
-        Number of columns.
-    texts : frozenset of int
-        Columns without numbers, from 0.
-    first : int
-        Number of the first line of numbers, from 1.
-    names : tuple of str or None
-        Names of the columns; None without a line of names.
-    units : tuple of str or None
-        Units of the columns; None without a line of units.
-    preface : tuple of str
-        Lines above the names.
-    """
+    """Layout of a text table."""
 
     separator: Separator
+    """Separator of the columns; a blank stands for any number of blanks."""
     decimal: DecimalSign | None
+    """Decimal mark; None: no number of the first lines has one."""
     width: int
+    """Number of columns."""
     texts: frozenset[int]
+    """Columns without numbers, from 0."""
     first: int
+    """Number of the first line of numbers, from 1."""
     names: tuple[str, ...] | None = None
+    """Names of the columns; None without a line of names."""
     units: tuple[str, ...] | None = None
+    """Units of the columns; None without a line of units."""
     preface: tuple[str, ...] = ()
+    """Lines above the names."""
 
 
 def split_lines(lines: list[NumberedLine], separator: Separator) -> list[SplitLine]:

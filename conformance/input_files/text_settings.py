@@ -17,16 +17,14 @@ EncodingName = Literal["utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "l
 class TextSettings(InputTable):
     """Layout of a text table (CSV, TXT)."""
 
-    separator: Annotated[
-        Separator | None,
-        Field(description='separator of the columns: ",", ";", "\\t", "|", or " " for any number of blanks'),
-    ] = None
-    decimal: Annotated[DecimalSign | None, Field(description='decimal mark: "." or ","')] = None
-    header_lines: Annotated[
-        int | None,
-        Field(ge=0, le=900, description="number of lines above the line of the column names, or above the numbers"),
-    ] = None
-    encoding: Annotated[EncodingName | None, Field(description="encoding of the text")] = None
+    separator: Separator | None = None
+    r"""Separator of the columns: ",", ";", "\t", "|", or " " for any number of blanks."""
+    decimal: DecimalSign | None = None
+    """Decimal mark: "." or ","."""
+    header_lines: Annotated[int | None, Field(ge=0, le=900)] = None
+    """Number of lines above the line of the column names, or above the numbers."""
+    encoding: EncodingName | None = None
+    """Encoding of the text."""
 
     @property
     def is_stated(self) -> bool:

@@ -28,24 +28,16 @@ T = TypeVar("T", bound=BaseModel)
 def read_model(path: Path, model: type[T], kind: str) -> T:
     """Read and validate a TOML file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    model : type of BaseModel
-        Required structure.
-    kind : str
-        Name of its kind in messages, e.g. `line`.
+    Args:
+        path: The file.
+        model: Required structure.
+        kind: Name of its kind in messages, e.g. `line`.
 
-    Returns
-    -------
-    T
+    Returns:
         Validated content.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not TOML or does not fit the model.
+    Raises:
+        InputError: The file cannot be read, is not TOML or does not fit the model.
     """
     return validate_model(read_toml(path, kind), model, f"{kind} '{path.name}'")
 
@@ -53,24 +45,16 @@ def read_model(path: Path, model: type[T], kind: str) -> T:
 def validate_model(tree: dict[str, Any], model: type[T], where: str) -> T:
     """Validate the content of a TOML file.
 
-    Parameters
-    ----------
-    tree : dict
-        Content of the file.
-    model : type of BaseModel
-        Required structure.
-    where : str
-        Name of the file in messages, e.g. `line 'line.toml'`.
+    Args:
+        tree: Content of the file.
+        model: Required structure.
+        where: Name of the file in messages, e.g. `line 'line.toml'`.
 
-    Returns
-    -------
-    T
+    Returns:
         Validated content.
 
-    Raises
-    ------
-    InputError
-        The content does not fit the model; the error lists all problems.
+    Raises:
+        InputError: The content does not fit the model; the error lists all problems.
     """
     try:
         return model.model_validate(tree)
@@ -89,17 +73,12 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Parse the text of a TOML file.
 
-    Parameters
-    ----------
-    text : str
-        Text of the file.
-    where : str
-        Name of the file in messages.
+    Args:
+        text: Text of the file.
+        where: Name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        It is not TOML, or too long in a part.
+    Raises:
+        InputError: It is not TOML, or too long in a part.
     """
     if (long := _LONG_KEY.search(text)) is not None:
         line = text.count("\n", 0, long.start()) + 1

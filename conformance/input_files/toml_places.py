@@ -17,16 +17,11 @@ _ANY_TABLE = re.compile(r"^[ \t]*+\[", re.MULTILINE)
 def list_table_lines(text: str, name: str) -> tuple[int, ...]:
     """Lines of the headers `[[name]]` of a list of tables.
 
-    Parameters
-    ----------
-    text : str
-        Content of a TOML file.
-    name : str
-        Name of the list. Tables that are written inside other values, or with a quoted name, are not found.
+    Args:
+        text: Content of a TOML file.
+        name: Name of the list. Tables that are written inside other values, or with a quoted name, are not found.
 
-    Returns
-    -------
-    tuple of int
+    Returns:
         Number of each line, from 1.
     """
     header = re.compile(rf"^[ \t]*+\[\[[ \t]*+{re.escape(name)}[ \t]*+\]\]", re.MULTILINE)
@@ -37,16 +32,11 @@ def list_table_lines(text: str, name: str) -> tuple[int, ...]:
 def find_key_line(text: str, key: str) -> int | None:
     """Line of a key before the first table of a file; None without it.
 
-    Parameters
-    ----------
-    text : str
-        Content of a TOML file.
-    key : str
-        Name of the key, without dots.
+    Args:
+        text: Content of a TOML file.
+        key: Name of the key, without dots.
 
-    Returns
-    -------
-    int or None
+    Returns:
         Number of the line, from 1.
     """
     bare = _blank_texts(text)

@@ -15,19 +15,13 @@ _NUMBER_WITH_UNIT = re.compile(r"[=\[,]\s*([+-]?\d[\d_]*(?:\.\d+)?(?:[eE][+-]?\d
 def explain_syntax_error(text: str, error: tomllib.TOMLDecodeError) -> tuple[str, str]:
     """Explain a syntax error.
 
-    Parameters
-    ----------
-    text : str
-        Content of the file.
-    error : TOMLDecodeError
-        Error of the parser.
+    Args:
+        text: Content of the file.
+        error: Error of the parser.
 
-    Returns
-    -------
-    found : str
-        Message of the parser with the quoted line.
-    hint : str
-        Next step of the user.
+    Returns:
+        found: Message of the parser with the quoted line.
+        hint: Next step of the user.
     """
     message = f"is not valid TOML: {str(error)[:200]}"
     place = _PLACE.search(str(error))

@@ -15,18 +15,12 @@ MotionQuantity = Literal["acceleration", "velocity", "displacement"]
 
 @dataclass(frozen=True)
 class UnitFamily:
-    """Units of one physical quantity.
-
-    Parameters
-    ----------
-    rule : str
-        Sentence that states the unit of the schema, for messages.
-    factors : dict[str, float]
-        Factor to the SI unit by symbol.
-    """
+    """Units of one physical quantity."""
 
     rule: str
+    """Sentence that states the unit of the schema, for messages."""
     factors: dict[str, float]
+    """Factor to the SI unit by symbol."""
 
 
 _LENGTH = UnitFamily("Lengths are given in metres", {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3})
@@ -116,16 +110,11 @@ def find_unit(key: str) -> str | None:
 def convert_key(name: str, known: Sequence[str]) -> tuple[str, float] | None:
     """Find the key of a schema that a name has in the same or in another unit.
 
-    Parameters
-    ----------
-    name : str
-        Name with its unit, such as `span_km`.
-    known : sequence of str
-        Keys of the schema, such as `span_m`.
+    Args:
+        name: Name with its unit, such as `span_km`.
+        known: Keys of the schema, such as `span_m`.
 
-    Returns
-    -------
-    tuple of (str, float) or None
+    Returns:
         Key, and the factor from the unit of the name to that of the key; None if no key differs in its unit only.
     """
     if name in known:
@@ -143,18 +132,12 @@ def convert_key(name: str, known: Sequence[str]) -> tuple[str, float] | None:
 def suggest_key(key: str, value: object, known: list[str]) -> str | None:
     """Hint for an unknown key that is a key of the schema in another unit.
 
-    Parameters
-    ----------
-    key : str
-        Unknown key.
-    value : object
-        Its value; the hint repeats it in the unit of the schema.
-    known : list of str
-        Keys of the schema.
+    Args:
+        key: Unknown key.
+        value: Its value; the hint repeats it in the unit of the schema.
+        known: Keys of the schema.
 
-    Returns
-    -------
-    str or None
+    Returns:
         Sentence with the key of the schema; None if no key of the schema differs in its unit only.
     """
     for other in known:
@@ -184,10 +167,8 @@ def _scaled(value: object, factor: float) -> str:
 def convert_unit(text: str, where: str) -> tuple[MotionQuantity, float]:
     """Quantity of a unit of motion, and the factor to its SI unit; `where` is the place of the unit in messages.
 
-    Raises
-    ------
-    InputError
-        The unit is not known; a guessed unit would scale every amplitude.
+    Raises:
+        InputError: The unit is not known; a guessed unit would scale every amplitude.
     """
     name = text.strip()
     name = SPELLINGS.get(name.lower(), name)

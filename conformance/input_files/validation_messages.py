@@ -49,20 +49,13 @@ _KINDS = {
 def build_input_error(error: ValidationError, model: type[BaseModel], where: str, tree: object = None) -> InputError:
     """Build an `InputError` with one message for each problem of a file.
 
-    Parameters
-    ----------
-    error : ValidationError
-        Error of pydantic.
-    model : type of BaseModel
-        Model that was validated.
-    where : str
-        Name of the file in messages, e.g. `line 'my-line.toml'`.
-    tree : object
-        Content of the file; a table of a list that states its number is named by it.
+    Args:
+        error: Error of pydantic.
+        model: Model that was validated.
+        where: Name of the file in messages, e.g. `line 'my-line.toml'`.
+        tree: Content of the file; a table of a list that states its number is named by it.
 
-    Returns
-    -------
-    InputError
+    Returns:
         First error with file, key, value and hint, and all further ones. Unknown keys come first.
     """
     details = sorted(error.errors(include_url=False), key=lambda detail: detail["type"] != "extra_forbidden")

@@ -17,23 +17,17 @@ Part = str | Path | Mapping[str, Any]
 def build_case(folder: str | Path, line: Part, pantographs: Sequence[Part], **keys: Any) -> OpenedCase:
     """Write the files of a case into a folder, and open the case.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Folder of the files `case.toml` and, for parts that are given by their keys, `line.toml`, `pantograph-1.toml`,
-        and so on. Files of an earlier call are replaced.
-    line : str, Path or mapping
-        Path of a line file, its name in the library, or the keys of a line file.
-    pantographs : sequence of str, Path or mapping
-        Pantographs in running order, given as the line is.
-    **keys : object
-        Further keys of the case file, for example `speed_km_h=250` and `evaluated_spans=[5, 6]`. Default `id`: `own/`
-        and the name of the folder; default `title`: the id. `uplift_force_N` is the lift force of every pantograph.
+    Args:
+        folder: Folder of the files `case.toml` and, for parts that are given by their keys, `line.toml`,
+            `pantograph-1.toml`, and so on. Files of an earlier call are replaced.
+        line: Path of a line file, its name in the library, or the keys of a line file.
+        pantographs: Pantographs in running order, given as the line is.
+        **keys: Further keys of the case file, for example `speed_km_h=250` and `evaluated_spans=[5, 6]`. Default `id`:
+            `own/` and the name of the folder; default `title`: the id. `uplift_force_N` is the lift force of every
+            pantograph.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written, or the case, the line or a pantograph is invalid.
+    Raises:
+        InputError: A file cannot be written, or the case, the line or a pantograph is invalid.
     """
     place = Path(folder)
     name = keys.get("id", f"own/{place.resolve().name}")

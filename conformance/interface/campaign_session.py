@@ -26,23 +26,16 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
 
     A script that is run by name needs `if __name__ == "__main__":` around the call, because the workers import it.
 
-    Parameters
-    ----------
-    campaign : str, Path or mapping
-        Campaign file, name of a campaign of the library, or content of a campaign file.
-    out : str or Path
-        Folder of the runs and of `campaign.csv`.
+    Args:
+        campaign: Campaign file, name of a campaign of the library, or content of a campaign file.
+        out: Folder of the runs and of `campaign.csv`.
 
-    Returns
-    -------
-    pandas.DataFrame or dict
+    Returns:
         One row per finished run with the columns of `campaign.csv`: a table of pandas if it is installed, otherwise
         arrays by the names of the columns. Missing numbers are NaN.
 
-    Raises
-    ------
-    InputError
-        The campaign is wrong, or the folder cannot be used.
+    Raises:
+        InputError: The campaign is wrong, or the folder cannot be used.
     """
     prepared, folder = _prepare(campaign), Path(out)
     execution = prepared.file.execution
@@ -57,22 +50,15 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
 def read_traces(folder: str | Path, run: int) -> RunTraces:
     """Read the traces of a run of a campaign.
 
-    Parameters
-    ----------
-    folder : str or Path
-        Folder of the campaign.
-    run : int
-        Number of the run, as in campaign.csv.
+    Args:
+        folder: Folder of the campaign.
+        run: Number of the run, as in campaign.csv.
 
-    Returns
-    -------
-    RunTraces
+    Returns:
         Force of every pantograph over the analysis section, and uplift at its supports.
 
-    Raises
-    ------
-    InputError
-        The folder holds no campaign, or no traces of this run.
+    Raises:
+        InputError: The folder holds no campaign, or no traces of this run.
     """
     with read_store(Path(folder)) as store:
         content = store.find_traces(run)

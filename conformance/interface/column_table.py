@@ -11,14 +11,10 @@ from numpy.typing import NDArray
 def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
     """Table of equally long columns.
 
-    Parameters
-    ----------
-    columns : mapping of str to ndarray
-        Columns by name.
+    Args:
+        columns: Columns by name.
 
-    Returns
-    -------
-    pandas.DataFrame or dict
+    Returns:
         A table of pandas if that is installed, otherwise the columns.
     """
     if importlib.util.find_spec("pandas") is None:

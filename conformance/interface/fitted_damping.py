@@ -29,15 +29,10 @@ MODEL_STYLES = ("--", "-", ":")
 
 @dataclass(frozen=True)
 class FittedDamping:
-    """Damping model of a line, fitted to identified modes: C = sum over the components of (a M + b K).
-
-    Parameters
-    ----------
-    results : DampingResults
-        Content of damping.json.
-    """
+    """Damping model of a line, fitted to identified modes: C = sum over the components of (a M + b K)."""
 
     results: DampingResults
+    """Content of damping.json."""
 
     def __repr__(self) -> str:
         """Number of coefficients in one line."""
@@ -51,22 +46,15 @@ class FittedDamping:
     def coefficient(self, kind: str, matrix: str) -> Coefficient:
         """Fitted coefficient of one kind of component.
 
-        Parameters
-        ----------
-        kind : str
-            Kind of component, for example `contact_wire`.
-        matrix : {"stiffness", "mass"}
-            Matrix of the coefficient: `stiffness` [s] or `mass` [1/s].
+        Args:
+            kind: Kind of component, for example `contact_wire`.
+            matrix: Matrix of the coefficient: `stiffness` [s] or `mass` [1/s].
 
-        Returns
-        -------
-        Coefficient
+        Returns:
             With `value`, `low_95`, `high_95` and `determined`.
 
-        Raises
-        ------
-        KeyError
-            The fit has no such coefficient.
+        Raises:
+            KeyError: The fit has no such coefficient.
         """
         found = {(row.kind, row.matrix): row for row in self.results.coefficients}
         return found[kind, matrix]
@@ -88,10 +76,8 @@ class FittedDamping:
     def plot(self, axes: Any = None) -> Any:
         """Plot the damping ratios over the frequency, identified and of the models; returns matplotlib axes.
 
-        Parameters
-        ----------
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            axes: Axes to draw in; None: those of a new figure.
         """
         axes, comparison = provide_axes(axes), self.results.comparison
         measured = comparison.measured
@@ -113,15 +99,11 @@ class FittedDamping:
     def write(self, folder: str | Path) -> list[Path]:
         """Write damping.toml, damping_with_modal.toml, damping.json and the report; returns the paths of the files.
 
-        Parameters
-        ----------
-        folder : str or Path
-            Folder of the files.
+        Args:
+            folder: Folder of the files.
 
-        Raises
-        ------
-        InputError
-            A file cannot be written.
+        Raises:
+            InputError: A file cannot be written.
         """
         warn_missing_formats()
         return write_damping_fit(self.results, Path(folder))[1]
@@ -130,17 +112,15 @@ class FittedDamping:
 def write_damping_fit(results: DampingResults, folder: Path) -> tuple[Document, list[Path]]:
     """Write all files of a fit; returns the report and the paths of the files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     from pantocheck.conformance.reports.formats.report_writers import write_document
     from pantocheck.conformance.reports.mass_drop.damping_report import build_damping_document
 
     block, with_modal, data = (folder / name for name in DATA_FILES)
     text = write_damping_toml(results)
-    document = build_damping_document(results.model_dump(mode="json", by_alias=True), text)
+    document = build_damping_document(results, text)
     write_atomically(block, text.encode("utf-8"))
     write_atomically(with_modal, write_damping_toml(results, results.modal).encode("utf-8"))
     write_model(data, results)

@@ -36,21 +36,14 @@ CONTACT_STIFFNESS_N_M = 50e3
 
 @dataclass(frozen=True)
 class FittedPantograph:
-    """Chain of masses, fitted to frequency responses of a head.
-
-    Parameters
-    ----------
-    tables : dict
-        Content of the pantograph file.
-    report : PantographFit
-        Content of the JSON report.
-    records : tuple of ResponseRecord
-        Measured responses.
-    """
+    """Chain of masses, fitted to frequency responses of a head."""
 
     tables: dict[str, Any]
+    """Content of the pantograph file."""
     report: PantographFit
+    """Content of the JSON report."""
     records: tuple[ResponseRecord, ...]
+    """Measured responses."""
 
     def __repr__(self) -> str:
         """Number of masses in one line."""
@@ -59,22 +52,15 @@ class FittedPantograph:
     def parameter(self, key: str, number: int) -> ChainParameter:
         """Fitted value of the chain.
 
-        Parameters
-        ----------
-        key : str
-            `masses_kg`, `stiffness_N_m` or `damping_N_s_m`.
-        number : int
-            Number of the mass or element, from 1 at the base.
+        Args:
+            key: `masses_kg`, `stiffness_N_m` or `damping_N_s_m`.
+            number: Number of the mass or element, from 1 at the base.
 
-        Returns
-        -------
-        ChainParameter
+        Returns:
             With `value`, `half_width` (of the 95 % interval) and `determination`.
 
-        Raises
-        ------
-        KeyError
-            The chain has no such parameter.
+        Raises:
+            KeyError: The chain has no such parameter.
         """
         found = {(str(item.key), item.number): item for item in self.report.parameters}
         return found[key, number]
@@ -87,10 +73,8 @@ class FittedPantograph:
     def dynamic_stiffness(self, frequency_Hz: RealArray) -> ComplexArray:
         """Force at the head over its displacement in the same direction [N/m].
 
-        Parameters
-        ----------
-        frequency_Hz : (n,) ndarray
-            Frequencies [Hz].
+        Args:
+            frequency_Hz: Frequencies, (n,) [Hz].
         """
         pantograph = validate_model(self.tables, PantographFile, "fitted pantograph")
         return model_stiffness(pantograph, np.asarray(frequency_Hz, dtype=np.float64))
@@ -98,10 +82,8 @@ class FittedPantograph:
     def plot(self, axes: Any = None) -> Any:
         """Plot the modulus of the apparent mass over the frequency, measured and fitted; returns matplotlib axes.
 
-        Parameters
-        ----------
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            axes: Axes to draw in; None: those of a new figure.
         """
         axes = provide_axes(axes)
         for record, mark in zip(self.records, ".x+^" * len(self.records), strict=False):
@@ -118,15 +100,11 @@ class FittedPantograph:
     def write(self, path: str | Path) -> list[Path]:
         """Write the pantograph file, and the report beside it; returns the paths.
 
-        Parameters
-        ----------
-        path : str or Path
-            Path of the pantograph file; it ends in .toml.
+        Args:
+            path: Path of the pantograph file; it ends in .toml.
 
-        Raises
-        ------
-        InputError
-            The name does not end in .toml, or a file cannot be written.
+        Raises:
+            InputError: The name does not end in .toml, or a file cannot be written.
         """
         from pantocheck.conformance.reports.comparison.pantograph_fit_page import build_pantograph_fit_document
         from pantocheck.conformance.reports.formats.report_writers import write_document
@@ -150,23 +128,15 @@ def fit_pantograph(
 ) -> FittedPantograph:
     """Fit a chain of masses to frequency responses of a head, as `pantocheck pantograph fit` does.
 
-    Parameters
-    ----------
-    *responses : str or Path
-        Tables of measured responses, or their sidecars.
-    masses : int or None
-        Number of masses, 2 to 4; None: that with the lowest information criterion.
-    band_Hz : tuple of float
-        Lowest and highest frequency of the fit [Hz].
-    title : str
-        Title of the pantograph.
-    contact_stiffness_N_m : float
-        Stiffness of the contact, which a response does not contain [N/m].
+    Args:
+        *responses: Tables of measured responses, or their sidecars.
+        masses: Number of masses, 2 to 4; None: that with the lowest information criterion.
+        band_Hz: Lowest and highest frequency of the fit [Hz].
+        title: Title of the pantograph.
+        contact_stiffness_N_m: Stiffness of the contact, which a response does not contain [N/m].
 
-    Raises
-    ------
-    InputError
-        A response cannot be read, is not that of the centre of the head, or has too few rows in the band.
+    Raises:
+        InputError: A response cannot be read, is not that of the centre of the head, or has too few rows in the band.
     """
     records = tuple(read_response(Path(path)) for path in responses)
     selection = fit_chains(records, FitTask(band_Hz, None))
@@ -180,18 +150,12 @@ def build_fitted_pantograph(
 ) -> FittedPantograph:
     """Pantograph file and report of the chain with one number of masses.
 
-    Parameters
-    ----------
-    records : tuple of ResponseRecord
-        Measured responses.
-    selection : ChainSelection
-        Fitted chains.
-    masses : int
-        Number of masses.
-    title : str
-        Title of the pantograph.
-    contact_stiffness : float
-        Stiffness of the contact [N/m].
+    Args:
+        records: Measured responses.
+        selection: Fitted chains.
+        masses: Number of masses.
+        title: Title of the pantograph.
+        contact_stiffness: Stiffness of the contact [N/m].
     """
     names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
     texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])

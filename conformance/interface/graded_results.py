@@ -27,15 +27,10 @@ from pantocheck.conformance.systems.system_choice import choose_system
 
 @dataclass(frozen=True)
 class GradedResults:
-    """Results of a run of the suite.
-
-    Parameters
-    ----------
-    results : Results
-        Content of results.json.
-    """
+    """Results of a run of the suite."""
 
     results: Results
+    """Content of results.json."""
 
     def __repr__(self) -> str:
         """Verdict, cases and system in one line."""
@@ -69,18 +64,13 @@ class GradedResults:
     def write(self, folder: str | Path, formats: Sequence[str] | None = None) -> list[Path]:
         """Write the report; returns the paths of its files.
 
-        Parameters
-        ----------
-        folder : str or Path
-            Folder of the files.
-        formats : sequence of str or None
-            Formats: html, pdf, json, csv, junit, md, badge. None: all but badge; a warning tells if no PDF can be
-            written.
+        Args:
+            folder: Folder of the files.
+            formats: Formats: html, pdf, json, csv, junit, md, badge. None: all but badge; a warning tells if no PDF can
+                be written.
 
-        Raises
-        ------
-        InputError
-            A format does not exist or needs an extra that is not installed, or a file cannot be written.
+        Raises:
+            InputError: A format does not exist or needs an extra that is not installed, or a file cannot be written.
         """
         warn_missing_formats(formats)
         return write_all(self.results, Path(folder), check_formats(formats))
@@ -89,15 +79,11 @@ class GradedResults:
 def open_results(path: str | Path) -> GradedResults:
     """Read a results.json.
 
-    Parameters
-    ----------
-    path : str or Path
-        Path of the file, or of its folder.
+    Args:
+        path: Path of the file, or of its folder.
 
-    Raises
-    ------
-    InputError
-        It cannot be read, or is not in the format of the suite.
+    Raises:
+        InputError: It cannot be read, or is not in the format of the suite.
     """
     return GradedResults(read_results(Path(path)))
 
@@ -112,25 +98,16 @@ def grade_cases(
 ) -> GradedResults:
     """Run cases on a system and grade them, as `pantocheck run` does.
 
-    Parameters
-    ----------
-    *cases : str or Path
-        Ids, globs or paths of cases.
-    system : str
-        `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
-    trust : Trust
-        Lowest trust of the limits that count.
-    changes : sequence of str
-        Changes of the inputs, `KEY=VALUE` as with `--set`.
-    limits : str, Path or None
-        File of own limits.
-    case_folders : sequence of str or Path
-        Folders with further cases, whose ids begin with `own/`.
+    Args:
+        *cases: Ids, globs or paths of cases.
+        system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+        trust: Lowest trust of the limits that count.
+        changes: Changes of the inputs, `KEY=VALUE` as with `--set`.
+        limits: File of own limits.
+        case_folders: Folders with further cases, whose ids begin with `own/`.
 
-    Raises
-    ------
-    InputError
-        A case, change, limit or system is wrong.
+    Raises:
+        InputError: A case, change, limit or system is wrong.
     """
     options: dict[str, Any] = {"cases": tuple(map(str, cases)), "system": system, "trust": trust}
     if changes:
@@ -146,19 +123,13 @@ def grade_cases(
 def assess_run(record: str | Path, profile: str, measured: str | Path | None = None) -> GradedResults:
     """Grade a record by the rules of a profile, as `pantocheck assess` does.
 
-    Parameters
-    ----------
-    record : str or Path
-        Record to grade.
-    profile : str
-        Name of a profile of the library, or path of a profile file.
-    measured : str, Path or None
-        Measured record, for a profile that compares.
+    Args:
+        record: Record to grade.
+        profile: Name of a profile of the library, or path of a profile file.
+        measured: Measured record, for a profile that compares.
 
-    Raises
-    ------
-    InputError
-        A record or the profile is wrong.
+    Raises:
+        InputError: A record or the profile is wrong.
     """
     rules = load_profile(profile)
     subject = load_assessed_record(Path(record), rules, LineTable())
@@ -169,24 +140,16 @@ def assess_run(record: str | Path, profile: str, measured: str | Path | None = N
 def validate_dossier(dossier: str | Path, folder: str | Path, jobs: int = 1) -> GradedResults:
     """Validate a simulator for a line by a dossier, as `pantocheck validate` does.
 
-    Parameters
-    ----------
-    dossier : str or Path
-        Dossier file.
-    folder : str or Path
-        Folder of the records of the runs.
-    jobs : int
-        Number of reference models that run in parallel.
+    Args:
+        dossier: Dossier file.
+        folder: Folder of the records of the runs.
+        jobs: Number of reference models that run in parallel.
 
-    Returns
-    -------
-    GradedResults
+    Returns:
         Results with the steps of the procedure.
 
-    Raises
-    ------
-    InputError
-        The dossier or a file that it names is wrong.
+    Raises:
+        InputError: The dossier or a file that it names is wrong.
     """
     from pantocheck.conformance.procedure.dossier_reading import read_dossier
     from pantocheck.conformance.procedure.validation import Validation

@@ -49,15 +49,10 @@ MODE_KEYS = (
 
 @dataclass(frozen=True)
 class IdentifiedLines:
-    """Modes that were identified from mass-drop records.
-
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Modes of all lines, in the order of frequency within a line.
-    """
+    """Modes that were identified from mass-drop records."""
 
     modes: tuple[Mode, ...]
+    """Modes of all lines, in the order of frequency within a line."""
 
     def __repr__(self) -> str:
         """Number of modes in one line."""
@@ -73,10 +68,8 @@ class IdentifiedLines:
     def plot(self, axes: Any = None) -> Any:
         """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes.
 
-        Parameters
-        ----------
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            axes: Axes to draw in; None: those of a new figure.
         """
         axes = provide_axes(axes)
         certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
@@ -99,19 +92,13 @@ class IdentifiedLines:
     ) -> FittedDamping:
         """Fit a damping model of the line of a case to the modes, as `pantocheck drop fit` does.
 
-        Parameters
-        ----------
-        case : OpenedCase
-            Case with the line of the records.
-        element_m : float
-            Element length [m].
-        wires : {"separate", "common"}
-            Whether contact and messenger wire have their own coefficients, or the same.
+        Args:
+            case: Case with the line of the records.
+            element_m: Element length [m].
+            wires: Whether contact and messenger wire have their own coefficients, or the same.
 
-        Raises
-        ------
-        InputError
-            The line is not that of the record, or the modes do not determine a model.
+        Raises:
+            InputError: The line is not that of the record, or the modes do not determine a model.
         """
         catenary, name = build_catenary(case.case.line), "modes"
         refuse_other_line(compare_line(select_usable(self.modes, name), catenary), name)
@@ -120,15 +107,11 @@ class IdentifiedLines:
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json; returns the paths of the files.
 
-        Parameters
-        ----------
-        folder : str or Path
-            Folder of the files.
+        Args:
+            folder: Folder of the files.
 
-        Raises
-        ------
-        InputError
-            A file cannot be written.
+        Raises:
+            InputError: A file cannot be written.
         """
         path = Path(folder) / "modes.json"
         write_model(path, ModesFile(self.modes))
@@ -137,30 +120,19 @@ class IdentifiedLines:
 
 @dataclass(frozen=True, repr=False)
 class IdentifiedRecords(IdentifiedLines):
-    """Modes of the lines of mass-drop records, with the records and the course of the identification.
-
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Modes of all lines, in the order of frequency within a line.
-    lines : tuple of IdentifiedLine
-        Content of identification.json, line by line.
-    """
+    """Modes of the lines of mass-drop records, with the records and the course of the identification."""
 
     lines: tuple[IdentifiedLine, ...]
+    """Content of identification.json, line by line."""
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json, identification.json and the report as HTML and PDF; returns the paths of the files.
 
-        Parameters
-        ----------
-        folder : str or Path
-            Folder of the files.
+        Args:
+            folder: Folder of the files.
 
-        Raises
-        ------
-        InputError
-            A file cannot be written.
+        Raises:
+            InputError: A file cannot be written.
         """
         paths = super().write(folder)
         warn_missing_formats()
@@ -170,15 +142,13 @@ class IdentifiedRecords(IdentifiedLines):
 def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tuple[Document, list[Path]]:
     """Write identification.json and the report; returns the report and the paths of the files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     from pantocheck.conformance.reports.formats.report_writers import write_document
     from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 
-    document = build_identification_document([line.model_dump(mode="json", by_alias=True) for line in lines])
+    document = build_identification_document(lines)
     write_model(folder / "identification.json", IdentificationFile(lines=lines))
     return document, [folder / "identification.json", *write_document(document, folder / "identification")]
 
@@ -186,17 +156,12 @@ def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tup
 def identify_line(*drops: str | Path | OpenedDrop, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedRecords:
     """Identify the modes of a line from mass drops, as `pantocheck drop identify` does.
 
-    Parameters
-    ----------
-    *drops : str, Path or OpenedDrop
-        Records, or simulated drops, of one or more drops.
-    highest_Hz : float
-        Highest frequency of a mode [Hz].
+    Args:
+        *drops: Records, or simulated drops, of one or more drops.
+        highest_Hz: Highest frequency of a mode [Hz].
 
-    Raises
-    ------
-    InputError
-        A record cannot be read, or holds no decay.
+    Raises:
+        InputError: A record cannot be read, or holds no decay.
     """
     records = tuple(record for drop in drops for record in _list_records(drop))
     lines = tuple(map(analyse_identification, identify_modes(records, highest_Hz)))
@@ -214,14 +179,10 @@ def _list_records(drop: str | Path | OpenedDrop) -> Iterator[DropRecord]:
 def open_modes(path: str | Path) -> IdentifiedLines:
     """Read a modes.json.
 
-    Parameters
-    ----------
-    path : str or Path
-        Path of the file.
+    Args:
+        path: Path of the file.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, or is no list of modes.
+    Raises:
+        InputError: The file cannot be read, or is no list of modes.
     """
     return IdentifiedLines(read_modes(Path(path)))

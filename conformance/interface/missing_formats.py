@@ -9,10 +9,8 @@ from pantocheck.conformance.reports.formats.report_writers import remark_missing
 def warn_missing_formats(stated: Sequence[str] | None = None) -> None:
     """Warn the caller of a method of the interface of default formats whose extra is not installed.
 
-    Parameters
-    ----------
-    stated : sequence of str or None
-        Formats that the caller states; None: the default formats.
+    Args:
+        stated: Formats that the caller states; None: the default formats.
     """
     for remark in remark_missing_formats(stated):
         warnings.warn(remark, stacklevel=3)

@@ -33,21 +33,14 @@ ORIGIN = "with_"
 
 @dataclass(frozen=True)
 class OpenedCase:
-    """A case with the changes of its inputs; `with_` gives a changed copy.
-
-    Parameters
-    ----------
-    path : Path
-        Case file.
-    case : Case
-        Content of the case, its line and its pantographs.
-    changes : tuple of InputChange
-        Changes of the inputs.
-    """
+    """A case with the changes of its inputs; `with_` gives a changed copy."""
 
     path: Path
+    """Case file."""
     case: Case
+    """Content of the case, its line and its pantographs."""
     changes: tuple[InputChange, ...] = ()
+    """Changes of the inputs."""
 
     def __repr__(self) -> str:
         """Id, speed, pantographs, line and changed keys in one line."""
@@ -84,18 +77,13 @@ class OpenedCase:
     def with_(self, changes: Mapping[str, object] | None = None, /, **further: object) -> "OpenedCase":
         """Copy of the case with other inputs.
 
-        Parameters
-        ----------
-        changes : mapping of str to object
-            New values by key, as of `--set`: keys of the case, of its line (`line.contact_wire.tension_N`) or of its
-            pantographs (`pantograph[1].chain.masses_kg`).
-        **further : object
-            New values of keys of the case without dots, for example `speed_km_h=300`.
+        Args:
+            changes: New values by key, as of `--set`: keys of the case, of its line (`line.contact_wire.tension_N`) or
+                of its pantographs (`pantograph[1].chain.masses_kg`).
+            **further: New values of keys of the case without dots, for example `speed_km_h=300`.
 
-        Raises
-        ------
-        InputError
-            A key does not exist, or the changed files are invalid.
+        Raises:
+            InputError: A key does not exist, or the changed files are invalid.
         """
         values = {**(changes or {}), **further}
         kept = (change for change in self.changes if change.key not in values)
@@ -107,10 +95,8 @@ class OpenedCase:
 
         The uncertainties of discretisation and start stay unknown; `run` determines them with further simulations.
 
-        Raises
-        ------
-        InputError
-            The case has no train.
+        Raises:
+            InputError: The case has no train.
         """
         from pantocheck.conformance.systems.reference_simulator import UnrefinedSimulator
 
@@ -119,15 +105,11 @@ class OpenedCase:
     def run(self, system: str = "builtin") -> SimulatedRun:
         """Run the case on a system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
-        Parameters
-        ----------
-        system : str
-            Kind of system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+        Args:
+            system: Kind of system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
-        Raises
-        ------
-        InputError
-            The system does not run the case, fails, or delivers no record.
+        Raises:
+            InputError: The system does not run the case, fails, or delivers no record.
         """
         return self._run_on(choose_system(system))
 
@@ -136,17 +118,12 @@ class OpenedCase:
 
         A changed case of the library has no limits, because they hold for its own inputs.
 
-        Parameters
-        ----------
-        system : str
-            `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
-        trust : Trust
-            Lowest trust of the limits that count.
+        Args:
+            system: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
+            trust: Lowest trust of the limits that count.
 
-        Raises
-        ------
-        InputError
-            The system is wrong.
+        Raises:
+            InputError: The system is wrong.
         """
         requested = choose_verdicts(None, system, [self.id])
         participation = Participation(requested=requested)
@@ -155,15 +132,11 @@ class OpenedCase:
     def simulate_drop(self, number: int = 1) -> OpenedDrop:
         """Simulate a mass drop of the case with the reference simulator, as `pantocheck drop simulate` does.
 
-        Parameters
-        ----------
-        number : int
-            Number of the drop, from 1.
+        Args:
+            number: Number of the drop, from 1.
 
-        Raises
-        ------
-        InputError
-            The case has no such mass drop.
+        Raises:
+            InputError: The case has no such mass drop.
         """
         from pantocheck.conformance.simulation.drop_simulation import simulate_drop
 
@@ -183,17 +156,12 @@ class OpenedCase:
 def open_case(name: str | Path, cases: str | Path | Sequence[str | Path] = ()) -> OpenedCase:
     """Open a case by its id, or a case file by its path.
 
-    Parameters
-    ----------
-    name : str or Path
-        Id such as `en50318-2018/ac-simple/320-twin`, or path of a case file.
-    cases : str, Path or sequence of them
-        Folders with further cases, whose ids begin with `own/`.
+    Args:
+        name: Id such as `en50318-2018/ac-simple/320-twin`, or path of a case file.
+        cases: Folders with further cases, whose ids begin with `own/`.
 
-    Raises
-    ------
-    InputError
-        There is no such case, it is invalid, several cases have this name, or a folder of cases is refused.
+    Raises:
+        InputError: There is no such case, it is invalid, several cases have this name, or a folder of cases is refused.
     """
     entries = open_catalogue(_list_folders(cases)).find(str(name))
     if len(entries) != 1:
@@ -204,15 +172,11 @@ def open_case(name: str | Path, cases: str | Path | Sequence[str | Path] = ()) -
 def list_cases(cases: str | Path | Sequence[str | Path] = ()) -> list[str]:
     """Ids of all cases of the library, of folders with further cases, and of installed distributions.
 
-    Parameters
-    ----------
-    cases : str, Path or sequence of them
-        Folders with further cases, whose ids begin with `own/`.
+    Args:
+        cases: Folders with further cases, whose ids begin with `own/`.
 
-    Raises
-    ------
-    InputError
-        A folder of cases, or an installed distribution with cases, is refused.
+    Raises:
+        InputError: A folder of cases, or an installed distribution with cases, is refused.
     """
     return list(open_catalogue(_list_folders(cases)).every)
 

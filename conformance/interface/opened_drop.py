@@ -17,15 +17,10 @@ from pantocheck.conformance.mass_drops.drop_record import DropRecord
 
 @dataclass(frozen=True)
 class OpenedDrop:
-    """A mass drop with the signals of its sensors: simulated, or read from a record.
-
-    Parameters
-    ----------
-    record : DropRecord
-        Signals, sensors and description of the drop.
-    """
+    """A mass drop with the signals of its sensors: simulated, or read from a record."""
 
     record: DropRecord
+    """Signals, sensors and description of the drop."""
 
     def __repr__(self) -> str:
         """Name, quantity, channels and duration in one line."""
@@ -50,17 +45,12 @@ class OpenedDrop:
     def plot(self, channel: str | None = None, axes: Any = None) -> Any:
         """Plot the signal of a channel over the time; returns matplotlib axes.
 
-        Parameters
-        ----------
-        channel : str or None
-            Name of the channel; None: the first one.
-        axes : matplotlib.axes.Axes or None
-            Axes of the plot; None: those of a new figure.
+        Args:
+            channel: Name of the channel; None: the first one.
+            axes: Axes of the plot (matplotlib.axes.Axes); None: those of a new figure.
 
-        Raises
-        ------
-        ValueError
-            There is no such channel.
+        Raises:
+            ValueError: There is no such channel.
         """
         column = 0 if channel is None else self.channels.index(channel)
         axes, record = provide_axes(axes), self.record
@@ -72,15 +62,11 @@ class OpenedDrop:
     def write(self, path: str | Path) -> Path:
         """Write the drop as a record, `.csv`, `.uff` or `.h5` by its suffix; returns the path.
 
-        Parameters
-        ----------
-        path : str or Path
-            Path of the record; its suffix chooses the format.
+        Args:
+            path: Path of the record; its suffix chooses the format.
 
-        Raises
-        ------
-        InputError
-            The suffix is none of these, or the file cannot be written.
+        Raises:
+            InputError: The suffix is none of these, or the file cannot be written.
         """
         file = Path(path)
         select_drop_writer(file)(self.record, file)
@@ -90,17 +76,12 @@ class OpenedDrop:
 def open_drop(path: str | Path, run: int = 1) -> OpenedDrop:
     """Read a mass-drop record.
 
-    Parameters
-    ----------
-    path : str or Path
-        Record in one of the formats of `pantocheck drop identify`; its sidecar has the same stem.
-    run : int
-        Number of the run in a record with several, from 1.
+    Args:
+        path: Record in one of the formats of `pantocheck drop identify`; its sidecar has the same stem.
+        run: Number of the run in a record with several, from 1.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read, or has no such run.
+    Raises:
+        InputError: The record cannot be read, or has no such run.
     """
     records = read_drop_records(Path(path))
     if not 1 <= run <= len(records):

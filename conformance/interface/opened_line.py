@@ -32,18 +32,12 @@ FIXED_POINT_MARKERS = {"anchor": "D", "messenger support": "^", "steady arm": "o
 
 @dataclass(frozen=True)
 class OpenedLine:
-    """A line at rest, in the elements of its case.
-
-    Parameters
-    ----------
-    file : LineFile
-        Content of the line file.
-    element_m : float
-        Largest length of an element [m].
-    """
+    """A line at rest, in the elements of its case."""
 
     file: LineFile
+    """Content of the line file."""
     element_m: float
+    """Largest length of an element [m]."""
 
     def __repr__(self) -> str:
         """Title, spans, length and elements in one line."""
@@ -60,10 +54,8 @@ class OpenedLine:
     def discretised(self) -> DiscretisedLine:
         """Finite elements of the line at rest, for the functions of `pantocheck.model`.
 
-        Raises
-        ------
-        SimulationError
-            The prescribed geometry has no equilibrium.
+        Raises:
+            SimulationError: The prescribed geometry has no equilibrium.
         """
         return discretise_line(self.file, self.element_m)
 
@@ -109,22 +101,15 @@ class OpenedLine:
     def elasticity(self, position_m: ArrayLike, force_N: float = 1.0) -> RealArray:
         """Elasticity: static uplift of the contact wire under a force, over that force; droppers may slacken.
 
-        Parameters
-        ----------
-        position_m : array_like
-            Positions of the force, which acts at one of them at a time [m].
-        force_N : float
-            Force upwards [N].
+        Args:
+            position_m: Positions of the force, which acts at one of them at a time [m].
+            force_N: Force upwards [N].
 
-        Returns
-        -------
-        (n,) ndarray
-            Elasticity at every position [mm/N].
+        Returns:
+            Elasticity at every position, (n,) [mm/N].
 
-        Raises
-        ------
-        InputError
-            A position is not on the line, or the force is not positive.
+        Raises:
+            InputError: A position is not on the line, or the force is not positive.
         """
         positions, limits = np.atleast_1d(np.asarray(position_m, dtype=float)), self.span_limits
         outside = positions[~((limits[0] <= positions) & (positions <= limits[-1]))]
@@ -138,17 +123,12 @@ class OpenedLine:
     def plot(self, first_span: int = 1, last_span: int | None = None, axes: Any = None) -> Any:
         """Plot some spans in elevation, the height enlarged; returns matplotlib axes.
 
-        Parameters
-        ----------
-        first_span, last_span : int
-            Numbers of the spans, from 1; default: all spans.
-        axes : matplotlib axes or None
-            Axes of the figure; None: those of a new one.
+        Args:
+            first_span, last_span: Numbers of the spans, from 1; default: all spans.
+            axes: Axes of the figure; None: those of a new one.
 
-        Raises
-        ------
-        InputError
-            The line does not have these spans.
+        Raises:
+            InputError: The line does not have these spans.
         """
         start, end = self._section(first_span, last_span)
         axes = provide_axes(axes)
@@ -192,17 +172,12 @@ class OpenedLine:
 def open_line(name: str | Path, element_m: float = 0.5) -> OpenedLine:
     """Open a line file.
 
-    Parameters
-    ----------
-    name : str or Path
-        Path of the file, or its name in the library such as `en50318-2018/ac-simple/line.toml`.
-    element_m : float
-        Largest length of an element [m].
+    Args:
+        name: Path of the file, or its name in the library such as `en50318-2018/ac-simple/line.toml`.
+        element_m: Largest length of an element [m].
 
-    Raises
-    ------
-    InputError
-        There is no such file, it is invalid, or the length of the elements is not positive.
+    Raises:
+        InputError: There is no such file, it is invalid, or the length of the elements is not positive.
     """
     if not element_m > 0:
         raise InputError("open_line, element_m", f"found {element_m:g} m", "Give a length above zero, in metres.")

@@ -20,18 +20,12 @@ from pantocheck.model.pantograph import apparent_mass, frequencies
 
 @dataclass(frozen=True)
 class OpenedPantograph:
-    """A pantograph.
-
-    Parameters
-    ----------
-    path : Path
-        Pantograph file.
-    file : PantographFile
-        Content of the file.
-    """
+    """A pantograph."""
 
     path: Path
+    """Pantograph file."""
     file: PantographFile
+    """Content of the file."""
 
     def __repr__(self) -> str:
         """File and title in one line."""
@@ -50,20 +44,14 @@ class OpenedPantograph:
     def apparent_mass_kg(self, frequency_Hz: ArrayLike) -> NDArray[np.complex128]:
         """Force over acceleration at the head, as on a test rig.
 
-        Parameters
-        ----------
-        frequency_Hz : array_like
-            Frequencies [Hz].
+        Args:
+            frequency_Hz: Frequencies [Hz].
 
-        Returns
-        -------
-        (n,) complex ndarray
-            Apparent mass [kg].
+        Returns:
+            Apparent mass, (n,) [kg].
 
-        Raises
-        ------
-        InputError
-            A frequency is not above zero.
+        Raises:
+            InputError: A frequency is not above zero.
         """
         frequency = np.atleast_1d(np.asarray(frequency_Hz, dtype=float))
         if not np.all(frequency > 0):
@@ -73,12 +61,9 @@ class OpenedPantograph:
     def plot(self, frequency_Hz: ArrayLike | None = None, axes: Any = None) -> Any:
         """Plot the magnitude of the apparent mass; returns matplotlib axes.
 
-        Parameters
-        ----------
-        frequency_Hz : array_like or None
-            Frequencies [Hz]; default: 200 from 0.5 Hz to 50 Hz.
-        axes : matplotlib axes or None
-            Axes of the figure; None: those of a new one.
+        Args:
+            frequency_Hz: Frequencies [Hz]; default: 200 from 0.5 Hz to 50 Hz.
+            axes: Axes of the figure; None: those of a new one.
         """
         frequency = np.geomspace(0.5, 50.0, 200) if frequency_Hz is None else np.asarray(frequency_Hz, dtype=float)
         axes = provide_axes(axes)
@@ -91,15 +76,11 @@ class OpenedPantograph:
 def open_pantograph(name: str | Path) -> OpenedPantograph:
     """Open a pantograph file.
 
-    Parameters
-    ----------
-    name : str or Path
-        Path of the file, or its name in the library such as `en50318-2018/pantograph.toml`.
+    Args:
+        name: Path of the file, or its name in the library such as `en50318-2018/pantograph.toml`.
 
-    Raises
-    ------
-    InputError
-        There is no such file, or it is invalid.
+    Raises:
+        InputError: There is no such file, or it is invalid.
     """
     path = locate_part(str(name), Path.cwd(), f"pantograph '{name}'")
     return OpenedPantograph(path, read_pantograph_file(path))

@@ -22,15 +22,10 @@ from pantocheck.conformance.systems.system import System
 
 @dataclass(frozen=True)
 class OpenedRun:
-    """A passage with its contact forces: simulated, delivered by a system, or read from a record.
-
-    Parameters
-    ----------
-    run : ComparedRun
-        Quantities and signals of the passage.
-    """
+    """A passage with its contact forces: simulated, delivered by a system, or read from a record."""
 
     run: ComparedRun
+    """Quantities and signals of the passage."""
 
     def __repr__(self) -> str:
         """Case, speed, pantographs and origin in one line."""
@@ -48,17 +43,12 @@ class OpenedRun:
     def quantity(self, name: str, pantograph: int = 1) -> Value:
         """Value of a quantity.
 
-        Parameters
-        ----------
-        name : str
-            Name such as `std_force_N`.
-        pantograph : int
-            Number of the pantograph; 0: the line.
+        Args:
+            name: Name such as `std_force_N`.
+            pantograph: Number of the pantograph; 0: the line.
 
-        Raises
-        ------
-        KeyError
-            The run does not have this quantity.
+        Raises:
+            KeyError: The run does not have this quantity.
         """
         return self.run.values[pantograph][name]
 
@@ -92,17 +82,12 @@ class OpenedRun:
         Columns are `position_m`, `force_N` (as delivered), `force_20_N` (filtered as graded) and, if it is known,
         `contact_height_m`.
 
-        Parameters
-        ----------
-        pantograph : int
-            Number of the pantograph, from 1 in running order.
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
 
-        Raises
-        ------
-        KeyError
-            There is no such pantograph, or the run has no signals.
-        QuantityUnavailable
-            The run does not cover its analysis section.
+        Raises:
+            KeyError: There is no such pantograph, or the run has no signals.
+            QuantityUnavailable: The run does not cover its analysis section.
         """
         signals = self.run.signals[pantograph]
         columns = {
@@ -117,12 +102,9 @@ class OpenedRun:
     def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the force over the position, as delivered and as graded; returns matplotlib axes.
 
-        Parameters
-        ----------
-        pantograph : int
-            Number of the pantograph, from 1 in running order.
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+            axes: Axes to draw in; None: those of a new figure.
         """
         signals = self.run.signals[pantograph]
         axes = provide_axes(axes)
@@ -136,12 +118,9 @@ class OpenedRun:
     def plot_spectrum(self, pantograph: int = 1, axes: Any = None) -> Any:
         """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes.
 
-        Parameters
-        ----------
-        pantograph : int
-            Number of the pantograph, from 1 in running order.
-        axes : matplotlib axes or None
-            Axes to draw in; None: those of a new figure.
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+            axes: Axes to draw in; None: those of a new figure.
         """
         signals: PantographSignals = self.run.signals[pantograph]
         axes = provide_axes(axes)
@@ -155,36 +134,23 @@ class OpenedRun:
 
 @dataclass(frozen=True, repr=False)
 class SimulatedRun(OpenedRun):
-    """A passage that a system has run.
-
-    Parameters
-    ----------
-    run : ComparedRun
-        Quantities and signals of the passage.
-    case : Case
-        Case of the run.
-    system : System
-        System that ran it.
-    record : Record
-        Samples of the run.
-    """
+    """A passage that a system has run."""
 
     case: Case
+    """Case of the run."""
     system: System
+    """System that ran it."""
     record: Record
+    """Samples of the run."""
 
     def write(self, path: str | Path) -> Path:
         """Write the run as a record, CSV or HDF5 by its suffix, with a sidecar; returns the sidecar.
 
-        Parameters
-        ----------
-        path : str or Path
-            Path of the table; its suffix chooses CSV or HDF5.
+        Args:
+            path: Path of the table; its suffix chooses CSV or HDF5.
 
-        Raises
-        ------
-        InputError
-            The suffix is not that of a record, or a file cannot be written.
+        Raises:
+            InputError: The suffix is not that of a record, or a file cannot be written.
         """
         further = {
             "case_digest": self.case.digest,
@@ -198,15 +164,11 @@ class SimulatedRun(OpenedRun):
 def open_run(path: str | Path) -> OpenedRun:
     """Read a simulated or measured record with its sidecar.
 
-    Parameters
-    ----------
-    path : str or Path
-        Sidecar, or table with the sidecar beside it.
+    Args:
+        path: Sidecar, or table with the sidecar beside it.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read or is invalid.
+    Raises:
+        InputError: The record cannot be read or is invalid.
     """
     return OpenedRun(read_record_run(Path(path)))
 

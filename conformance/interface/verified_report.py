@@ -20,18 +20,12 @@ from pantocheck.conformance.interface.one_line import describe_in_one_line
 
 @dataclass(frozen=True)
 class VerifiedReport:
-    """Checks of a report.
-
-    Parameters
-    ----------
-    verification : Verification
-        Results inside the report, and the checks.
-    authentic : bool
-        Whether the report is consistent, and every signature leads to a trust root.
-    """
+    """Checks of a report."""
 
     verification: Verification
+    """Results inside the report, and the checks."""
     authentic: bool
+    """Whether the report is consistent, and every signature leads to a trust root."""
 
     def __repr__(self) -> str:
         """State, verdict and number of checks in one line."""
@@ -75,23 +69,15 @@ def verify_report(
     The results in the report are graded again, its pages are made again, its cases are compared with the library, and
     its signatures are checked.
 
-    Parameters
-    ----------
-    report : str or Path
-        Path of a certificate.pdf, certificate.html or results.json.
-    records : sequence of str or Path
-        Records of cases: their quantities are computed from the samples again.
-    rerun : bool
-        Whether the reference simulator runs the cases again.
-    trust_roots : str, Path or None
-        PEM file of the authorities whose signatures are trusted.
-    cases : sequence of str or Path
-        Folders with further cases, whose ids begin with `own/`.
+    Args:
+        report: Path of a certificate.pdf, certificate.html or results.json.
+        records: Records of cases: their quantities are computed from the samples again.
+        rerun: Whether the reference simulator runs the cases again.
+        trust_roots: PEM file of the authorities whose signatures are trusted.
+        cases: Folders with further cases, whose ids begin with `own/`.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, is damaged, or is no report.
+    Raises:
+        InputError: A file cannot be read, is damaged, or is no report.
     """
     path, roots = Path(report), None if trust_roots is None else Path(trust_roots)
     verification = verify_document(path)

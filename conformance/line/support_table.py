@@ -23,14 +23,8 @@ Height = Annotated[
 class SupportTable(InputTable):
     """Support, or end of the line, with its own values; the other values are those of the line."""
 
-    number: Annotated[
-        int,
-        Field(
-            ge=0,
-            le=MOST_SPANS,
-            description="number of the support in running order, from 1; 0 and the number of spans: ends of the line",
-        ),
-    ]
+    number: Annotated[int, Field(ge=0, le=MOST_SPANS)]
+    """Number of the support in running order, from 1; 0 and the number of spans: ends of the line."""
     stagger_contact_wire_m: Annotated[SignedStagger | None, Feature("stagger", bool)] = None
     stagger_messenger_m: Annotated[SignedStagger | None, Feature("stagger", bool)] = None
     contact_wire_height_m: Annotated[Height | None, SINGLE_SUPPORTS] = None

@@ -23,22 +23,15 @@ HEIGHT_DIGITS = 6
 def hang_line_on_droppers(tree: dict[str, Any], where: str) -> dict[str, Any]:
     """Replace the pre-sags of a line by the heights at which its droppers have their unloaded lengths.
 
-    Parameters
-    ----------
-    tree : dict
-        Content of a line file with listed spans; every span has its own droppers with `length_m`.
-    where : str
-        Name of the table of droppers in messages.
+    Args:
+        tree: Content of a line file with listed spans; every span has its own droppers with `length_m`.
+        where: Name of the table of droppers in messages.
 
-    Returns
-    -------
-    dict
+    Returns:
         The same line with `contact_wire_height_m` at every dropper.
 
-    Raises
-    ------
-    InputError
-        The line has several tension sections, or no state at rest with these lengths.
+    Raises:
+        InputError: The line has several tension sections, or no state at rest with these lengths.
     """
     for _ in range(PASSES):
         tree = _set_heights(tree, _find_heights(LineFile.model_validate(tree), where))

@@ -17,21 +17,14 @@ SpanRows = dict[int, list[TypedRow]]
 def group_by_span(rows: list[TypedRow], spans: int, where: str, problems: list[InputError]) -> SpanRows:
     """Rows of every span.
 
-    Parameters
-    ----------
-    rows : list of TypedRow
-        Rows of the table.
-    spans : int
-        Number of spans of the line.
-    where : str
-        Name of the table in messages.
-    problems : list of InputError
-        List to which every problem is added: a row without its span, a span that does not exist or has no row, and a
-        span in which a value is given for some of the droppers only.
+    Args:
+        rows: Rows of the table.
+        spans: Number of spans of the line.
+        where: Name of the table in messages.
+        problems: List to which every problem is added: a row without its span, a span that does not exist or has no
+            row, and a span in which a value is given for some of the droppers only.
 
-    Returns
-    -------
-    dict of int to list of TypedRow
+    Returns:
         Rows with a position by number of their span, from 1.
     """
     groups: SpanRows = {number: [] for number in range(1, spans + 1)}
@@ -65,16 +58,11 @@ def group_by_span(rows: list[TypedRow], spans: int, where: str, problems: list[I
 def find_height_problems(groups: SpanRows, meaning: LengthMeaning) -> Iterator[InputError]:
     """Spans whose heights are not determined, or determined twice, by the pre-sags, heights and lengths of their rows.
 
-    Parameters
-    ----------
-    groups : dict of int to list of TypedRow
-        Rows by number of their span.
-    meaning : {"published", "unloaded"}
-        Meaning of the lengths of the droppers.
+    Args:
+        groups: Rows by number of their span.
+        meaning: Meaning of the lengths of the droppers.
 
-    Yields
-    ------
-    InputError
+    Yields:
         The problem of a span, at its first row.
     """
     for number, group in groups.items():

@@ -19,16 +19,11 @@ DELIMITER_BY_MARK: dict[DecimalMark, str] = {"point": ",", "comma": ";"}
 def export_supports(line: LineFile, mark: DecimalMark = "point") -> str:
     """Write the table of the supports and both ends of a line.
 
-    Parameters
-    ----------
-    line : LineFile
-        The line.
-    mark : {"point", "comma"}
-        Decimal mark; columns are separated by commas, or by semicolons beside decimal commas.
+    Args:
+        line: The line.
+        mark: Decimal mark; columns are separated by commas, or by semicolons beside decimal commas.
 
-    Returns
-    -------
-    str
+    Returns:
         CSV text; a column without any value is left out. Numbers have all digits of the line file.
     """
     layout = line.layout

@@ -40,27 +40,20 @@ def import_line(
 ) -> dict[str, Any]:
     """Import a line from tables.
 
-    Parameters
-    ----------
-    base : Path
-        Line file with the wires, droppers, steady arm, messenger support and damping, and the values of empty cells.
-    supports : Path
-        Table of the supports and both ends of the line.
-    droppers : Path or None
-        Table of the droppers; None: every span has those of the table [droppers] of the base file.
-    lengths : {"published", "unloaded"}
-        Meaning of the lengths of the droppers: published lengths do not change the line; unloaded lengths determine the
-        heights of the contact wire.
+    Args:
+        base: Line file with the wires, droppers, steady arm, messenger support and damping, and the values of empty
+            cells.
+        supports: Table of the supports and both ends of the line.
+        droppers: Table of the droppers; None: every span has those of the table [droppers] of the base file.
+        lengths: Meaning of the lengths of the droppers: published lengths do not change the line; unloaded lengths
+            determine the heights of the contact wire.
 
-    Returns
-    -------
-    dict
+    Returns:
         Content of a line file with listed spans.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, or the line is invalid. The error lists all problems, with file, row and column.
+    Raises:
+        InputError: A file cannot be read, or the line is invalid. The error lists all problems, with file, row and
+            column.
     """
     problems: list[InputError] = []
     tree = _try(problems, lambda: read_toml(base, "line")) or {}

@@ -30,20 +30,11 @@ def read_line_table(path: Path) -> Spreadsheet | None:
 def check_line_table(table: Spreadsheet) -> str:
     """Check the cells of a table of supports or droppers, and the spans between supports.
 
-    Parameters
-    ----------
-    table : Spreadsheet
-        The table.
-
-    Returns
-    -------
-    str
+    Returns:
         Kind and size of the table, for one line of output.
 
-    Raises
-    ------
-    InputError
-        Columns or cells are invalid; the error lists all problems.
+    Raises:
+        InputError: Columns or cells are invalid; the error lists all problems.
     """
     problems: list[InputError] = []
     of_droppers = "span" in table.head.cells

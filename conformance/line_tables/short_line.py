@@ -16,16 +16,11 @@ ALTERNATING = {
 def shorten_line(line: dict[str, Any], base: LineFile) -> dict[str, Any]:
     """Shorten a line without a change of its meaning.
 
-    Parameters
-    ----------
-    line : dict
-        Content of a line file with all values of every span and support.
-    base : LineFile
-        Line with the same tables `droppers`, `steady_arm` and `messenger_support`.
+    Args:
+        line: Content of a line file with all values of every span and support.
+        base: Line with the same tables `droppers`, `steady_arm` and `messenger_support`.
 
-    Returns
-    -------
-    dict
+    Returns:
         Content of a line file: equal schedules share a name, a value that all supports share is that of the line, and
         values of arms, messenger supports and droppers that are those of the base are left out.
     """

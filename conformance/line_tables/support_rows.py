@@ -17,18 +17,12 @@ def read_span_lengths(rows: list[TypedRow], where: str, problems: list[InputErro
 
     The positions increase or decrease in running order.
 
-    Parameters
-    ----------
-    rows : list of TypedRow
-        Rows of the table, ends of the line included.
-    where : str
-        Name of the table in messages.
-    problems : list of InputError
-        List to which every problem is added.
+    Args:
+        rows: Rows of the table, ends of the line included.
+        where: Name of the table in messages.
+        problems: List to which every problem is added.
 
-    Returns
-    -------
-    list of float or None
+    Returns:
         Length of the span behind every row but the last [m]; None where there is none.
     """
     if len(rows) < 2:

@@ -24,21 +24,14 @@ CellValue = Decimal | int | str
 
 @dataclass(frozen=True)
 class TypedRow:
-    """Row with the values of its filled cells.
-
-    Parameters
-    ----------
-    values : dict of str to Decimal, int or str
-        Values by the name of the column, in the units of the line file.
-    places : dict of str to str
-        Place of every cell in messages, by the name of the column; also of empty cells.
-    place : str
-        Place of the row in messages.
-    """
+    """Row with the values of its filled cells."""
 
     values: dict[str, CellValue]
+    """Values by the name of the column, in the units of the line file."""
     places: dict[str, str]
+    """Place of every cell in messages, by the name of the column; also of empty cells."""
     place: str
+    """Place of the row in messages."""
 
     def number(self, column: str) -> float | None:
         """Number of a column; None for an empty cell."""
@@ -49,18 +42,12 @@ class TypedRow:
 def read_typed_rows(table: Spreadsheet, known: Sequence[str], problems: list[InputError]) -> list[TypedRow]:
     """Read the cells of a table by the units and kinds of their columns.
 
-    Parameters
-    ----------
-    table : Spreadsheet
-        The table.
-    known : sequence of str
-        Known columns, in the units of the line file.
-    problems : list of InputError
-        List to which every problem is added: unknown and repeated columns, and cells that cannot be read.
+    Args:
+        table: The table.
+        known: Known columns, in the units of the line file.
+        problems: List to which every problem is added: unknown and repeated columns, and cells that cannot be read.
 
-    Returns
-    -------
-    list of TypedRow
+    Returns:
         Rows; a cell that cannot be read is missing.
     """
     columns: dict[int, tuple[str, float]] = {}

@@ -9,10 +9,9 @@ from pantocheck.conformance.mass_drops.drop_sidecar import DropChannelTable, Dro
 def describe_columns(table: MeasuredTable, sidecar: DropSidecar | None) -> list[tuple[int, TableColumn]]:
     """Number (from 1) and description of each column that is a channel of the record.
 
-    Raises
-    ------
-    InputError
-        The file has neither descriptions of its channels nor a sidecar, or file and sidecar contradict each other.
+    Raises:
+        InputError: The file has neither descriptions of its channels nor a sidecar, or file and sidecar contradict each
+            other.
     """
     if sidecar is None:
         if any(column.direction is None for column in table.columns):

@@ -22,22 +22,15 @@ LARGEST_ACCELERATION = 500.0
 def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> DropRecord:
     """Convert a measured table into a record in SI units.
 
-    Parameters
-    ----------
-    table : MeasuredTable
-        One run.
-    sidecar : DropSidecar or None
-        Sidecar of the file; it adds data that the file lacks.
+    Args:
+        table: One run.
+        sidecar: Sidecar of the file; it adds data that the file lacks.
 
-    Returns
-    -------
-    DropRecord
+    Returns:
         Record with its warnings.
 
-    Raises
-    ------
-    InputError
-        File and sidecar contradict each other, a value is missing, or a unit or direction is not known.
+    Raises:
+        InputError: File and sidecar contradict each other, a value is missing, or a unit or direction is not known.
     """
     n = table.values.shape[0]
     if n < LEAST_SAMPLES:

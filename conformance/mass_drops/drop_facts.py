@@ -14,24 +14,13 @@ Attributes = dict[str, Any]
 def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescription:
     """Build the description of the mass drop of a record.
 
-    Parameters
-    ----------
-    attributes : dict[str, Any]
-        Attributes of the record.
-    where : str
-        Name of the record in messages.
-    duration : float
-        Duration of the record [s].
+    Args:
+        attributes: Attributes of the record.
+        where: Name of the record in messages.
+        duration: Duration of the record [s].
 
-    Returns
-    -------
-    DropDescription
-        Mass drop.
-
-    Raises
-    ------
-    InputError
-        An attribute is not a number, or the planned release is after the end of the record.
+    Raises:
+        InputError: An attribute is not a number, or the planned release is after the end of the record.
     """
     drop = DropDescription(
         _read_number(attributes, "drop_mass_kg", where),
@@ -51,10 +40,8 @@ def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescr
 def build_line(attributes: Attributes, where: str) -> DropLine:
     """Build the description of the line of a record; `where` is the name of the record in messages.
 
-    Raises
-    ------
-    InputError
-        An attribute is not a number.
+    Raises:
+        InputError: An attribute is not a number.
     """
     spans = np.atleast_1d(attributes.get("spans_m", ()))
     return DropLine(

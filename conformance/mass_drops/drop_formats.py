@@ -29,10 +29,8 @@ FORMATS_WITH_SIDECAR = (UFF, CSV)
 def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
     """Writer of the format of a file, by its suffix.
 
-    Raises
-    ------
-    InputError
-        Drop records are not written in this format, or its package is not installed.
+    Raises:
+        InputError: Drop records are not written in this format, or its package is not installed.
     """
     suffixes = {table_format.suffixes[0]: table_format for table_format in DROP_WRITERS}
     if (table_format := suffixes.get(out.suffix.lower())) is None:

@@ -15,20 +15,14 @@ LARGEST_DROP = 30_000_000
 def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
     """Read all runs of a file.
 
-    Parameters
-    ----------
-    path : Path
-        File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
+    Args:
+        path: File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
 
-    Returns
-    -------
-    tuple of DropRecord
+    Returns:
         One record per run.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is damaged, or does not describe its channels.
+    Raises:
+        InputError: The file cannot be read, is damaged, or does not describe its channels.
     """
     sidecar = read_drop_sidecar(path)
     names, layout = (sidecar.channel_names, sidecar.table) if sidecar else ((), None)

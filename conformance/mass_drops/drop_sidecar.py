@@ -22,45 +22,57 @@ class _OpenTable(BaseModel):
 class DropTestTable(_OpenTable):
     """Name of the test, and its line."""
 
-    name: Annotated[str, Field(max_length=200, description="name of the test")] = ""
-    spans_m: Annotated[
-        tuple[PositiveNumber, ...], Field(strict=False, max_length=1000, description="lengths of the spans [m]")
-    ] = ()
-    cw_tension_n: Annotated[float | None, Field(gt=0, description="tension of one contact wire [N]")] = None
-    mw_tension_n: Annotated[float | None, Field(gt=0, description="tension of one messenger wire [N]")] = None
+    name: Annotated[str, Field(max_length=200)] = ""
+    """Name of the test."""
+    spans_m: Annotated[tuple[PositiveNumber, ...], Field(strict=False, max_length=1000)] = ()
+    """Lengths of the spans [m]."""
+    cw_tension_n: Annotated[float | None, Field(gt=0)] = None
+    """Tension of one contact wire [N]."""
+    mw_tension_n: Annotated[float | None, Field(gt=0)] = None
+    """Tension of one messenger wire [N]."""
 
 
 class DropTable(_OpenTable):
     """Dropped mass."""
 
-    mass_kg: Annotated[float | None, Field(gt=0, le=1000, description="dropped mass [kg]")] = None
-    wire: Annotated[
-        str, Field(max_length=20, description="wire with the mass: CW (contact wire) or MW (messenger wire)")
-    ] = ""
-    position_m: Annotated[float | None, Field(description="distance of the mass from the first support [m]")] = None
+    mass_kg: Annotated[float | None, Field(gt=0, le=1000)] = None
+    """Dropped mass [kg]."""
+    wire: Annotated[str, Field(max_length=20)] = ""
+    """Wire with the mass: CW (contact wire) or MW (messenger wire)."""
+    position_m: float | None = None
+    """Distance of the mass from the first support [m]."""
 
 
 class DropRecordTable(_OpenTable):
     """Sampling of the record."""
 
-    sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6, description="sampling rate [Hz]")]
-    trigger_nominal_s: Annotated[float | None, Field(ge=0, description="planned time of the release [s]")] = None
-    n_channels: Annotated[int | None, Field(ge=1, description="number of channels")] = None
-    quantity: Annotated[MotionQuantity | None, Field(description="measured quantity")] = None
+    sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6)]
+    """Sampling rate [Hz]."""
+    trigger_nominal_s: Annotated[float | None, Field(ge=0)] = None
+    """Planned time of the release [s]."""
+    n_channels: Annotated[int | None, Field(ge=1)] = None
+    """Number of channels."""
+    quantity: MotionQuantity | None = None
+    """Measured quantity."""
 
 
 class DropChannelTable(_OpenTable):
     """Column of the record."""
 
-    column: Annotated[int, Field(ge=1, le=10000, description="number of the column from 1, without the time column")]
-    name: Annotated[str, Field(max_length=100, description="name of the channel")]
-    sensor: Annotated[int, Field(ge=0, description="number of the sensor")]
-    wire: Annotated[
-        str, Field(max_length=20, description="wire with the sensor: CW (contact wire) or MW (messenger wire)")
-    ] = ""
-    position_m: Annotated[float | None, Field(description="distance of the sensor from the first support [m]")] = None
-    direction: Annotated[str, Field(max_length=10, description="direction of measurement: +x, -x, +y, -y, +z or -z")]
-    unit: Annotated[str, Field(max_length=40, description="unit of the samples, such as m/s2 or g")]
+    column: Annotated[int, Field(ge=1, le=10000)]
+    """Number of the column from 1, without the time column."""
+    name: Annotated[str, Field(max_length=100)]
+    """Name of the channel."""
+    sensor: Annotated[int, Field(ge=0)]
+    """Number of the sensor."""
+    wire: Annotated[str, Field(max_length=20)] = ""
+    """Wire with the sensor: CW (contact wire) or MW (messenger wire)."""
+    position_m: float | None = None
+    """Distance of the sensor from the first support [m]."""
+    direction: Annotated[str, Field(max_length=10)]
+    """Direction of measurement: +x, -x, +y, -y, +z or -z."""
+    unit: Annotated[str, Field(max_length=40)]
+    """Unit of the samples, such as m/s2 or g."""
 
     @property
     def description(self) -> TableColumn:
@@ -81,12 +93,10 @@ class DropSidecar(_OpenTable):
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
-    table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
-        TextSettings()
-    )
-    channel: Annotated[
-        tuple[DropChannelTable, ...], Field(strict=False, min_length=1, description="channels, one per column")
-    ]
+    table: TextSettings = TextSettings()
+    """Layout of a text table, if it is not found from the file."""
+    channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1)]
+    """Channels, one per column."""
 
     @property
     def channel_names(self) -> tuple[str, ...]:
@@ -112,10 +122,8 @@ class DropSidecar(_OpenTable):
 def read_drop_sidecar(record: Path) -> DropSidecar | None:
     """Read the sidecar of a record, a TOML file with the same stem; None if there is no such file.
 
-    Raises
-    ------
-    InputError
-        The sidecar cannot be read or does not fit the model.
+    Raises:
+        InputError: The sidecar cannot be read or does not fit the model.
     """
     path = record.with_suffix(".toml")
     return read_model(path, DropSidecar, "sidecar") if path.is_file() else None

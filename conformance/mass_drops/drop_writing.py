@@ -24,17 +24,12 @@ SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
 def write_drop_csv(record: DropRecord, path: Path) -> None:
     """Write a record as CSV (decimal points, commas), with a sidecar beside it.
 
-    Parameters
-    ----------
-    record : DropRecord
-        One run.
-    path : Path
-        The .csv file.
+    Args:
+        record: One run.
+        path: The .csv file.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written, or the name of a channel is not possible in a head line.
+    Raises:
+        InputError: A file cannot be written, or the name of a channel is not possible in a head line.
     """
     for channel in record.channels:
         if set(channel.name) & set(UNWRITABLE) or channel.name.strip().splitlines() != [channel.name]:
@@ -52,17 +47,12 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
 def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     """Write the runs of one test as HDF5.
 
-    Parameters
-    ----------
-    records : tuple of DropRecord
-        Runs of the test.
-    path : Path
-        The file.
+    Args:
+        records: Runs of the test.
+        path: The file.
 
-    Raises
-    ------
-    InputError
-        The runs differ in channels, rate, quantity or drop, or the file cannot be written.
+    Raises:
+        InputError: The runs differ in channels, rate, quantity or drop, or the file cannot be written.
     """
     from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
 
@@ -95,15 +85,11 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
 def check_drop_sidecar(path: Path) -> None:
     """Check that the sidecar of a record replaces no other file, such as the case of the drop.
 
-    Parameters
-    ----------
-    path : Path
-        The record.
+    Args:
+        path: The record.
 
-    Raises
-    ------
-    InputError
-        The sidecar would overwrite a file that is not a sidecar of a drop record.
+    Raises:
+        InputError: The sidecar would overwrite a file that is not a sidecar of a drop record.
     """
     target = path.with_suffix(".toml")
     if target.exists() and not read_toml(target, "sidecar").keys() <= SIDECAR_TABLES:

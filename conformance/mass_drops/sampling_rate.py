@@ -16,10 +16,8 @@ RATE_TOLERANCE = 1e-3
 def find_sampling_rate(table: MeasuredTable, sidecar: DropSidecar | None) -> float:
     """Find the sampling rate [Hz] of a table with or without a sidecar.
 
-    Raises
-    ------
-    InputError
-        The rate is not stated, not possible, or differs between sidecar, file and time column.
+    Raises:
+        InputError: The rate is not stated, not possible, or differs between sidecar, file and time column.
     """
     sources = {
         "the sidecar": sidecar.record.sampling_rate_hz if sidecar else None,

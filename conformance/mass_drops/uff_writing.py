@@ -18,19 +18,13 @@ def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binar
     The format has no fields for wire, position, mass and planned release; they stand in its identification lines and in
     the sidecar.
 
-    Parameters
-    ----------
-    record : DropRecord
-        One run.
-    path : Path
-        The file.
-    form : {"ascii", "binary"}
-        Form of the numbers; ASCII numbers have twelve digits.
+    Args:
+        record: One run.
+        path: The file.
+        form: Form of the numbers; ASCII numbers have twelve digits.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     sets = [_build_data_set(record, c, form) for c in range(len(record.channels))]
     write_drop_sidecar(record, path)

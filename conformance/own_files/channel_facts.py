@@ -26,56 +26,37 @@ TIME_WORDS = (*TIME_NAMES, "zeit", "tiempo", "tempo")
 
 @dataclass(frozen=True)
 class ChannelFacts:
-    """Facts about a column.
-
-    Parameters
-    ----------
-    column : TableColumn
-        Column with its name.
-    unit : str or None
-        Unit that the file states.
-    smallest, largest : float
-        Range of its numbers; NaN without a number.
-    missing : float
-        Share of missing values [-].
-    trend : int
-        1 if its numbers never decrease, -1 if they never increase, otherwise 0.
-    remarks : tuple of str
-        Suspicious contents.
-    """
+    """Facts about a column."""
 
     column: TableColumn
+    """Column with its name."""
     unit: str | None
+    """Unit that the file states."""
     smallest: float
     largest: float
+    """Range of its numbers; NaN without a number."""
     missing: float
+    """Share of missing values [-]."""
     trend: int
+    """1 if its numbers never decrease, -1 if they never increase, otherwise 0."""
     remarks: tuple[str, ...]
+    """Suspicious contents."""
 
 
 @dataclass(frozen=True)
 class TimeFacts:
-    """Facts about the time of a table.
-
-    Parameters
-    ----------
-    source : str
-        Origin of the time: a column, or the file.
-    column : TableColumn or None
-        Column of the time; None if the file holds it beside its channels.
-    rate : float
-        Sampling rate from the median interval [Hz].
-    duration : float
-        Time from the first to the last sample [s].
-    remarks : tuple of str
-        Gaps, repetitions and steps backwards.
-    """
+    """Facts about the time of a table."""
 
     source: str
+    """Origin of the time: a column, or the file."""
     column: TableColumn | None
+    """Column of the time; None if the file holds it beside its channels."""
     rate: float
+    """Sampling rate from the median interval [Hz]."""
     duration: float
+    """Time from the first to the last sample [s]."""
     remarks: tuple[str, ...]
+    """Gaps, repetitions and steps backwards."""
 
 
 def list_channel_facts(table: MeasuredTable) -> list[ChannelFacts]:

@@ -50,22 +50,15 @@ TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in ta
 def check_input_file(path: Path, kind: str | None = None) -> str:
     """Check an input file with the files that it names.
 
-    Parameters
-    ----------
-    path : Path
-        TOML file, JSON file, or table of a record. A folder stands for one without input files.
-    kind : str or None
-        Kind of a TOML file, a key of `READ_FORMATS`; None: it is recognised by its keys.
+    Args:
+        path: TOML file, JSON file, or table of a record. A folder stands for one without input files.
+        kind: Kind of a TOML file, a key of `READ_FORMATS`; None: it is recognised by its keys.
 
-    Returns
-    -------
-    str
+    Returns:
         Kind and size of the valid content, and a line for each warning.
 
-    Raises
-    ------
-    InputError
-        The file is invalid; the error lists all problems.
+    Raises:
+        InputError: The file is invalid; the error lists all problems.
     """
     if path.is_dir():
         raise InputError(

@@ -13,22 +13,15 @@ from pantocheck.conformance.schemas import READ_FORMATS, WRITTEN_FORMATS
 def recognise_toml(tree: Mapping[str, Any], where: str) -> str:
     """Recognise the kind of a TOML file: the format with the fewest unknown and missing keys.
 
-    Parameters
-    ----------
-    tree : mapping of str to Any
-        Content of the file.
-    where : str
-        Name of the file in messages.
+    Args:
+        tree: Content of the file.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    str
+    Returns:
         Name of the format, a key of `READ_FORMATS`.
 
-    Raises
-    ------
-    InputError
-        No format has a key of the file, or several formats fit equally well.
+    Raises:
+        InputError: No format has a key of the file, or several formats fit equally well.
     """
     ranks = {kind: rank for kind, model in READ_FORMATS.items() if (rank := _rank(model, tree)) is not None}
     best = [kind for kind, rank in ranks.items() if rank == min(ranks.values())]

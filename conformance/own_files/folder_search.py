@@ -23,14 +23,7 @@ def list_input_files(folder: Path) -> Iterator[Path]:
 
     Hidden folders, virtual environments and `SKIPPED_FOLDERS` below the folder are left out.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Yields
-    ------
-    Path
+    Yields:
         TOML file with a key of any kind of input file, or that cannot be read; table of supports or droppers. A sidecar
         stands for its table.
     """

@@ -26,17 +26,12 @@ def read_template(kind: NewKind) -> str:
 def choose_parts(path: Path, named: Mapping[str, str | None]) -> dict[str, str]:
     """Choose line and pantograph of a new case.
 
-    Parameters
-    ----------
-    path : Path
-        Case file to be written.
-    named : mapping of str to str or None
-        File names of the user, with the keys `line` and `pantograph`; None: `line.toml` and `pantograph.toml` beside
-        the case, or else those of the library.
+    Args:
+        path: Case file to be written.
+        named: File names of the user, with the keys `line` and `pantograph`; None: `line.toml` and `pantograph.toml`
+            beside the case, or else those of the library.
 
-    Returns
-    -------
-    dict of str to str
+    Returns:
         Names for the case file, with the same keys.
     """
     beside = {part: f"{part}.toml" for part in LIBRARY_PARTS}
@@ -47,12 +42,9 @@ def choose_parts(path: Path, named: Mapping[str, str | None]) -> dict[str, str]:
 def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
     """Text of a new case.
 
-    Parameters
-    ----------
-    path : Path
-        Case file to be written; its name becomes the id of the case.
-    parts : mapping of str to str
-        Names of line and pantograph, as from `choose_parts`.
+    Args:
+        path: Case file to be written; its name becomes the id of the case.
+        parts: Names of line and pantograph, as from `choose_parts`.
     """
     values = {**parts, "id": "own/" + (re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem) or "case")}
     text = read_template("case")
@@ -64,10 +56,8 @@ def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
 def write_new_file(path: Path, text: str) -> None:
     """Write a file that does not exist yet.
 
-    Raises
-    ------
-    InputError
-        The name does not end in .toml, the file exists, or it cannot be written.
+    Raises:
+        InputError: The name does not end in .toml, the file exists, or it cannot be written.
     """
     where = f"file '{path}'"
     if path.suffix != ".toml":

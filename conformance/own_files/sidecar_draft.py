@@ -16,16 +16,11 @@ TO_DO = "COMPLETE:"
 def draft_record_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
     """Sidecar of a contact-force record.
 
-    Parameters
-    ----------
-    file : str
-        Name of the table.
-    facts : sequence of ChannelFacts
-        Its columns.
-    time : TimeFacts or None
-        Its time.
-    layout : TextSettings
-        Stated layout of a text table.
+    Args:
+        file: Name of the table.
+        facts: Its columns.
+        time: Its time.
+        layout: Stated layout of a text table.
     """
     own = all(find_column(fact.column.name or "", fact.column.row) for fact in facts)
     guesses = guess_channels(facts)

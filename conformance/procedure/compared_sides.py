@@ -18,36 +18,24 @@ LARGEST_SHIFT_SPANS = 0.5
 
 @dataclass(frozen=True)
 class RunSide:
-    """Run of a pair with the passage that it belongs to.
-
-    Parameters
-    ----------
-    record : AssessedRecord
-        Record with its quantities.
-    line : str
-        Name of the line.
-    pantographs : tuple of str
-        Names of the pantographs in running order.
-    direction : str
-        Direction of the train.
-    spacing_m : tuple of float or None
-        Distances of successive pantographs [m]; None if they are not known.
-    span_m : float
-        Length of a span of the line [m].
-    supports : tuple of float
-        Positions of the supports [m].
-    facts : RecordFacts or None
-        State of the record from the checks with its case; None without a case.
-    """
+    """Run of a pair with the passage that it belongs to."""
 
     record: AssessedRecord
+    """Record with its quantities."""
     line: str
+    """Name of the line."""
     pantographs: tuple[str, ...]
+    """Names of the pantographs in running order."""
     direction: str
+    """Direction of the train."""
     spacing_m: tuple[float, ...] | None
+    """Distances of successive pantographs [m]; None if they are not known."""
     span_m: float
+    """Length of a span of the line [m]."""
     supports: tuple[float, ...] = ()
+    """Positions of the supports [m]."""
     facts: RecordFacts | None = None
+    """State of the record from the checks with its case; None without a case."""
 
 
 def measure_spacing(record: AssessedRecord) -> tuple[float, ...] | None:
@@ -76,12 +64,9 @@ def find_copy(simulated: RunSide, measured: RunSide) -> str | None:
 def list_mismatches(simulated: RunSide, measured: RunSide, profile: Profile) -> Iterator[str]:
     """Differences between the passages of two runs, in words.
 
-    Parameters
-    ----------
-    simulated, measured : RunSide
-        Runs of a pair.
-    profile : Profile
-        Rules of the line tests, with the speed tolerance.
+    Args:
+        simulated, measured: Runs of a pair.
+        profile: Rules of the line tests, with the speed tolerance.
     """
     for name, other, own in (
         ("line", measured.line, simulated.line),

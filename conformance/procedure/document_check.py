@@ -15,20 +15,14 @@ from pantocheck.conformance.procedure.run_reading import read_run
 def check_documents(dossier: Dossier) -> int:
     """Read every table of a dossier.
 
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with its files.
+    Args:
+        dossier: Dossier with its files.
 
-    Returns
-    -------
-    int
+    Returns:
         Number of tables.
 
-    Raises
-    ------
-    InputError
-        A table cannot be read as its kind; the error lists the problems of all tables.
+    Raises:
+        InputError: A table cannot be read as its kind; the error lists the problems of all tables.
     """
     problems: list[InputError] = []
     readers = [*_list_readers(dossier)]

@@ -16,30 +16,20 @@ from pantocheck.conformance.procedure.run_pair import RecordRun
 
 @dataclass(frozen=True)
 class Dossier:
-    """Dossier with its files.
-
-    Parameters
-    ----------
-    file : DossierFile
-        Content of the dossier.
-    folder : Path
-        Folder of the dossier, to which its file names are relative.
-    lines : mapping of str to LineFile
-        Lines under validation, by name.
-    pantographs : mapping of str to PantographFile
-        Pantographs under validation, by name.
-    cases : tuple of Case
-        Reference models, with the cases that they require.
-    pair_cases : mapping of str to Case
-        Cases of the simulated runs that the system makes, by the name of the pair.
-    """
+    """Dossier with its files."""
 
     file: DossierFile
+    """Content of the dossier."""
     folder: Path
+    """Folder of the dossier, to which its file names are relative."""
     lines: Mapping[str, LineFile]
+    """Lines under validation, by name."""
     pantographs: Mapping[str, PantographFile]
+    """Pantographs under validation, by name."""
     cases: tuple[Case, ...]
+    """Reference models, with the cases that they require."""
     pair_cases: Mapping[str, Case]
+    """Cases of the simulated runs that the system makes, by the name of the pair."""
 
     @property
     def system(self) -> str:

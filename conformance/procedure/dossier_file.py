@@ -27,22 +27,22 @@ from pantocheck.conformance.systems.system_choice import TIMEOUT_S
 class DossierFile(InputTable):
     """Dossier of the EN 50318 procedure."""
 
-    schema_: Annotated[
-        Literal["pantocheck.dossier/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.dossier/1"'),
-    ]
-    title: Annotated[str, Field(min_length=1, max_length=200, description="title of the certificate")]
-    system: Annotated[str, Field(max_length=2000, description="builtin, record:DIR or command:PROGRAM ARGUMENTS")]
-    timeout_s: Annotated[float, Field(gt=0, description="time limit of a program for a case [s]")] = TIMEOUT_S
-    trust: Annotated[Trust, Field(description="lowest trust of the limits and tolerances that count")] = "secondary"
-    required: Annotated[
-        tuple[StepName, ...],
-        Field(strict=False, min_length=1, description="steps that decide the verdict; the others are for information"),
-    ] = STEP_NAMES
-    accept_unverified: Annotated[
-        EntryNames, Field(description="names of systems whose unverified records may pass")
-    ] = ()
-    note: Annotated[str | None, Field(max_length=4000, description="remark for the reader")] = None
+    schema_: Annotated[Literal["pantocheck.dossier/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.dossier/1"."""
+    title: Annotated[str, Field(min_length=1, max_length=200)]
+    """Title of the certificate."""
+    system: Annotated[str, Field(max_length=2000)]
+    """Builtin, record:DIR or command:PROGRAM ARGUMENTS."""
+    timeout_s: Annotated[float, Field(gt=0)] = TIMEOUT_S
+    """Time limit of a program for a case [s]."""
+    trust: Trust = "secondary"
+    """Lowest trust of the limits and tolerances that count."""
+    required: Annotated[tuple[StepName, ...], Field(strict=False, min_length=1)] = STEP_NAMES
+    """Steps that decide the verdict; the others are for information."""
+    accept_unverified: EntryNames = ()
+    """Names of systems whose unverified records may pass."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
     pantograph: Annotated[tuple[PantographEntry, ...], Field(strict=False, max_length=20)] = ()
     line: Annotated[tuple[LineEntry, ...], Field(strict=False, max_length=20)] = ()
     parameters: ParameterTable = ParameterTable()

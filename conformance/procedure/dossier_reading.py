@@ -23,15 +23,12 @@ Content = TypeVar("Content")
 def read_dossier(path: Path) -> Dossier:
     """Read a dossier and the files that it names.
 
-    Parameters
-    ----------
-    path : Path
-        The dossier.
+    Args:
+        path: The dossier.
 
-    Raises
-    ------
-    InputError
-        The dossier or a file that it names is missing or invalid; the error lists the problems of all of them.
+    Raises:
+        InputError: The dossier or a file that it names is missing or invalid; the error lists the problems of all of
+            them.
     """
     file = read_model(path, DossierFile, "dossier")
     reader = _FileReader(path)
@@ -67,18 +64,12 @@ def read_dossier(path: Path) -> Dossier:
 
 @dataclass(frozen=True)
 class _FileReader:
-    """Reader of the files of a dossier that collects all problems.
-
-    Parameters
-    ----------
-    path : Path
-        The dossier.
-    problems : list of InputError
-        Problems found so far.
-    """
+    """Reader of the files of a dossier that collects all problems."""
 
     path: Path
+    """The dossier."""
     problems: list[InputError] = field(default_factory=list)
+    """Problems found so far."""
 
     def read(self, key: str, name: str, parse: Callable[[Path], Content]) -> Content | None:
         """Content of a file beside the dossier, or else in the library; None after a problem."""

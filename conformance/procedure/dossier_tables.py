@@ -4,7 +4,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.cases.profile_file import Rule
 from pantocheck.conformance.comparison.comparison_limits import RESPONSES, ComparisonLimit
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
@@ -17,6 +16,7 @@ from pantocheck.conformance.input_files.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 
 EntryName = Annotated[str, Field(min_length=1, max_length=100)]
 NamedFile = Annotated[str, Field(min_length=1, max_length=500)]
@@ -27,17 +27,16 @@ Range = Annotated[tuple[float, float], Field(strict=False)]
 class StaticTolerance(InputTable):
     """Tolerances of the user for the line at rest. Elasticity and height are needed; one of the two elasticities."""
 
-    elasticity_mm_N: Annotated[
-        Positive | None, Field(description="largest difference between model and measurement [mm/N]")
-    ] = None
-    elasticity_pct: Annotated[
-        Positive | None, Field(description="the same, relative to the measured elasticity [%]")
-    ] = None
-    height_mm: Annotated[Positive | None, Field(description="largest difference of the contact wire height [mm]")] = (
-        None
-    )
-    trust: Annotated[Trust, Field(description="trust in these tolerances")] = NO_TRUST
-    source: Annotated[str | list[str], Field(description="source of these tolerances", max_length=500)] = NO_SOURCE
+    elasticity_mm_N: Positive | None = None
+    """Largest difference between model and measurement [mm/N]."""
+    elasticity_pct: Positive | None = None
+    """The same, relative to the measured elasticity [%]."""
+    height_mm: Positive | None = None
+    """Largest difference of the contact wire height [mm]."""
+    trust: Trust = NO_TRUST
+    """Trust in these tolerances."""
+    source: Annotated[str | list[str], Field(max_length=500)] = NO_SOURCE
+    """Source of these tolerances."""
 
     @cross_check
     def _check_source(self) -> Problems:
@@ -47,28 +46,30 @@ class StaticTolerance(InputTable):
 class LineEntry(InputTable):
     """Line under validation, with its values measured at rest."""
 
-    name: Annotated[EntryName, Field(description="name by which runs and claims refer to the line")]
-    file: Annotated[NamedFile, Field(description="line file, beside the dossier or in the library")]
-    statics: Annotated[
-        NamedFile | None, Field(description="measured elasticities and contact wire heights: sidecar or table")
-    ] = None
-    element_m: Annotated[float, Field(ge=0.05, le=5, description="element length of the static check [m]")] = 0.5
+    name: EntryName
+    """Name by which runs and claims refer to the line."""
+    file: NamedFile
+    """Line file, beside the dossier or in the library."""
+    statics: NamedFile | None = None
+    """Measured elasticities and contact wire heights: sidecar or table."""
+    element_m: Annotated[float, Field(ge=0.05, le=5)] = 0.5
+    """Element length of the static check [m]."""
     tolerance: StaticTolerance = StaticTolerance()
 
 
 class PantographEntry(InputTable):
     """Pantograph under validation, with its measured frequency responses and the limits of the user."""
 
-    name: Annotated[EntryName, Field(description="name by which runs and claims refer to the pantograph")]
-    file: Annotated[NamedFile, Field(description="pantograph file, beside the dossier or in the library")]
-    responses: Annotated[
-        tuple[NamedFile, ...],
-        Field(strict=False, max_length=50, description="measured frequency responses: sidecars or tables"),
-    ] = ()
-    limit: Annotated[
-        tuple[ComparisonLimit, ...], Field(strict=False, max_length=100, description="limits of their deviations")
-    ] = ()
-    trust: Annotated[Trust, Field(description="trust in these limits")] = NO_TRUST
+    name: EntryName
+    """Name by which runs and claims refer to the pantograph."""
+    file: NamedFile
+    """Pantograph file, beside the dossier or in the library."""
+    responses: Annotated[tuple[NamedFile, ...], Field(strict=False, max_length=50)] = ()
+    """Measured frequency responses: sidecars or tables."""
+    limit: Annotated[tuple[ComparisonLimit, ...], Field(strict=False, max_length=100)] = ()
+    """Limits of their deviations."""
+    trust: Trust = NO_TRUST
+    """Trust in these limits."""
 
     @cross_check
     def _check_sources(self) -> Problems:
@@ -88,45 +89,37 @@ class PantographEntry(InputTable):
 class ParameterTable(InputTable):
     """Declared simulation parameters of the system: numbers bound the values of all runs, texts describe."""
 
-    element_m: Annotated[
-        Positive | str | None, Field(description="largest element length [m], or a description of the mesh")
-    ] = None
-    time_step_s: Annotated[
-        Positive | str | None, Field(description="largest time step [s], or a description of the steps")
-    ] = None
-    shortest_run_s: Annotated[Positive | None, Field(description="shortest simulated time of a run [s]")] = None
-    start: Annotated[str | None, Field(max_length=1000, description="start of the runs, in words")] = None
-    note: Annotated[str | None, Field(max_length=4000, description="reason for these choices")] = None
+    element_m: Positive | str | None = None
+    """Largest element length [m], or a description of the mesh."""
+    time_step_s: Positive | str | None = None
+    """Largest time step [s], or a description of the steps."""
+    shortest_run_s: Positive | None = None
+    """Shortest simulated time of a run [s]."""
+    start: Annotated[str | None, Field(max_length=1000)] = None
+    """Start of the runs, in words."""
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Reason for these choices."""
 
 
 class ReferenceTable(InputTable):
     """Reference models that the system runs."""
 
-    cases: Annotated[
-        tuple[EntryName, ...], Field(strict=False, max_length=1000, description="ids, globs or paths of cases")
-    ] = ()
-    limits: Annotated[
-        NamedFile | None, Field(description="file of limits that replace or extend those of the cases, as for `run`")
-    ] = None
-    verdicts: Annotated[
-        Literal["criteria", "both"] | None,
-        Field(description="verdicts that decide; default: criteria for the builtin system, both for any other"),
-    ] = None
+    cases: Annotated[tuple[EntryName, ...], Field(strict=False, max_length=1000)] = ()
+    """Ids, globs or paths of cases."""
+    limits: NamedFile | None = None
+    """File of limits that replace or extend those of the cases, as for `run`."""
+    verdicts: Literal["criteria", "both"] | None = None
+    """Verdicts that decide; default: criteria for the builtin system, both for any other."""
 
 
 class LineTestTable(InputTable):
     """Tolerances and settings of the line tests."""
 
-    speed_tolerance_pct: Annotated[
-        float, Field(gt=0, le=50, description="largest difference of the speeds, and from the nominal speed [%]")
-    ] = 5.0
+    speed_tolerance_pct: Annotated[float, Field(gt=0, le=50)] = 5.0
+    """Largest difference of the speeds, and from the nominal speed [%]."""
     filter: Filter = Filter()
-    tolerance: Annotated[
-        tuple[Rule, ...],
-        Field(
-            strict=False, max_length=100, description="tolerances around the measured value; default: profile line-test"
-        ),
-    ] = ()
+    tolerance: Annotated[tuple[Rule, ...], Field(strict=False, max_length=100)] = ()
+    """Tolerances around the measured value; default: profile line-test."""
 
     @cross_check
     def _check_tolerances(self) -> Problems:
@@ -150,8 +143,10 @@ def find_range_problem(key: str, limits: tuple[float, float] | None) -> Problems
 class ChangeClaim(InputTable):
     """Claim that the validation holds for other values of an input."""
 
-    key: Annotated[EntryName, Field(description="input as for --set, e.g. line.contact_wire.tension_N")]
-    range: Annotated[Range, Field(description="smallest and largest value")]
+    key: EntryName
+    """Input as for --set, e.g. line.contact_wire.tension_N."""
+    range: Range
+    """Smallest and largest value."""
 
     @cross_check
     def _check_range(self) -> Problems:
@@ -161,15 +156,16 @@ class ChangeClaim(InputTable):
 class ValidityTable(InputTable):
     """Range of validity that is claimed. A claim outside the conditions of the passed runs is not verified."""
 
-    speed_km_h: Annotated[Range | None, Field(description="lowest and highest speed [km/h]")] = None
-    spacing_m: Annotated[
-        Range | None, Field(description="smallest and largest distance of two successive pantographs [m]")
-    ] = None
-    lines: Annotated[EntryNames, Field(description="names of the lines in this dossier")] = ()
-    pantographs: Annotated[EntryNames, Field(description="names of the pantographs in this dossier")] = ()
-    change: Annotated[
-        tuple[ChangeClaim, ...], Field(strict=False, max_length=100, description="changed inputs with their ranges")
-    ] = ()
+    speed_km_h: Range | None = None
+    """Lowest and highest speed [km/h]."""
+    spacing_m: Range | None = None
+    """Smallest and largest distance of two successive pantographs [m]."""
+    lines: EntryNames = ()
+    """Names of the lines in this dossier."""
+    pantographs: EntryNames = ()
+    """Names of the pantographs in this dossier."""
+    change: Annotated[tuple[ChangeClaim, ...], Field(strict=False, max_length=100)] = ()
+    """Changed inputs with their ranges."""
 
     @cross_check
     def _check_ranges(self) -> Problems:

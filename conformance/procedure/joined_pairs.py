@@ -14,14 +14,10 @@ from pantocheck.conformance.results.results_part import Number
 def join_pairs(cases: Sequence[CaseResult]) -> list[JoinedQuantity]:
     """Join the differences of all pairs that were compared.
 
-    Parameters
-    ----------
-    cases : sequence of CaseResult
-        Results of the pairs.
+    Args:
+        cases: Results of the pairs.
 
-    Returns
-    -------
-    list of JoinedQuantity
+    Returns:
         Quantities that a pair has in both runs, by pantograph (0: the line) and in the order of reports.
     """
     owners = sorted({int(owner) for case in cases if case.comparison for owner in case.comparison.quantities})

@@ -48,10 +48,8 @@ RECORDS_FOLDER = "records"
 def build_line_test_profile(table: LineTestTable) -> Profile:
     """Rules of the pairs: the tolerances of the user, or those of the library.
 
-    Parameters
-    ----------
-    table : LineTestTable
-        Table `line_test` of the dossier.
+    Args:
+        table: Table `line_test` of the dossier.
     """
     return Profile.model_validate(
         {
@@ -68,29 +66,20 @@ def build_line_test_profile(table: LineTestTable) -> Profile:
 
 @dataclass(frozen=True)
 class LineTests:
-    """Line tests of a dossier on a system.
-
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with the pairs.
-    system : System
-        System under test.
-    folder : Path
-        Folder of the results.
-    """
+    """Line tests of a dossier on a system."""
 
     dossier: Dossier
+    """Dossier with the pairs."""
     system: System
+    """System under test."""
     folder: Path
+    """Folder of the results."""
 
     def run(self, progress: Progress | None = None) -> StepResult:
         """Compare all pairs.
 
-        Raises
-        ------
-        StepInterrupted
-            The user ended the run; the finished pairs are kept.
+        Raises:
+            StepInterrupted: The user ended the run; the finished pairs are kept.
         """
         if not self.dossier.file.pair:
             return StepResult("line_test", "not done", "the dossier names no pair of runs (table pair)")

@@ -26,10 +26,8 @@ def check_pantographs(dossier: Dossier) -> StepResult:
 
     Every band up to the cut-off of the line tests needs a limit; a band without one is skipped.
 
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with its pantographs.
+    Args:
+        dossier: Dossier with its pantographs.
     """
     entries = dossier.file.pantograph
     if not any(entry.responses for entry in entries):

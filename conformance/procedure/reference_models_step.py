@@ -18,23 +18,15 @@ def run_reference_models(
 ) -> StepResult:
     """Run the reference models of a dossier on the system under test.
 
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with the reference models.
-    system : System
-        System under test.
-    participation : Participation
-        Verdicts that decide.
-    jobs : int
-        Number of parallel processes.
-    progress : Progress or None
-        Callback for each result.
+    Args:
+        dossier: Dossier with the reference models.
+        system: System under test.
+        participation: Verdicts that decide.
+        jobs: Number of parallel processes.
+        progress: Callback for each result.
 
-    Raises
-    ------
-    StepInterrupted
-        The user ended the run.
+    Raises:
+        StepInterrupted: The user ended the run.
     """
     if not dossier.cases:
         return StepResult("reference_models", "not done", "the dossier names no reference model (key reference.cases)")

@@ -14,14 +14,10 @@ from pantocheck.conformance.results.procedure_format import Evidence
 def describe_conditions(name: str, case: Case, dossier: Dossier) -> Evidence | None:
     """Conditions of the run of a case; None for a case without a train.
 
-    Parameters
-    ----------
-    name : str
-        Id of the result.
-    case : Case
-        The case.
-    dossier : Dossier
-        Dossier with the names of lines and pantographs, and the inputs whose change is claimed.
+    Args:
+        name: Id of the result.
+        case: The case.
+        dossier: Dossier with the names of lines and pantographs, and the inputs whose change is claimed.
     """
     if case.is_static or case.file.mass_drop is not None or case.file.speed_km_h is None:
         return None

@@ -11,17 +11,23 @@ from pantocheck.conformance.procedure.dossier_tables import EntryName, EntryName
 class CaseRun(InputTable):
     """Simulated run: a case that the system under test runs."""
 
-    case: Annotated[EntryName, Field(description="id or path of a case")]
-    direction: Annotated[EntryName, Field(description="direction of the train, in any words that both runs share")]
+    case: EntryName
+    """Id or path of a case."""
+    direction: EntryName
+    """Direction of the train, in any words that both runs share."""
 
 
 class RecordRun(InputTable):
     """Run in a record, simulated by the system under test or measured."""
 
-    record: Annotated[NamedFile, Field(description="record: its sidecar or its table")]
-    line: Annotated[EntryName, Field(description="name of the line in this dossier")]
-    pantographs: Annotated[EntryNames, Field(min_length=1, description="names of the pantographs in running order")]
-    direction: Annotated[EntryName, Field(description="direction of the train, in any words that both runs share")]
+    record: NamedFile
+    """record: its sidecar or its table."""
+    line: EntryName
+    """Name of the line in this dossier."""
+    pantographs: Annotated[EntryNames, Field(min_length=1)]
+    """Names of the pantographs in running order."""
+    direction: EntryName
+    """Direction of the train, in any words that both runs share."""
 
 
 def _kind_of_run(run: object) -> str:
@@ -39,6 +45,8 @@ SimulatedSource = Annotated[
 class PairTable(InputTable):
     """Simulated run and measured run of the same passage."""
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100, description="name of the pair")]
-    simulated: Annotated[SimulatedSource, Field(description="a case that the system runs, or a record")]
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]+$", max_length=100)]
+    """Name of the pair."""
+    simulated: SimulatedSource
+    """A case that the system runs, or a record."""
     measured: RecordRun

@@ -25,19 +25,13 @@ from pantocheck.conformance.systems.system import System
 def read_run(run: RecordRun, dossier: Dossier, profile: Profile) -> RunSide:
     """Read a recorded run of a pair.
 
-    Parameters
-    ----------
-    run : RecordRun
-        Table of the dossier.
-    dossier : Dossier
-        Dossier with the line.
-    profile : Profile
-        Rules of the line tests.
+    Args:
+        run: Table of the dossier.
+        dossier: Dossier with the line.
+        profile: Rules of the line tests.
 
-    Raises
-    ------
-    InputError
-        The record cannot be read or is impossible.
+    Raises:
+        InputError: The record cannot be read or is impossible.
     """
     span = dossier.lines[run.line].geometry.longest_span
     record = load_assessed_record(dossier.locate(run.record), profile, LineTable(span_m=span))
@@ -49,26 +43,17 @@ def read_run(run: RecordRun, dossier: Dossier, profile: Profile) -> RunSide:
 def make_run(case: Case, direction: str, system: System, dossier: Dossier, profile: Profile, path: Path) -> RunSide:
     """Run a case on the system under test, keep its record, and read it like any other record.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the run.
-    direction : str
-        Direction of the train.
-    system : System
-        System under test.
-    dossier : Dossier
-        Dossier with the names of lines and pantographs.
-    profile : Profile
-        Rules of the line tests.
-    path : Path
-        Table to write the record to.
+    Args:
+        case: Case of the run.
+        direction: Direction of the train.
+        system: System under test.
+        dossier: Dossier with the names of lines and pantographs.
+        profile: Rules of the line tests.
+        path: Table to write the record to.
 
-    Raises
-    ------
-    InputError
-        The system delivers no record, or one that contradicts its case; or the filter of the case is not that of the
-        line tests.
+    Raises:
+        InputError: The system delivers no record, or one that contradicts its case; or the filter of the case is not
+            that of the line tests.
     """
     if case.file.filter != profile.filter:
         found = f"the filter of case {case.id} is not that of the line tests"

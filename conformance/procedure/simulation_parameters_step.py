@@ -25,12 +25,9 @@ def check_parameters(dossier: Dossier, runs: Sequence[CaseResult]) -> StepResult
     Numbers bound the values of all runs. Texts, and runs that do not state a value, cannot be compared: a pass then
     counts as unverified.
 
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with the declared parameters.
-    runs : sequence of CaseResult
-        Results of the cases and pairs that have a run.
+    Args:
+        dossier: Dossier with the declared parameters.
+        runs: Results of the cases and pairs that have a run.
     """
     table, trust = dossier.file.parameters, dossier.file.trust
     if not any((table.element_m, table.time_step_s, table.shortest_run_s, table.start)):

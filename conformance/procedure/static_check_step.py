@@ -27,10 +27,8 @@ def check_statics(dossier: Dossier) -> StepResult:
 
     Elasticity and height both need a tolerance and measured values; a criterion without them is skipped.
 
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with its lines.
+    Args:
+        dossier: Dossier with its lines.
     """
     entries = dossier.file.line
     if not any(entry.statics for entry in entries):

@@ -17,48 +17,32 @@ from pantocheck.conformance.results.results_format import CaseResult
 
 @dataclass(frozen=True)
 class StepResult:
-    """Result of a step: its criteria, cases and the data of its figures.
-
-    Parameters
-    ----------
-    step : StepName
-        Step of the procedure.
-    state : StepState
-        Whether the step was done.
-    reason : str or None
-        Reason why it was not done, or could not be completed.
-    unverified : str or None
-        Reason why a pass counts as unverified.
-    cases : tuple of CaseResult
-        Results of the cases and pairs of the step.
-    criteria : tuple of Criterion
-        Criteria that belong to no case.
-    responses : tuple of ResponseComparison
-        Frequency responses of the pantographs.
-    statics : tuple of StaticComparison
-        Lines at rest.
-    parameters : tuple of DeclaredParameter
-        Declared simulation parameters.
-    evidence : tuple of Evidence
-        Conditions of the runs of the step.
-    claims : tuple of ValidityClaim
-        Claims on the range of validity.
-    notes : tuple of str
-        Remarks for the reader of the report.
-    """
+    """Result of a step: its criteria, cases and the data of its figures."""
 
     step: StepName
+    """Step of the procedure."""
     state: StepState = "done"
+    """Whether the step was done."""
     reason: str | None = None
+    """Reason why it was not done, or could not be completed."""
     unverified: str | None = None
+    """Reason why a pass counts as unverified."""
     cases: tuple[CaseResult, ...] = ()
+    """Results of the cases and pairs of the step."""
     criteria: tuple[Criterion, ...] = ()
+    """Criteria that belong to no case."""
     responses: tuple[ResponseComparison, ...] = ()
+    """Frequency responses of the pantographs."""
     statics: tuple[StaticComparison, ...] = ()
+    """Lines at rest."""
     parameters: tuple[DeclaredParameter, ...] = ()
+    """Declared simulation parameters."""
     evidence: tuple[Evidence, ...] = ()
+    """Conditions of the runs of the step."""
     claims: tuple[ValidityClaim, ...] = ()
+    """Claims on the range of validity."""
     notes: tuple[str, ...] = ()
+    """Remarks for the reader of the report."""
 
     def describe(self, required: bool) -> ProcedureStep:
         """The step in the format of results.json, without its verdict."""
@@ -77,12 +61,9 @@ class StepResult:
 class StepInterrupted(Exception):
     """The user stopped a step; its finished part is kept.
 
-    Parameters
-    ----------
-    result : StepResult
-        Result with the finished cases.
-    exit_code : int
-        128 and the number of the signal.
+    Args:
+        result: Result with the finished cases.
+        exit_code: 128 and the number of the signal.
     """
 
     def __init__(self, result: StepResult, exit_code: int) -> None:

@@ -29,41 +29,29 @@ INTERRUPTED = "the run was interrupted before this step was finished"
 
 @dataclass
 class Validation:
-    """Validation of a system by a dossier; finished steps are kept while it runs.
-
-    Parameters
-    ----------
-    dossier : Dossier
-        Dossier with its files.
-    system : System
-        System under test.
-    folder : Path
-        Folder of the results.
-    jobs : int
-        Number of reference models that run in parallel.
-    progress : Progress or None
-        Callback for each finished case or pair.
-    """
+    """Validation of a system by a dossier; finished steps are kept while it runs."""
 
     dossier: Dossier
+    """Dossier with its files."""
     system: System
+    """System under test."""
     folder: Path
+    """Folder of the results."""
     jobs: int = 1
+    """Number of reference models that run in parallel."""
     progress: Progress | None = None
+    """Callback for each finished case or pair."""
     finished: dict[StepName, StepResult] = field(default_factory=dict)
 
     def run(self) -> Results:
         """Carry out all steps.
 
-        Returns
-        -------
-        Results
+        Returns:
             Results with the procedure.
 
-        Raises
-        ------
-        RunInterrupted
-            Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results of the finished part.
+        Raises:
+            RunInterrupted: Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results of the finished
+                part.
         """
         started = utc_now()
         try:

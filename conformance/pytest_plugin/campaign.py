@@ -21,21 +21,14 @@ from pantocheck.conformance.systems.system import System
 
 @dataclass
 class PlanSession:
-    """Run of a plan in a session.
-
-    Parameters
-    ----------
-    path : Path
-        File of the plan.
-    prepared : PreparedPlan
-        The plan with the options of the session.
-    shared : Path
-        Folder that all processes of the session share.
-    """
+    """Run of a plan in a session."""
 
     path: Path
+    """File of the plan."""
     prepared: PreparedPlan
+    """The plan with the options of the session."""
     shared: Path
+    """Folder that all processes of the session share."""
     _system: System | None = None
     _finished: dict[str, CaseResult] = field(default_factory=dict)
 

@@ -95,10 +95,8 @@ class CaseNode(pytest.Collector):
     def result(self) -> CaseResult:
         """Result of the case, computed once per session.
 
-        Raises
-        ------
-        CriterionNotMet
-            The case ended in error.
+        Raises:
+            CriterionNotMet: The case ended in error.
         """
         result = self.campaign.result(self.case)
         if result.verdict == "error":
@@ -230,17 +228,12 @@ class CriterionItem(OneLineItem):
 def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:
     """Write the certificates of all plans of a session.
 
-    Returns
-    -------
-    list of str
+    Returns:
         Lines for the summary of the session.
-    bool
         Whether the cases of a plan that ran in this session do not pass.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     lines, not_passed = [], False
     for path in list_registered(folder):
@@ -251,9 +244,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
         not_passed |= verdict != "pass"
         write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
-        lines.append(
-            f"{path.name}: {results.verdict.upper()}: {build_headline(results.to_dict())} {prepared.out / shown}"
-        )
+        lines.append(f"{path.name}: {results.verdict.upper()}: {build_headline(results)} {prepared.out / shown}")
         lines += (f"{path.name}: {remark}" for remark in remark_missing_formats(prepared.plan.formats))
         lines += (f"{path.name}: {case.id}: {line}" for case in results.cases for line in list_drifts(case))
     return lines, not_passed

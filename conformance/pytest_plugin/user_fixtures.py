@@ -32,18 +32,12 @@ from pantocheck.conformance.systems.system_choice import TIMEOUT_S, choose_syste
 
 @dataclass(frozen=True)
 class GradedCase:
-    """Graded case.
-
-    Parameters
-    ----------
-    result : CaseResult
-        Result of the case, as in results.json.
-    requested : tuple of {"criteria", "verification"}
-        Verdicts that decide.
-    """
+    """Graded case."""
 
     result: CaseResult
+    """Result of the case, as in results.json."""
     requested: tuple[VerdictName, ...] = ("criteria",)
+    """Verdicts that decide."""
 
     @property
     def verdict(self) -> Verdict:
@@ -67,18 +61,13 @@ class GradedCase:
     def check(self, *quantities: str, accept_unverified: bool = False) -> None:
         """Fail the test, with a line per reason, unless the criteria of these quantities pass on a verified record.
 
-        Parameters
-        ----------
-        *quantities : str
-            Names of quantities; default: all with limits that count.
-        accept_unverified : bool
-            Whether an unverified record may pass.
+        Args:
+            *quantities: Names of quantities; default: all with limits that count.
+            accept_unverified: Whether an unverified record may pass.
 
-        Raises
-        ------
-        AssertionError
-            A criterion is not met or does not count, a quantity has no limits, a requested verification is impossible,
-            or the record is not verified.
+        Raises:
+            AssertionError: A criterion is not met or does not count, a quantity has no limits, a requested verification
+                is impossible, or the record is not verified.
         """
         __tracebackhide__ = True
         criteria = [c for c in self._criteria if not quantities or c.quantity in quantities]
@@ -141,31 +130,20 @@ def run_and_grade(
 ) -> GradedCase:
     """Run a case on a system and grade it.
 
-    Parameters
-    ----------
-    case : str
-        Id, or path of a case file.
-    system : str or System
-        Value as for `--system`, or an object with `name`, `version`, `kind`, `run(case)`, and the names of the
-        `features` that it simulates; a case that uses another one is skipped, and without `features` every case.
-    trust : Trust
-        Lowest trust of limits that count.
-    verdicts : {"criteria", "verification", "both"}, optional
-        Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
-    timeout_s : float
-        Time limit of a program [s].
-    case_folders : sequence of str or Path
-        Folders with further cases; default: those of `--pantocheck-cases`.
+    Args:
+        case: Id, or path of a case file.
+        system: Value as for `--system`, or an object with `name`, `version`, `kind`, `run(case)`, and the names of the
+            `features` that it simulates; a case that uses another one is skipped, and without `features` every case.
+        trust: Lowest trust of limits that count.
+        verdicts: Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
+        timeout_s: Time limit of a program [s].
+        case_folders: Folders with further cases; default: those of `--pantocheck-cases`.
 
-    Returns
-    -------
-    GradedCase
+    Returns:
         Verdict, reasons and values.
 
-    Raises
-    ------
-    InputError
-        There is no such case or system.
+    Raises:
+        InputError: There is no such case or system.
     """
     tested = choose_system(system, timeout_s) if isinstance(system, str) else system
     selected = _select_case(case, case_folders)
@@ -191,40 +169,24 @@ def grade_arrays(
 ) -> GradedCase:
     """Grade a record as a run of a case.
 
-    Parameters
-    ----------
-    case : str
-        Id, or path of a case file.
-    record : Record or str or Path, optional
-        Record or path of a record; default: the arrays below.
-    time_s : (n,) array_like, optional
-        Equidistant times [s].
-    position_m, force_N : (n,) or (p, n) array_like, optional
-        Contact point along the track [m] and contact force [N] of p pantographs.
-    contact_height_m : (n,) or (p, n) array_like, optional
-        Height of the contact point [m].
-    support_position_m : (s,) array_like, optional
-        Positions of the supports [m].
-    support_uplift_m : (s, n) array_like, optional
-        Uplift at the supports [m].
-    filter_applied_Hz : float, optional
-        Cut-off frequency of a low-pass that was applied to the force [Hz].
-    trust : Trust
-        Lowest trust of limits that count.
-    verdicts : {"criteria", "verification", "both"}, optional
-        Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
-    case_folders : sequence of str or Path
-        Folders with further cases; default: those of `--pantocheck-cases`.
+    Args:
+        case: Id, or path of a case file.
+        record: Record or path of a record; default: the arrays below.
+        time_s: Equidistant times, (n,) [s].
+        position_m, force_N: Contact point along the track [m] and contact force [N] of p pantographs, (n,) or (p, n).
+        contact_height_m: Height of the contact point, (n,) or (p, n) [m].
+        support_position_m: Positions of the supports, (s,) [m].
+        support_uplift_m: Uplift at the supports, (s, n) [m].
+        filter_applied_Hz: Cut-off frequency of a low-pass that was applied to the force [Hz].
+        trust: Lowest trust of limits that count.
+        verdicts: Verdicts that decide; default: the criteria for the built-in simulator, both for any other system.
+        case_folders: Folders with further cases; default: those of `--pantocheck-cases`.
 
-    Returns
-    -------
-    GradedCase
+    Returns:
         Verdict, reasons and values.
 
-    Raises
-    ------
-    InputError
-        There is no such case, or the record is invalid.
+    Raises:
+        InputError: There is no such case, or the record is invalid.
     """
     graded_case = _select_case(case, case_folders)
     if isinstance(record, str | Path):

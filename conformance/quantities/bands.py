@@ -36,28 +36,18 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
     The bands ]0, 5], ]5, 20], ]20, 50] Hz partition the variance: their squares add up to the variance of the force
     band-limited to 50 Hz (Vo Van et al. 2015, Table 1).
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Contact force over the analysis section [N].
-    rate : float
-        Sampling rate [Hz].
-    low, high : float
-        Edges of the band ]low, high] [Hz].
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+    Args:
+        force: Contact force over the analysis section, (n,) [N].
+        rate: Sampling rate [Hz].
+        low, high: Edges of the band ]low, high] [Hz].
+        filter_applied_Hz: Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
-    Returns
-    -------
-    float
+    Returns:
         RMS value [N].
 
-    Raises
-    ------
-    BandNotObservable
-        The analysis section is too short for the band, or the rate too low for its upper edge.
-    AlreadyFiltered
-        The force was filtered below the upper edge before delivery.
+    Raises:
+        BandNotObservable: The analysis section is too short for the band, or the rate too low for its upper edge.
+        AlreadyFiltered: The force was filtered below the upper edge before delivery.
     """
     check_observable(high, rate, f"a band up to {high:g} Hz")
     if filter_applied_Hz is not None and filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * high:
@@ -78,19 +68,13 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
 def band_part(force: RealArray, rate: float, low: float, high: float) -> RealArray:
     """Part of the force inside a frequency band; its root mean square is `band_rms`.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Contact force over the analysis section [N].
-    rate : float
-        Sampling rate [Hz].
-    low, high : float
-        Edges of the band ]low, high] [Hz].
+    Args:
+        force: Contact force over the analysis section, (n,) [N].
+        rate: Sampling rate [Hz].
+        low, high: Edges of the band ]low, high] [Hz].
 
-    Returns
-    -------
-    (n,) ndarray
-        Force inside the band [N].
+    Returns:
+        Force inside the band, (n,) [N].
     """
     frequency, lines = np.fft.rfftfreq(force.size, 1 / rate), np.fft.rfft(force)
     lines[(frequency <= low) | (frequency > high)] = 0
@@ -100,21 +84,14 @@ def band_part(force: RealArray, rate: float, low: float, high: float) -> RealArr
 def amplitude_spectrum(force: RealArray, rate: float, highest: float) -> tuple[RealArray, RealArray]:
     """Single-sided amplitude spectrum of the force about its mean.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Contact force [N].
-    rate : float
-        Sampling rate [Hz].
-    highest : float
-        Highest frequency of the spectrum [Hz].
+    Args:
+        force: Contact force, (n,) [N].
+        rate: Sampling rate [Hz].
+        highest: Highest frequency of the spectrum [Hz].
 
-    Returns
-    -------
-    frequency : ndarray
-        Frequencies ]0, highest] [Hz].
-    amplitude : ndarray
-        Amplitudes [N].
+    Returns:
+        frequency: Frequencies ]0, highest] [Hz].
+        amplitude: Amplitudes [N].
     """
     frequency, power = _power(force, rate)
     inside = (frequency > 0) & (frequency <= highest)

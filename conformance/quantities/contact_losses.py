@@ -10,24 +10,16 @@ from pantocheck.conformance.array_types import RealArray
 
 @dataclass(frozen=True)
 class ContactLoss:
-    """One contact loss.
-
-    Parameters
-    ----------
-    place : float
-        Position of the pantograph at its start [m].
-    time : float
-        Time from the start of the analysis section [s].
-    duration : float
-        Duration [s], a multiple of the sampling interval.
-    lowest_force : float
-        Lowest force [N]; a measured force may be negative.
-    """
+    """One contact loss."""
 
     place: float
+    """Position of the pantograph at its start [m]."""
     time: float
+    """Time from the start of the analysis section [s]."""
     duration: float
+    """Duration [s], a multiple of the sampling interval."""
     lowest_force: float
+    """Lowest force [N]; a measured force may be negative."""
 
 
 def find_losses(force: RealArray) -> NDArray[np.intp]:
@@ -39,12 +31,9 @@ def find_losses(force: RealArray) -> NDArray[np.intp]:
 def loss_durations(force: RealArray, rate: float) -> RealArray:
     """Duration of the contact loss that each sample belongs to, (n,) [s]; 0 in contact.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Unfiltered contact force [N]; no contact is zero force.
-    rate : float
-        Sampling rate [Hz].
+    Args:
+        force: Unfiltered contact force, (n,) [N]; no contact is zero force.
+        rate: Sampling rate [Hz].
     """
     durations = np.zeros(force.size)
     for start, end in find_losses(force):
@@ -62,14 +51,10 @@ def loss_starts(force: RealArray) -> RealArray:
 def list_losses(force: RealArray, position: RealArray, rate: float) -> list[ContactLoss]:
     """Contact losses in the order of their places.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Unfiltered contact force over the analysis section [N].
-    position : (n,) ndarray
-        Position of the pantograph [m].
-    rate : float
-        Sampling rate [Hz].
+    Args:
+        force: Unfiltered contact force over the analysis section, (n,) [N].
+        position: Position of the pantograph, (n,) [m].
+        rate: Sampling rate [Hz].
     """
     return [
         ContactLoss(

@@ -24,18 +24,12 @@ LINE = 0
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Quantities of a run, by pantograph (from 1 in running order; 0: the line) and name.
-
-    Parameters
-    ----------
-    values : dict of int to dict of str to Value
-        Available quantities.
-    skipped : dict of int to dict of str to str
-        Reasons why the other quantities are not available.
-    """
+    """Quantities of a run, by pantograph (from 1 in running order; 0: the line) and name."""
 
     values: dict[int, dict[str, Value]]
+    """Available quantities."""
     skipped: dict[int, dict[str, str]]
+    """Reasons why the other quantities are not available."""
 
 
 class SectionedSignals(Protocol):
@@ -59,16 +53,11 @@ def skip_record(reason: str, pantographs: Iterable[int]) -> Evaluation:
 def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals) -> Evaluation:
     """Evaluate all quantities of a record; an unavailable quantity is skipped with the reason.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to ForceSignals
-        Signals of the pantographs by number from 1.
-    line : LineSignals
-        Uplift at the supports.
+    Args:
+        pantographs: Signals of the pantographs by number from 1.
+        line: Uplift at the supports.
 
-    Returns
-    -------
-    Evaluation
+    Returns:
         Values and skipped quantities.
     """
     values: dict[int, dict[str, Value]] = {LINE: {}}

@@ -4,12 +4,18 @@ A transfer function in polynomial form overflows at high sampling rates and low 
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import scipy  # loads scipy.signal when it is used: its import takes longer than a listing of the cases
+from pydantic import Field
 
 from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
+from pantocheck.conformance.input_files.sourced_table import (
+    InputTable,
+    validation_problem,
+)
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4
@@ -27,19 +33,13 @@ def is_observable(frequency: float, rate: float) -> bool:
 def check_observable(frequency: float, rate: float, purpose: str) -> None:
     """Refuse a sampling rate that is too low for a frequency.
 
-    Parameters
-    ----------
-    frequency : float
-        Highest frequency that is needed [Hz].
-    rate : float
-        Sampling rate [Hz].
-    purpose : str
-        Filter or band that needs the frequency, for the message.
+    Args:
+        frequency: Highest frequency that is needed [Hz].
+        rate: Sampling rate [Hz].
+        purpose: Filter or band that needs the frequency, for the message.
 
-    Raises
-    ------
-    BandNotObservable
-        The rate is too low.
+    Raises:
+        BandNotObservable: The rate is too low.
     """
     if not is_observable(frequency, rate):
         raise BandNotObservable(
@@ -56,23 +56,16 @@ class LowPass:
     forwards and backwards. One run of order m has the gain 1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with
     W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear transform. The cut-off f0 of a single run is therefore
     raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both runs together have -3 dB at the cut-off.
-
-    Parameters
-    ----------
-    kind : {'butterworth'}
-        Family of the filter.
-    order : int
-        Total order; even for zero phase.
-    cutoff_Hz : float
-        Frequency at which the whole filter has -3 dB [Hz].
-    phase : {'zero', 'causal'}
-        `zero` (forwards and backwards) or `causal` (forwards only, like an instrument).
     """
 
     kind: Literal["butterworth"] = "butterworth"
+    """Family of the filter."""
     order: int = 6
+    """Total order; even for zero phase."""
     cutoff_Hz: float = 20.0
+    """Frequency at which the whole filter has -3 dB [Hz]."""
     phase: Literal["zero", "causal"] = "zero"
+    """`zero` (forwards and backwards) or `causal` (forwards only, like an instrument)."""
 
     def __post_init__(self) -> None:
         if self.order < 1 or (self.phase == "zero" and self.order % 2):
@@ -84,10 +77,8 @@ class LowPass:
     def sections(self, rate: float) -> RealArray:
         """Second-order sections of a single run, for a sampling rate [Hz].
 
-        Raises
-        ------
-        BandNotObservable
-            The cut-off is too high for the rate.
+        Raises:
+            BandNotObservable: The cut-off is too high for the rate.
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         order, cutoff = self.single_run(rate)
@@ -109,17 +100,12 @@ class LowPass:
     def __call__(self, signal: RealArray, rate: float) -> RealArray:
         """Filter a signal; the transients at its ends decay within a few periods of the cut-off.
 
-        Parameters
-        ----------
-        signal : (n,) ndarray
-            Samples of the whole record, so that the transients lie outside the analysis section.
-        rate : float
-            Sampling rate [Hz].
+        Args:
+            signal: Samples of the whole record, so that the transients lie outside the analysis section, (n,).
+            rate: Sampling rate [Hz].
 
-        Returns
-        -------
-        (n,) ndarray
-            Filtered samples.
+        Returns:
+            Filtered samples, (n,).
         """
         sections = self.sections(rate)
         if self.phase == "causal":
@@ -144,22 +130,15 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
 
     A second filter with the same cut-off would attenuate the force by another 3 dB at the cut-off.
 
-    Parameters
-    ----------
-    low_pass : LowPass
-        Filter of the graded force.
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+    Args:
+        low_pass: Filter of the graded force.
+        filter_applied_Hz: Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
 
-    Returns
-    -------
-    bool
+    Returns:
         False if the force was filtered with the same cut-off before delivery.
 
-    Raises
-    ------
-    AlreadyFiltered
-        The force was filtered with a lower cut-off.
+    Raises:
+        AlreadyFiltered: The force was filtered with a lower cut-off.
     """
     if filter_applied_Hz is None or filter_applied_Hz > (1 + CUTOFF_TOLERANCE) * low_pass.cutoff_Hz:
         return True
@@ -169,3 +148,30 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
             f"its content up to {low_pass.cutoff_Hz:g} Hz is not known"
         )
     return False
+
+
+class Filter(InputTable):
+    """Filter of the graded contact force."""
+
+    kind: Literal["butterworth"] = "butterworth"
+    """Filter type."""
+    order: Annotated[int, Field(ge=1, le=12)] = 6
+    """Total order, over both passes of a zero-phase filter."""
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    """Frequency of -3 dB of the whole filter [Hz]."""
+    phase: Literal["zero", "causal"] = "zero"
+    """zero: forward and backward pass; causal: forward only."""
+
+    @cross_check
+    def _exists(self) -> Problems:
+        if self.phase == "zero" and self.order % 2:
+            yield validation_problem(
+                "order",
+                f"{self.order} is odd",
+                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
+            )
+
+    @property
+    def low_pass(self) -> LowPass:
+        """Low-pass with these parameters."""
+        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)

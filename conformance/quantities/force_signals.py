@@ -63,23 +63,16 @@ class ForceChannel:
     """Contact force of one pantograph over the whole record, as delivered and filtered.
 
     The whole record is filtered, so that the filter transients at its ends lie outside the analysis section.
-
-    Parameters
-    ----------
-    delivered : (n,) ndarray
-        Contact force as delivered [N].
-    rate : float
-        Sampling rate [Hz].
-    low_pass : LowPass
-        Filter of the graded force.
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
     """
 
     delivered: RealArray
+    """Contact force as delivered, (n,) [N]."""
     rate: float
+    """Sampling rate [Hz]."""
     low_pass: LowPass
+    """Filter of the graded force."""
     filter_applied_Hz: float | None = None
+    """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
 
     @cached_property
     def graded(self) -> RealArray:

@@ -26,16 +26,11 @@ class GradedText(NamedTuple):
 def name_value(quantity: str, item: int | None) -> str:
     """Name of a value: the quantity, with the number of the item if it has several values.
 
-    Parameters
-    ----------
-    quantity : str
-        Name of the quantity.
-    item : int or None
-        Number of the item, from 1.
+    Args:
+        quantity: Name of the quantity.
+        item: Number of the item, from 1.
 
-    Returns
-    -------
-    str
+    Returns:
         Name such as `std_force_N` or `damping_ratio[2]`.
     """
     return f"{quantity}[{item}]" if item else quantity
@@ -70,18 +65,12 @@ def is_relative_margin(lower: float | None, upper: float | None) -> bool:
 def format_criterion_margin(margin: float | None, lower: float | None, upper: float | None, unit: str) -> str:
     """A margin as a number, or with the unit of the value beside a limit of 0 alone, in ASCII characters.
 
-    Parameters
-    ----------
-    margin : float or None
-        Margin of the criterion; None if there is none.
-    lower, upper : float or None
-        Limits in the unit of the value.
-    unit : str
-        Unit of the value.
+    Args:
+        margin: Margin of the criterion; None if there is none.
+        lower, upper: Limits in the unit of the value.
+        unit: Unit of the value.
 
-    Returns
-    -------
-    str
+    Returns:
         `+0.48`, `+78.49 N`, or `-` without a margin.
     """
     if margin is None:
@@ -92,14 +81,10 @@ def format_criterion_margin(margin: float | None, lower: float | None, upper: fl
 def format_bounds(lower: float | None, upper: float | None) -> str:
     """Stated bounds of a limit in ASCII characters.
 
-    Parameters
-    ----------
-    lower, upper : float or None
-        Bounds in the unit of the quantity; None if there is no such bound.
+    Args:
+        lower, upper: Bounds in the unit of the quantity; None if there is no such bound.
 
-    Returns
-    -------
-    str
+    Returns:
         `26 to 31`, `<= 225`, `>= 30`, `= 0` or `none`.
     """
     return _join_bounds(*(None if bound is None else format_stated(bound) for bound in (lower, upper)))
@@ -111,12 +96,9 @@ def format_graded(value: float | None, lower: float | None, upper: float | None)
     Stated limits keep their digits. The value and computed limits have `ROUNDED_DIGITS` significant digits, and more
     where these would change the order of the three numbers: a value outside a limit is never shown on it or inside it.
 
-    Parameters
-    ----------
-    value : float or None
-        Graded value.
-    lower, upper : float or None
-        Limits in the unit of the value.
+    Args:
+        value: Graded value.
+        lower, upper: Limits in the unit of the value.
     """
     for digits in range(ROUNDED_DIGITS, EXACT_DIGITS + 1):
         low, high = (None if bound is None else _format_bound(bound, digits) for bound in (lower, upper))
@@ -148,9 +130,7 @@ def _join_bounds(low: str | None, high: str | None) -> str:
 def raises_trust_only(change: str) -> bool:
     """Check that a sentence on a changed limit states a higher trust of the limit and nothing else.
 
-    Parameters
-    ----------
-    change : str
-        The sentence; a name with a colon is not recognised, so that its change is never played down.
+    Args:
+        change: The sentence; a name with a colon is not recognised, so that its change is never played down.
     """
     return _TRUST_RAISED.fullmatch(change) is not None

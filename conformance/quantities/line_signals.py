@@ -32,27 +32,18 @@ not count, so that it may be missing."""
 
 @dataclass(frozen=True)
 class LineSignals:
-    """Uplift of the contact wire at the supports.
-
-    Parameters
-    ----------
-    section : tuple of float
-        Start and end of the analysis section [m].
-    support_position : (s,) ndarray or None
-        Positions of the supports along the track [m], or None.
-    support_uplift : (s, n) ndarray or None
-        Uplift at each support [m], or None; NaN where it is not known.
-    line_supports : tuple of float or None
-        Positions of all supports of the line [m]; None if they are not known.
-    last_position : (n,) ndarray or None
-        Positions of the last pantograph [m]; None if they are not known.
-    """
+    """Uplift of the contact wire at the supports."""
 
     section: tuple[float, float]
+    """Start and end of the analysis section [m]."""
     support_position: RealArray | None = None
+    """Positions of the supports along the track, (s,) [m], or None."""
     support_uplift: RealArray | None = None
+    """Uplift at each support, (s, n) [m], or None; NaN where it is not known."""
     line_supports: tuple[float, ...] | None = None
+    """Positions of all supports of the line [m]; None if they are not known."""
     last_position: RealArray | None = None
+    """Positions of the last pantograph, (n,) [m]; None if they are not known."""
 
     @property
     def supports(self) -> RealArray:
@@ -63,10 +54,9 @@ class LineSignals:
     def uplift(self) -> RealArray:
         """Uplift at the k supports of the analysis section, both ends included, (k, n) [m]; NaN after the passage.
 
-        Raises
-        ------
-        ChannelMissing
-            The record has no uplift, none inside the analysis section, or values are missing that count.
+        Raises:
+            ChannelMissing: The record has no uplift, none inside the analysis section, or values are missing that
+                count.
         """
         return self._at_supports[1]
 
@@ -85,11 +75,9 @@ class LineSignals:
     def check_supports(self) -> None:
         """Check that every support of the analysis section has an uplift.
 
-        Raises
-        ------
-        SupportsMissing
-            A support has no uplift, the supports of the line are not known, or the record ends too early behind the
-            last support: the largest uplift may be missing in the record.
+        Raises:
+            SupportsMissing: A support has no uplift, the supports of the line are not known, or the record ends too
+                early behind the last support: the largest uplift may be missing in the record.
         """
         measured = self.supports
         if self.line_supports is None:
@@ -141,14 +129,10 @@ class LineSignals:
 def counted_samples(supports: RealArray, uplift: RealArray, last_position: RealArray | None) -> NDArray[np.bool_]:
     """Samples whose uplift counts, (s, n): from the start until the last pantograph is far enough past the support.
 
-    Parameters
-    ----------
-    supports : (s,) ndarray
-        Positions of the supports [m].
-    uplift : (s, n) ndarray
-        Uplift at the supports [m].
-    last_position : (n,) ndarray or None
-        Positions of the last pantograph [m]; None: every sample counts.
+    Args:
+        supports: Positions of the supports, (s,) [m].
+        uplift: Uplift at the supports, (s, n) [m].
+        last_position: Positions of the last pantograph, (n,) [m]; None: every sample counts.
     """
     if last_position is None:
         return np.ones(uplift.shape, dtype=np.bool_)

@@ -25,30 +25,20 @@ SETTLING_PERIODS = 2.0
 
 @dataclass(frozen=True)
 class PantographSignals:
-    """Signals of one pantograph: channels of the whole record, cut to the analysis section.
-
-    Parameters
-    ----------
-    position : (n,) ndarray
-        Contact point along the track [m].
-    force : ForceChannel
-        Contact force of the whole record.
-    section : tuple of float
-        Start (included) and end (excluded) of the analysis section [m].
-    contact_height : (n,) ndarray or None
-        Height of the contact point [m], or None.
-    arc_channels : (2, n) ndarray or None
-        Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
-    shortest_loss_s : float or None
-        Shortest duration of a long contact loss [s]; None if it is not stated.
-    """
+    """Signals of one pantograph: channels of the whole record, cut to the analysis section."""
 
     position: RealArray
+    """Contact point along the track, (n,) [m]."""
     force: ForceChannel
+    """Contact force of the whole record."""
     section: tuple[float, float]
+    """Start (included) and end (excluded) of the analysis section [m]."""
     contact_height: RealArray | None = None
+    """Height of the contact point, (n,) [m], or None."""
     arc_channels: RealArray | None = None
+    """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
     shortest_loss_s: float | None = None
+    """Shortest duration of a long contact loss [s]; None if it is not stated."""
 
     @property
     def rate(self) -> float:
@@ -81,10 +71,8 @@ class PantographSignals:
     def inside(self) -> slice:
         """Samples inside the analysis section.
 
-        Raises
-        ------
-        SectionNotCovered
-            The record begins after the start or ends before the end of the section.
+        Raises:
+            SectionNotCovered: The record begins after the start or ends before the end of the section.
         """
         start, end = self.section
         # One sample of tolerance: a section that ends with the record ends between two samples.
@@ -134,10 +122,8 @@ class PantographSignals:
     def height(self) -> RealArray:
         """Height of the contact point over the analysis section [m].
 
-        Raises
-        ------
-        ChannelMissing
-            The record has no contact height.
+        Raises:
+            ChannelMissing: The record has no contact height.
         """
         if self.contact_height is None:
             raise ChannelMissing("the record has no contact height")
@@ -147,12 +133,9 @@ class PantographSignals:
 def edge_warnings(pantographs: Mapping[int, PantographSignals], speed: float) -> list[str]:
     """Warnings on pantographs whose record is too short for the filter to settle outside the analysis section.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals
-        Signals of the pantographs by number from 1.
-    speed : float
-        Speed of the train [m/s].
+    Args:
+        pantographs: Signals of the pantographs by number from 1.
+        speed: Speed of the train [m/s].
     """
     warnings = []
     for number, signals in pantographs.items():

@@ -25,90 +25,61 @@ def _accept(_: object) -> None:
 
 @dataclass(frozen=True)
 class Need(Generic[Signals]):
-    """Part of a record that a quantity needs.
-
-    Parameters
-    ----------
-    text : str
-        Name of the part.
-    check : callable
-        Function of the signals that raises `QuantityUnavailable` if they lack the part. The default never raises, for
-        a quantity that is delivered as a number.
-    """
+    """Part of a record that a quantity needs."""
 
     text: str
+    """Name of the part."""
     check: Callable[[Signals], object] = _accept
+    """Function of the signals that raises `QuantityUnavailable` if they lack the part. The default never raises, for
+    a quantity that is delivered as a number.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity:
-    """A number that can be graded.
-
-    Parameters
-    ----------
-    name : str
-        Name in case files and results, with the unit at its end.
-    label : str
-        Name on pages.
-    unit : str
-        Unit as printed; empty for a ratio.
-    definition : str
-        Definition in one sentence.
-    needs : Need
-        Part of a record, or result of a static check, without which the quantity is not computed.
-    scope : Scope
-        Object or computation that the value belongs to.
-    source : str
-        Document that defines the quantity.
-    never_negative : bool
-        Whether a negative value is impossible.
-    tables : tuple of str
-        Fixed tables that show the quantity.
-    force_level : str
-        Short name of the quantity as a level of the force, beside whose curve its limits are drawn; empty: no level.
-    other_definition : str
-        Other definition in use, and the largest change of the value by it on the EN 50318:2002 cases; empty: none.
-    """
+    """A number that can be graded."""
 
     name: str
+    """Name in case files and results, with the unit at its end."""
     label: str
+    """Name on pages."""
     unit: str
+    """Unit as printed; empty for a ratio."""
     definition: str
+    """Definition in one sentence."""
     needs: Need[Any]
+    """Part of a record, or result of a static check, without which the quantity is not computed."""
     scope: Scope
+    """Object or computation that the value belongs to."""
     source: str = "pantocheck"
+    """Document that defines the quantity."""
     never_negative: bool = False
+    """Whether a negative value is impossible."""
     tables: tuple[QuantityTable, ...] = ()
+    """Fixed tables that show the quantity."""
     force_level: str = ""
+    """Short name of the quantity as a level of the force, beside whose curve its limits are drawn; empty: no level."""
     other_definition: str = ""
+    """Other definition in use, and the largest change of the value by it on the EN 50318:2002 cases; empty: none."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PantographQuantity(Quantity):
-    """A statistic of the signals of one pantograph.
-
-    Parameters
-    ----------
-    compute : callable
-        Function of the signals and of a `Sampling`. The same function gives the value of the record and the values of
-        its bootstrap replicates, from which the uncertainty follows.
-    """
+    """A statistic of the signals of one pantograph."""
 
     needs: Need[ForceSignals]
     compute: Callable[[ForceSignals, Sampling], RealArray]
+    """Function of the signals and of a `Sampling`. The same function gives the value of the record and the values of
+    its bootstrap replicates, from which the uncertainty follows.
+    """
     scope: Literal["pantograph"] = "pantograph"
 
 
 @dataclass(frozen=True, kw_only=True)
 class LineQuantity(Quantity):
-    """A quantity computed from the uplift at the supports.
-
-    Parameters
-    ----------
-    compute : callable
-        Function of the signals of the line.
-    """
+    """A quantity computed from the uplift at the supports."""
 
     needs: Need[LineSignals]
     compute: Callable[[LineSignals], float]
+    """Function of the signals of the line."""
     scope: Literal["line"] = "line"

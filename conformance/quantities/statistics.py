@@ -15,10 +15,8 @@ Estimate = TypeVar("Estimate", float, RealArray)
 def coefficient_of_variation(mean: Estimate, deviation: Estimate) -> Estimate:
     """Standard deviation over mean force [-], both in [N] (EN 50317 practice; Vo Van et al. 2015, Table 1).
 
-    Raises
-    ------
-    NoMeanForce
-        The mean is not positive.
+    Raises:
+        NoMeanForce: The mean is not positive.
     """
     if np.min(mean) <= 0:
         raise NoMeanForce(f"the mean force is {np.min(mean):.4g} N; a coefficient of variation needs a positive mean")
@@ -33,24 +31,16 @@ def statistical_extremes(mean: Estimate, deviation: Estimate) -> tuple[Estimate,
 def contact_loss(force: RealArray, filter_applied_Hz: float | None, sampling: Sampling) -> RealArray:
     """Share of samples without contact [%].
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Unfiltered contact force over the analysis section [N]; no contact is zero force.
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
-    sampling : Sampling
-        Whole record, or bootstrap replicates.
+    Args:
+        force: Unfiltered contact force over the analysis section, (n,) [N]; no contact is zero force.
+        filter_applied_Hz: Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
+        sampling: Whole record, or bootstrap replicates.
 
-    Returns
-    -------
-    ndarray
+    Returns:
         Share of the samples [%], or one share per bootstrap replicate.
 
-    Raises
-    ------
-    AlreadyFiltered
-        The force was filtered; a filter smooths a contact loss to a low force.
+    Raises:
+        AlreadyFiltered: The force was filtered; a filter smooths a contact loss to a low force.
     """
     check_unfiltered(filter_applied_Hz)
     return sampling.percentage(force <= 0)
@@ -68,17 +58,12 @@ def check_unfiltered(filter_applied_Hz: float | None) -> None:
 def force_histogram(force: RealArray) -> tuple[RealArray, RealArray]:
     """Histogram of a force with about 30 classes; their width is 1, 2 or 5 times a power of ten.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Contact force [N].
+    Args:
+        force: Contact force, (n,) [N].
 
-    Returns
-    -------
-    edges : (k + 1,) ndarray
-        Class edges [N].
-    share : (k,) ndarray
-        Share of the samples in each class [%].
+    Returns:
+        edges: Class edges, (k + 1,) [N].
+        share: Share of the samples in each class, (k,) [%].
     """
     spread = float(np.ptp(force))
     raw = max(spread, 1.0) / 30

@@ -48,18 +48,12 @@ OVERLAP_QUANTITIES: tuple[Quantity, ...] = tuple(
 
 @dataclass(frozen=True)
 class SignalsOutside:
-    """Signals of one pantograph over the analysis section without overlaps or other stretches.
-
-    Parameters
-    ----------
-    whole : PantographSignals
-        Signals over the analysis section.
-    stretches : sequence of Stretch
-        Stretches that are left out.
-    """
+    """Signals of one pantograph over the analysis section without overlaps or other stretches."""
 
     whole: PantographSignals
+    """Signals over the analysis section."""
     stretches: Sequence[Stretch]
+    """Stretches that are left out."""
 
     @cached_property
     def kept(self) -> NDArray[np.bool_]:
@@ -136,19 +130,13 @@ def evaluate_outside_overlaps(
 ) -> tuple[dict[int, dict[str, float]], dict[int, dict[str, str]]]:
     """Evaluate the quantities outside of the overlaps.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals
-        Signals of the pantographs by number from 1.
-    overlaps : sequence of Stretch
-        Overlaps of the line.
+    Args:
+        pantographs: Signals of the pantographs by number from 1.
+        overlaps: Overlaps of the line.
 
-    Returns
-    -------
-    values : dict of int to dict of str to float
-        Values by pantograph and name; none if no overlap lies in the analysis section.
-    skipped : dict of int to dict of str to str
-        Reasons why the others are not available.
+    Returns:
+        values: Values by pantograph and name; none if no overlap lies in the analysis section.
+        skipped: Reasons why the others are not available.
     """
     values: dict[int, dict[str, float]] = {number: {} for number in pantographs}
     skipped: dict[int, dict[str, str]] = {number: {} for number in pantographs}

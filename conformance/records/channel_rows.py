@@ -34,25 +34,17 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[TableColumn, ...]]:
     """Read the table of a record.
 
-    Parameters
-    ----------
-    path : Path
-        The table.
-    sidecar : RecordSidecar
-        Sidecar of the record.
+    Args:
+        path: The table.
+        sidecar: Sidecar of the record.
 
-    Returns
-    -------
-    rows : dict of str to dict of int to ndarray
-        Rows of each channel by number from 1.
-    unused : tuple of TableColumn
-        Columns that the sidecar does not use.
+    Returns:
+        rows: Rows of each channel by number from 1.
+        unused: Columns that the sidecar does not use.
 
-    Raises
-    ------
-    InputError
-        The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error lists all
-        such columns and channels.
+    Raises:
+        InputError: The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error
+            lists all such columns and channels.
     """
     where, sidecar_where = f"record '{path.name}'", f"sidecar '{path.with_suffix('.toml').name}'"
     # Groups of an MDF file have their own times: the named channels decide which group is read.

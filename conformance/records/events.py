@@ -15,25 +15,17 @@ MOST_EVENTS = 10_000
 
 @dataclass(frozen=True)
 class RecordEvent:
-    """Stretch of the line.
-
-    Parameters
-    ----------
-    kind : EventKind
-        Kind of the place.
-    name : str
-        Name of the place; empty if it has none.
-    start, end : float
-        Ends of the stretch in running direction [m]; equal for a place.
-    reason : str or None
-        Stated reason to leave the stretch out of the evaluation; None: it is evaluated.
-    """
+    """Stretch of the line."""
 
     kind: EventKind
+    """Kind of the place."""
     name: str
+    """Name of the place; empty if it has none."""
     start: float
     end: float
+    """Ends of the stretch in running direction [m]; equal for a place."""
     reason: str | None
+    """Stated reason to leave the stretch out of the evaluation; None: it is evaluated."""
 
 
 class TooManyEvents(ValueError):
@@ -43,19 +35,13 @@ class TooManyEvents(ValueError):
 def list_events(sidecar: RecordSidecar, position: RealArray, levels: RealArray | None) -> tuple[RecordEvent, ...]:
     """Events of a record in running direction.
 
-    Parameters
-    ----------
-    sidecar : RecordSidecar
-        Sidecar with its events.
-    position : (n,) ndarray
-        Position of the first pantograph [m].
-    levels : (k, n) ndarray or None
-        Channels of events, in the order of the sidecar.
+    Args:
+        sidecar: Sidecar with its events.
+        position: Position of the first pantograph, (n,) [m].
+        levels: Channels of events, in the order of the sidecar, (k, n).
 
-    Raises
-    ------
-    TooManyEvents
-        A channel marks too many events.
+    Raises:
+        TooManyEvents: A channel marks too many events.
     """
     events = [*_list_stated(sidecar)]
     for channel, level in zip(sidecar.event_channel, () if levels is None else levels, strict=True):

@@ -20,12 +20,9 @@ SPEED_TOLERANCE = 0.005
 class RecordInvalid(ValueError):
     """Invalid channel of a record; statistics of such a record would have no meaning.
 
-    Parameters
-    ----------
-    channel : str
-        Name of the channel.
-    found : str
-        Fault of the channel.
+    Args:
+        channel: Name of the channel.
+        found: Fault of the channel.
     """
 
     def __init__(self, channel: str, found: str) -> None:
@@ -38,42 +35,28 @@ class RecordInvalid(ValueError):
 class Record:
     """Contact force and motion of p pantographs and s supports, n samples; pantographs in running order.
 
-    Parameters
-    ----------
-    time : (n,) ndarray
-        Uniform time axis [s].
-    speed : float
-        Speed of the train [m/s].
-    position : (p, n) ndarray
-        Contact point along the track [m].
-    force : (p, n) ndarray
-        Contact force as delivered [N].
-    evaluated : tuple of float
-        Start and end of the analysis section [m].
-    filter_applied_Hz : float or None
-        Cut-off of the low-pass filter already applied to the force [Hz]; None if unfiltered.
-    contact_height : (p, n) ndarray or None
-        Height of the contact point above its height at rest, or above the rail [m].
-    support_position : (s,) ndarray or None
-        Positions of the supports [m].
-    support_uplift : (s, n) ndarray or None
-        Uplift of the contact wire at the supports [m]; NaN where it is not known.
-
-    Raises
-    ------
-    RecordInvalid
-        Shapes disagree, a value is not finite or not possible, or the time axis is not uniform.
+    Raises:
+        RecordInvalid: Shapes disagree, a value is not finite or not possible, or the time axis is not uniform.
     """
 
     time: RealArray
+    """Uniform time axis, (n,) [s]."""
     speed: float
+    """Speed of the train [m/s]."""
     position: RealArray
+    """Contact point along the track, (p, n) [m]."""
     force: RealArray
+    """Contact force as delivered, (p, n) [N]."""
     evaluated: tuple[float, float]
+    """Start and end of the analysis section [m]."""
     filter_applied_Hz: float | None = None
+    """Cut-off of the low-pass filter already applied to the force [Hz]; None if unfiltered."""
     contact_height: RealArray | None = None
+    """Height of the contact point above its height at rest, or above the rail, (p, n) [m]."""
     support_position: RealArray | None = None
+    """Positions of the supports, (s,) [m]."""
     support_uplift: RealArray | None = None
+    """Uplift of the contact wire at the supports, (s, n) [m]; NaN where it is not known."""
     rate: float = field(init=False)
 
     def __post_init__(self) -> None:

@@ -13,21 +13,14 @@ ChannelRows = dict[str, dict[int, RealArray]]
 
 @dataclass(frozen=True)
 class RecordChannel:
-    """Channel: one quantity of a record, with one or more rows of samples.
-
-    Parameters
-    ----------
-    name : str
-        Name without number and unit.
-    unit : str
-        SI unit as at the end of a key, such as `m_s`.
-    per : {"record", "pantograph", "support"}
-        Owner of a row: the record (one row only), each pantograph, or each support.
-    """
+    """Channel: one quantity of a record, with one or more rows of samples."""
 
     name: str
+    """Name without number and unit."""
     unit: str
+    """SI unit as at the end of a key, such as `m_s`."""
     per: Literal["record", "pantograph", "support"]
+    """Owner of a row: the record (one row only), each pantograph, or each support."""
 
     @property
     def key(self) -> str:
@@ -54,21 +47,14 @@ CHANNELS: dict[str, RecordChannel] = {
 
 @dataclass(frozen=True)
 class RecordColumn:
-    """Channel, number and unit of a column.
-
-    Parameters
-    ----------
-    channel : RecordChannel
-        Channel of the column.
-    number : int
-        Number of the pantograph or support, from 1; 1 for a channel of the record.
-    factor : float
-        Factor to the SI unit of the channel.
-    """
+    """Channel, number and unit of a column."""
 
     channel: RecordChannel
+    """Channel of the column."""
     number: int
+    """Number of the pantograph or support, from 1; 1 for a channel of the record."""
     factor: float
+    """Factor to the SI unit of the channel."""
 
 
 def find_column(name: str, row: int) -> RecordColumn | None:

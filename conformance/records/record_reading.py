@@ -29,10 +29,9 @@ RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
 def open_record(path: Path) -> RecordSidecar | RecordSummary:
     """Read the TOML file of a record: a sidecar or a summary. The path may also be that of the table.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, does not fit its model, or is neither a sidecar nor a summary; a table has no sidecar.
+    Raises:
+        InputError: The file cannot be read, does not fit its model, or is neither a sidecar nor a summary; a table has
+            no sidecar.
     """
     table, path = path, path.with_suffix(".toml")
     if table != path and table.is_file() and not path.exists():
@@ -58,25 +57,17 @@ def read_record(
 ) -> tuple[Record, RecordSidecar]:
     """Read a record.
 
-    Parameters
-    ----------
-    path : Path
-        Sidecar, or table with the sidecar beside it.
-    evaluated : tuple of float or None
-        Analysis section of the case [m], used if the sidecar states none.
-    case_start : float or None
-        Start of the first pantograph in the case [m], to be named where the sidecar states none.
+    Args:
+        path: Sidecar, or table with the sidecar beside it.
+        evaluated: Analysis section of the case [m], used if the sidecar states none.
+        case_start: Start of the first pantograph in the case [m], to be named where the sidecar states none.
 
-    Returns
-    -------
-    tuple of (Record, RecordSidecar)
+    Returns:
         Record and its sidecar.
 
-    Raises
-    ------
-    InputError
-        A file is missing or damaged, table and sidecar contradict each other, values are missing, or the time is not
-        uniform.
+    Raises:
+        InputError: A file is missing or damaged, table and sidecar contradict each other, values are missing, or the
+            time is not uniform.
     """
     samples, sidecar, table = read_samples(path)
     try:
@@ -89,20 +80,14 @@ def read_record(
 def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     """Read the samples of a record; values may be missing, and times may be unevenly spaced.
 
-    Parameters
-    ----------
-    path : Path
-        Sidecar, or table with the sidecar beside it.
+    Args:
+        path: Sidecar, or table with the sidecar beside it.
 
-    Returns
-    -------
-    tuple
+    Returns:
         Samples, sidecar and path of the table.
 
-    Raises
-    ------
-    InputError
-        A file is missing or damaged, or table and sidecar contradict each other.
+    Raises:
+        InputError: A file is missing or damaged, or table and sidecar contradict each other.
     """
     sidecar_path = path.with_suffix(".toml")
     sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
@@ -114,24 +99,13 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
 def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
     """Find the table of a sidecar.
 
-    Parameters
-    ----------
-    sidecar_path : Path
-        The sidecar.
-    name : str
-        Name of the table, from the sidecar.
-    digest : str or None
-        Its SHA-256 by the sidecar.
+    Args:
+        sidecar_path: The sidecar.
+        name: Name of the table, from the sidecar.
+        digest: Its SHA-256 by the sidecar.
 
-    Returns
-    -------
-    Path
-        The table.
-
-    Raises
-    ------
-    InputError
-        The table is missing, is a link to a file in another folder, or has another SHA-256.
+    Raises:
+        InputError: The table is missing, is a link to a file in another folder, or has another SHA-256.
     """
     table = sidecar_path.parent / name
     check_file(table, f"record '{table.name}'", MAX_FILE_BYTES)

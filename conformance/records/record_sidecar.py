@@ -33,75 +33,42 @@ RECORD_SCHEMA = "pantocheck.record/1"
 class RecordSidecar(TableSidecar):
     """Sidecar of a table of samples."""
 
-    schema_: Annotated[
-        Literal["pantocheck.record/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.record/1"'),
-    ]
+    schema_: Annotated[Literal["pantocheck.record/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.record/1"."""
     case: CaseName = None
     case_digest: CaseDigest | None = None
-    changes: Annotated[
-        tuple[str, ...],
-        Field(strict=False, max_length=100, description="inputs of the case that were changed with --set"),
-    ] = ()
-    columns: Annotated[
-        dict[str, ColumnSource] | None,
-        Field(
-            min_length=1,
-            max_length=200,
-            description="columns of the file by channel, such as force_1_N; default: the file uses these names itself",
-        ),
-    ] = None
-    track: Annotated[
-        KilometreTable | None, Field(description="kilometres of the line, if the positions are kilometres")
-    ] = None
-    position: Annotated[
-        PositionTable | None, Field(description="position from distance pulses or kilometre marks, if not in a column")
-    ] = None
-    event: Annotated[
-        tuple[EventTable, ...],
-        Field(strict=False, max_length=10000, description="places of the line, such as overlaps and tunnels"),
-    ] = ()
-    event_channel: Annotated[
-        tuple[EventChannel, ...],
-        Field(strict=False, max_length=20, description="columns of the file that mark such places"),
-    ] = ()
-    arc: Annotated[
-        tuple[ArcTable, ...], Field(strict=False, max_length=20, description="arc detectors of the pantographs")
-    ] = ()
+    changes: Annotated[tuple[str, ...], Field(strict=False, max_length=100)] = ()
+    """Inputs of the case that were changed with --set."""
+    columns: Annotated[dict[str, ColumnSource] | None, Field(min_length=1, max_length=200)] = None
+    """Columns of the file by channel, such as force_1_N; default: the file uses these names itself."""
+    track: KilometreTable | None = None
+    """Kilometres of the line, if the positions are kilometres."""
+    position: PositionTable | None = None
+    """Position from distance pulses or kilometre marks, if not in a column."""
+    event: Annotated[tuple[EventTable, ...], Field(strict=False, max_length=10000)] = ()
+    """Places of the line, such as overlaps and tunnels."""
+    event_channel: Annotated[tuple[EventChannel, ...], Field(strict=False, max_length=20)] = ()
+    """Columns of the file that mark such places."""
+    arc: Annotated[tuple[ArcTable, ...], Field(strict=False, max_length=20)] = ()
+    """Arc detectors of the pantographs."""
     speed_km_h: Speed
-    pantographs: Annotated[int, Field(ge=1, le=20, description="number of pantographs")]
-    evaluated_m: Annotated[
-        NumberList | None,
-        Field(
-            min_length=2,
-            max_length=2,
-            description="start and end of the analysis section [m]; default: that of the case; required by `assess`",
-        ),
-    ] = None
-    filter_applied_Hz: Annotated[
-        float | Literal["none"],
-        Field(description='cut-off of the low-pass filter applied to the force before delivery [Hz], or "none"'),
-    ]
-    start_m: Annotated[
-        float | None,
-        Field(description="position of the first pantograph at the first sample, if not in the table [m]"),
-    ] = None
-    spacing_m: Annotated[
-        PositiveList | None,
-        Field(
-            max_length=19,
-            description="distances between successive pantographs in running order, if not in the table [m]",
-        ),
-    ] = None
-    support_position_m: Annotated[
-        NumberList | None, Field(description="positions of the supports with an uplift, in the order of the table [m]")
-    ] = None
+    pantographs: Annotated[int, Field(ge=1, le=20)]
+    """Number of pantographs."""
+    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
+    """Start and end of the analysis section [m]; default: that of the case; required by `assess`."""
+    filter_applied_Hz: float | Literal["none"]
+    """Cut-off of the low-pass filter applied to the force before delivery [Hz], or "none"."""
+    start_m: float | None = None
+    """Position of the first pantograph at the first sample, if not in the table [m]."""
+    spacing_m: Annotated[PositiveList | None, Field(max_length=19)] = None
+    """Distances between successive pantographs in running order, if not in the table [m]."""
+    support_position_m: NumberList | None = None
+    """Positions of the supports with an uplift, in the order of the table [m]."""
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
-    start: Annotated[StartTable | None, Field(description="start of the simulation, for cases with a short run-in")] = (
-        None
-    )
+    start: StartTable | None = None
+    """Start of the simulation, for cases with a short run-in."""
 
     @cross_check
     def _check_consistency(self) -> Problems:

@@ -15,24 +15,16 @@ from pantocheck.conformance.records.record import Record
 
 @dataclass(frozen=True)
 class RecordSignals:
-    """Signals of a record over its analysis section.
-
-    Parameters
-    ----------
-    record : Record
-        Record of a run or a measurement.
-    low_pass : LowPass
-        Filter of the graded force.
-    line_supports : tuple of float or None
-        Positions of all supports of the line [m]; None if they are not known.
-    overlaps : sequence of Stretch
-        Overlaps of the tension sections of the line.
-    """
+    """Signals of a record over its analysis section."""
 
     record: Record
+    """Record of a run or a measurement."""
     low_pass: LowPass
+    """Filter of the graded force."""
     line_supports: tuple[float, ...] | None = None
+    """Positions of all supports of the line [m]; None if they are not known."""
     overlaps: Sequence[Stretch] = ()
+    """Overlaps of the tension sections of the line."""
 
     @cached_property
     def pantographs(self) -> dict[int, PantographSignals]:

@@ -31,30 +31,24 @@ SummaryValues = Annotated[dict[str, SummaryValue], Field(max_length=100)]
 class RecordSummary(SourcedTable):
     """Quantities of a passage by name, for each pantograph and for the line."""
 
-    schema_: Annotated[
-        Literal["pantocheck.summary/1"],
-        Field(alias="schema", description='version of the format: "pantocheck.summary/1"'),
-    ]
+    schema_: Annotated[Literal["pantocheck.summary/1"], Field(alias="schema")]
+    """Version of the format: "pantocheck.summary/1"."""
     case: CaseName = None
     case_digest: CaseDigest | None = None
     speed_km_h: Speed
-    filter_cutoff_Hz: Annotated[
-        float, Field(gt=0, le=1000, description="cut-off of the low-pass filter of the force statistics [Hz]")
-    ]
-    evaluated_m: Annotated[
-        NumberList | None, Field(min_length=2, max_length=2, description="start and end of the analysis section [m]")
-    ] = None
-    pantograph: Annotated[
-        tuple[SummaryValues, ...],
-        Field(strict=False, min_length=1, max_length=20, description="quantities by name, one table per pantograph"),
-    ]
-    quantities: Annotated[SummaryValues, Field(default_factory=dict, description="quantities of the line by name")]
+    filter_cutoff_Hz: Annotated[float, Field(gt=0, le=1000)]
+    """Cut-off of the low-pass filter of the force statistics [Hz]."""
+    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
+    """Start and end of the analysis section [m]."""
+    pantograph: Annotated[tuple[SummaryValues, ...], Field(strict=False, min_length=1, max_length=20)]
+    """Quantities by name, one table per pantograph."""
+    quantities: Annotated[SummaryValues, Field(default_factory=dict)]
+    """Quantities of the line by name."""
     line: LineTable = LineTable()
     system: SystemTable | None = None
     run: RunTable = RunTable()
-    start: Annotated[StartTable | None, Field(description="start of the simulation, for cases with a short run-in")] = (
-        None
-    )
+    start: StartTable | None = None
+    """Start of the simulation, for cases with a short run-in."""
 
     @cross_check
     def _check_values(self) -> Problems:

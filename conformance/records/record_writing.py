@@ -33,30 +33,17 @@ def write_record(
 ) -> Path:
     """Write a record as CSV or HDF5, by the suffix of the path, with a sidecar beside it.
 
-    Parameters
-    ----------
-    path : Path
-        Path of the table, ending in .csv, .h5 or .hdf5.
-    record : Record
-        Record to write.
-    case : str or None
-        Id of the case that was run.
-    system : dict[str, str] or None
-        `name` and `version` of the simulator or measuring system.
-    run : dict[str, float or None] or None
-        Table `run` of the sidecar; keys with None are left out.
-    further : mapping of str to object, or None
-        Further keys of the sidecar, such as `case_digest` and `line`; keys with None are left out.
+    Args:
+        path: Path of the table, ending in .csv, .h5 or .hdf5.
+        record: Record to write.
+        case: Id of the case that was run.
+        system: `name` and `version` of the simulator or measuring system.
+        run: Table `run` of the sidecar; keys with None are left out.
+        further: Further keys of the sidecar, such as `case_digest` and `line`; keys with None are left out.
 
-    Returns
-    -------
-    Path
-        Path of the sidecar.
-
-    Raises
-    ------
-    InputError
-        The suffix is not that of a record, a file cannot be written, or the sidecar would overwrite another file.
+    Raises:
+        InputError: The suffix is not that of a record, a file cannot be written, or the sidecar would overwrite another
+            file.
     """
     check_record_path(path)
     produce_atomically(path, partial(_write_table, record, find_table_format(path, tuple(RECORD_WRITERS))))
@@ -84,10 +71,9 @@ def write_record(
 def check_record_path(path: Path) -> None:
     """Check the path of a record before a long computation.
 
-    Raises
-    ------
-    InputError
-        The suffix is not that of a record, its package is not installed, or the sidecar would overwrite another file.
+    Raises:
+        InputError: The suffix is not that of a record, its package is not installed, or the sidecar would overwrite
+            another file.
     """
     find_table_format(path, tuple(RECORD_WRITERS)).require_library(path)
     target = path.with_suffix(".toml")

@@ -12,46 +12,31 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 @dataclass(frozen=True)
 class RecordSamples:
-    """Channels of p pantographs and s supports, n samples; None stands for a missing channel.
-
-    Parameters
-    ----------
-    force : (p, n) ndarray
-        Contact force [N].
-    time : (n,) ndarray or None
-        Time [s].
-    speed : (n,) ndarray or None
-        Speed of the train [m/s].
-    position : ndarray or None
-        Contact points along the track [m], (p, n), or (1, n) of the first pantograph only.
-    contact_height : (p, n) ndarray or None
-        Height of the contact point [m].
-    uplift : (s, n) ndarray or None
-        Uplift of the contact wire at the supports [m].
-    support_position : (s,) ndarray or None
-        Positions of the supports [m].
-    ignored : tuple of str
-        Names of the columns of the file that are not used.
-    left_out_sensors : tuple of str
-        Those of them that may be further sensors of a sum of force sensors.
-    event_level : (k, n) ndarray or None
-        Channels that mark events, in the order of the sidecar.
-    arcing, loaded : (p, n) ndarray or None
-        Arcs, and time under load, as 1, 0 or NaN; all NaN for a pantograph without an arc detector.
-    """
+    """Channels of p pantographs and s supports, n samples; None stands for a missing channel."""
 
     force: RealArray
+    """Contact force, (p, n) [N]."""
     time: RealArray | None = None
+    """Time, (n,) [s]."""
     speed: RealArray | None = None
+    """Speed of the train, (n,) [m/s]."""
     position: RealArray | None = None
+    """Contact points along the track [m], (p, n), or (1, n) of the first pantograph only."""
     contact_height: RealArray | None = None
+    """Height of the contact point, (p, n) [m]."""
     uplift: RealArray | None = None
+    """Uplift of the contact wire at the supports, (s, n) [m]."""
     support_position: RealArray | None = None
+    """Positions of the supports, (s,) [m]."""
     ignored: tuple[str, ...] = ()
+    """Names of the columns of the file that are not used."""
     left_out_sensors: tuple[str, ...] = ()
+    """Those of them that may be further sensors of a sum of force sensors."""
     event_level: RealArray | None = None
+    """Channels that mark events, in the order of the sidecar, (k, n)."""
     arcing: RealArray | None = None
     loaded: RealArray | None = None
+    """Arcs, and time under load, as 1, 0 or NaN, (p, n); all NaN for a pantograph without an arc detector."""
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""
@@ -68,26 +53,18 @@ def complete_samples(
 ) -> tuple[RealArray, RealArray]:
     """Complete time and positions of a record; a missing one is computed from the speed.
 
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples of a record.
-    sidecar : RecordSidecar
-        Sidecar of the record.
-    case_start : float or None
-        Start of the first pantograph in the case of the record [m], to be named where the sidecar states none.
+    Args:
+        samples: Samples of a record.
+        sidecar: Sidecar of the record.
+        case_start: Start of the first pantograph in the case of the record [m], to be named where the sidecar states
+            none.
 
-    Returns
-    -------
-    time : (n,) ndarray
-        Time [s].
-    position : (p, n) ndarray
-        Contact points of all pantographs along the track [m].
+    Returns:
+        time: Time, (n,) [s].
+        position: Contact points of all pantographs along the track, (p, n) [m].
 
-    Raises
-    ------
-    RecordInvalid
-        Time and position are both missing, positions cannot be computed, or a speed is not positive.
+    Raises:
+        RecordInvalid: Time and position are both missing, positions cannot be computed, or a speed is not positive.
     """
     behind = np.array(sidecar.behind)[:, None]
     speed = np.full(samples.force.shape[1], sidecar.speed_km_h / 3.6) if samples.speed is None else samples.speed
@@ -136,26 +113,15 @@ def build_record(
 ) -> Record:
     """Build a record from samples that are complete and evenly spaced in time.
 
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples as read.
-    sidecar : RecordSidecar
-        Sidecar of the record.
-    evaluated : tuple of float or None
-        Analysis section of the case [m], used if the sidecar states none.
-    case_start : float or None
-        Start of the first pantograph in the case [m], to be named where the sidecar states none.
+    Args:
+        samples: Samples as read.
+        sidecar: Sidecar of the record.
+        evaluated: Analysis section of the case [m], used if the sidecar states none.
+        case_start: Start of the first pantograph in the case [m], to be named where the sidecar states none.
 
-    Returns
-    -------
-    Record
-        Complete record.
-
-    Raises
-    ------
-    RecordInvalid
-        Values are missing, the time axis is not uniform, or the speed channel contradicts the stated speed.
+    Raises:
+        RecordInvalid: Values are missing, the time axis is not uniform, or the speed channel contradicts the stated
+            speed.
     """
     for name in _SAMPLED:
         value = getattr(samples, name)

@@ -30,17 +30,23 @@ CaseDigest = Annotated[
 class SystemTable(InputTable):
     """Simulator or measuring system of a record."""
 
-    name: Annotated[str, Field(max_length=200, description="name of the simulator or measuring system")]
-    version: Annotated[str, Field(max_length=200, description="version of the simulator or measuring system")] = ""
+    name: Annotated[str, Field(max_length=200)]
+    """Name of the simulator or measuring system."""
+    version: Annotated[str, Field(max_length=200)] = ""
+    """Version of the simulator or measuring system."""
 
 
 class RunTable(InputTable):
     """Data of a simulation; all keys are optional."""
 
-    simulated_s: Annotated[float | None, Field(gt=0, description="simulated time [s]")] = None
-    wall_s: Annotated[float | None, Field(ge=0, description="computing time [s]")] = None
-    dt_s: Annotated[float | None, Field(gt=0, description="time step [s]")] = None
-    element_m: Annotated[float | None, Field(gt=0, description="element length [m]")] = None
+    simulated_s: Annotated[float | None, Field(gt=0)] = None
+    """Simulated time [s]."""
+    wall_s: Annotated[float | None, Field(ge=0)] = None
+    """Computing time [s]."""
+    dt_s: Annotated[float | None, Field(gt=0)] = None
+    """Time step [s]."""
+    element_m: Annotated[float | None, Field(gt=0)] = None
+    """Element length [m]."""
 
 
 StartCondition = Literal["equilibrium_under_uplift_forces", "line_at_rest", "other"]
@@ -54,30 +60,25 @@ StartCondition = Literal["equilibrium_under_uplift_forces", "line_at_rest", "oth
 class StartTable(InputTable):
     """Start of a simulation."""
 
-    place_m: Annotated[float, Field(description="position of the last pantograph at the start of the run [m]")]
-    ramp_m: Annotated[
-        NonNegative,
-        Field(description="distance over which speed or force reaches its full value [m]; 0: full from the start"),
-    ] = 0.0
-    state: Annotated[
-        StartCondition,
-        Field(
-            description="state of line and pantographs; equilibrium_under_uplift_forces: static equilibrium with every "
-            "pantograph pressing with its uplift force; line_at_rest: contact forces begin at zero"
-        ),
-    ]
+    place_m: float
+    """Position of the last pantograph at the start of the run [m]."""
+    ramp_m: NonNegative = 0.0
+    """Distance over which speed or force reaches its full value [m]; 0: full from the start."""
+    state: StartCondition
+    """State of line and pantographs; equilibrium_under_uplift_forces: static equilibrium with every pantograph
+    pressing with its uplift force; line_at_rest: contact forces begin at zero.
+    """
 
 
 class LineTable(InputTable):
     """Data of the line for the rules of a profile; all keys are optional."""
 
-    span_m: Annotated[float | None, Field(ge=5, le=200, description="length of the longest span [m]")] = None
-    wave_speed_m_s: Annotated[
-        float | None, Field(gt=0, le=1000, description="speed of transverse waves on the contact wire [m/s]")
-    ] = None
-    uplift_space_mm: Annotated[
-        NonNegative | None, Field(le=2000, description="space for the uplift of the contact wire at the supports [mm]")
-    ] = None
+    span_m: Annotated[float | None, Field(ge=5, le=200)] = None
+    """Length of the longest span [m]."""
+    wave_speed_m_s: Annotated[float | None, Field(gt=0, le=1000)] = None
+    """Speed of transverse waves on the contact wire [m/s]."""
+    uplift_space_mm: Annotated[NonNegative | None, Field(le=2000)] = None
+    """Space for the uplift of the contact wire at the supports [mm]."""
 
 
 def find_table_name_problems(name: str) -> Problems:

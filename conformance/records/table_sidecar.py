@@ -25,9 +25,8 @@ class TableSidecar(InputTable):
 
     file: TableName
     sha256: TableDigest = None
-    table: Annotated[TextSettings, Field(description="layout of a text table, if it is not found from the file")] = (
-        TextSettings()
-    )
+    table: TextSettings = TextSettings()
+    """Layout of a text table, if it is not found from the file."""
 
     @cross_check
     def _check_file(self) -> Problems:
@@ -37,16 +36,12 @@ class TableSidecar(InputTable):
 class NamedTableSidecar(TableSidecar):
     """Sidecar of a table whose columns have the names of this suite with their unit, or are named here."""
 
-    columns: Annotated[
-        dict[str, ColumnName],
-        Field(
-            default_factory=dict,
-            max_length=10,
-            description="names of the columns in the table, where they are others: the name of this suite, with its "
-            "unit, then that of the table; further columns are ignored then",
-        ),
-    ]
-    note: Annotated[str | None, Field(description="remark for the reader", max_length=4000)] = None
+    columns: Annotated[dict[str, ColumnName], Field(default_factory=dict, max_length=10)]
+    """Names of the columns in the table, where they are others: the name of this suite, with its unit, then that of
+    the table; further columns are ignored then.
+    """
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
 
 
 class NamedColumn(NamedTuple):

@@ -4,9 +4,13 @@ A new page element is a class here and one macro or function in each of `templat
 `templates/elements.typ` and `formats/markdown.py`. The writers escape every text.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
+
+from pantocheck.conformance.results.results_format import Results
+
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -223,7 +227,7 @@ class Document:
     """Title in the metadata of the file."""
     header: PlainHeader | VerdictHeader
     blocks: tuple[Block, ...]
-    results: dict[str, Any] | None = None
+    results: Results | None = None
     """Results to be embedded in the HTML and in the PDF, which then bear the date; None: neither."""
     date: int = 0
     """Date of the document [s since 1970]; 0: not known."""
@@ -239,7 +243,7 @@ def to_plain(value: Any) -> Any:
     return value
 
 
-def make_grid(caption: str, records: Iterable[Any], cells: dict[str, Callable[[Any], str]]) -> Table:
+def make_grid(caption: str, records: Iterable[Row], cells: Mapping[str, Callable[[Row], str]]) -> Table:
     """A dense table of values: one row per record, one column per heading; the last takes the remaining width."""
     *headings, last = cells
     columns = (*map(Column, headings), Column(last, share=1))

@@ -1,10 +1,14 @@
 """Texts and numbers as a page shows them."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar, cast
+
+from pydantic import BaseModel
 
 from pantocheck.conformance.input_files.shown_text import BIDIRECTIONAL, UNSHOWABLE, is_control
 from pantocheck.conformance.quantities.limit_text import ROUNDED_DIGITS, format_graded, format_rounded, format_stated
+
+Content = TypeVar("Content")
 
 LONGEST = 2000
 """Largest number of characters of a text."""
@@ -20,20 +24,23 @@ def clean_text(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
-def clean_tree(value: Any) -> Any:
-    """Dictionaries and lists with every text, keys included, cleaned by `clean_text`."""
+def clean_tree(value: Content) -> Content:
+    """Models, dictionaries and lists with every text, keys included, cleaned by `clean_text`."""
     return change_texts(value, clean_text)
 
 
-def change_texts(value: Any, change: Callable[[str], str]) -> Any:
-    """Dictionaries and lists with every text, keys included, changed by a function."""
+def change_texts(value: Content, change: Callable[[str], str]) -> Content:
+    """Models, dictionaries and lists with every text, keys included, changed by a function."""
+    changed: Any = value
     if isinstance(value, str):
-        return change(value)
-    if isinstance(value, dict):
-        return {change(str(key)): change_texts(item, change) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [change_texts(item, change) for item in value]
-    return value
+        changed = change(value)
+    elif isinstance(value, BaseModel):
+        changed = value.model_copy(update={name: change_texts(part, change) for name, part in value})
+    elif isinstance(value, dict):
+        changed = {change_texts(key, change): change_texts(item, change) for key, item in value.items()}
+    elif isinstance(value, list | tuple):
+        changed = type(value)(change_texts(item, change) for item in value)
+    return cast(Content, changed)
 
 
 def format_value(value: float | None, digits: int = ROUNDED_DIGITS) -> str:

@@ -18,10 +18,8 @@ UNBOUND_KEYS = frozenset({"kind", "title", "anchor", "address", "svg", "code", "
 def bind_units(text: str) -> str:
     """Text with a no-break space between each number and its unit.
 
-    Parameters
-    ----------
-    text : str
-        Text of a page.
+    Args:
+        text: Text of a page.
     """
     return NUMBER_AND_UNIT.sub("\N{NO-BREAK SPACE}", text)
 
@@ -29,10 +27,8 @@ def bind_units(text: str) -> str:
 def bind_page_units(page: Any) -> Any:
     """Parts of a page, as `to_plain` gives them, with `bind_units` in every text but names in typewriter letters.
 
-    Parameters
-    ----------
-    page : dict, list or other value
-        Part of a page.
+    Args:
+        page: Part of a page.
     """
     if isinstance(page, str):
         return bind_units(page)

@@ -6,6 +6,7 @@ from typing import Any
 
 from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.criterion_format import Criterion
 
 
 @cache
@@ -35,7 +36,7 @@ def name_pantograph(key: str | int) -> str:
     return "line" if key in (0, "0") else f"pantograph {key}"
 
 
-def name_owner(criterion: dict[str, Any]) -> str:
+def name_owner(criterion: Criterion) -> str:
     """Owner of the value of a criterion, with its number among several: `pantograph 1`, `line, no. 3`."""
-    number = f", no. {criterion['item']}" if criterion["item"] else ""
-    return f"{name_pantograph(criterion['pantograph'])}{number}"
+    number = f", no. {criterion.item}" if criterion.item else ""
+    return f"{name_pantograph(criterion.pantograph)}{number}"

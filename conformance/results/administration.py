@@ -17,12 +17,18 @@ RemarkText = Annotated[str | None, Field(min_length=1, max_length=2000)]
 class Administration(InputTable):
     """Administrative data, in a file of a user, in a plan and in results.json; at least one key is given."""
 
-    report_number: Annotated[NamedText, Field(description="number or reference of the report")] = None
-    issuer: Annotated[NamedText, Field(description="person who issues the report")] = None
-    organisation: Annotated[NamedText, Field(description="organisation of the issuer")] = None
-    contact: Annotated[NamedText, Field(description="address of the issuer for questions")] = None
-    assessor: Annotated[NamedText, Field(description="person or body that assesses the report")] = None
-    remarks: Annotated[RemarkText, Field(description="remarks for the reader; pages show line breaks as spaces")] = None
+    report_number: NamedText = None
+    """Number or reference of the report."""
+    issuer: NamedText = None
+    """Person who issues the report."""
+    organisation: NamedText = None
+    """Organisation of the issuer."""
+    contact: NamedText = None
+    """Address of the issuer for questions."""
+    assessor: NamedText = None
+    """Person or body that assesses the report."""
+    remarks: RemarkText = None
+    """Remarks for the reader; pages show line breaks as spaces."""
 
     @cross_check
     def _has_content(self) -> Problems:
@@ -43,9 +49,7 @@ class Administration(InputTable):
 def read_administration(path: Path) -> Administration:
     """Read a file of administrative data.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or is wrong.
+    Raises:
+        InputError: The file cannot be read or is wrong.
     """
     return read_model(path, Administration, "administration")

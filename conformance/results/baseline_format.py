@@ -15,8 +15,13 @@ class BaselineComparison(ResultsPart):
     limits of a standard. A value that has not drifted has no such criterion.
     """
 
-    verdict: Annotated[Verdict, Field(description="worst of its criteria; info: no value was compared")]
-    name: Annotated[str, Field(description="name of the file with the earlier results")]
-    drift_pct: Annotated[FiniteNumber, Field(gt=0, description="largest accepted drift of a value [%]")]
-    values: Annotated[int, Field(ge=0, description="number of values of the baseline; 0: no comparison is possible")]
-    drifted: Annotated[int, Field(ge=0, description="number of values that drifted or are missing")]
+    verdict: Verdict
+    """Worst of its criteria; info: no value was compared."""
+    name: str
+    """Name of the file with the earlier results."""
+    drift_pct: Annotated[FiniteNumber, Field(gt=0)]
+    """Largest accepted drift of a value [%]."""
+    values: Annotated[int, Field(ge=0)]
+    """Number of values of the baseline; 0: no comparison is possible."""
+    drifted: Annotated[int, Field(ge=0)]
+    """Number of values that drifted or are missing."""

@@ -22,7 +22,8 @@ class ValueMap(ResultsPart):
     value_label: str
     x: list[float]
     y: list[float]
-    values: Annotated[list[list[FiniteNumber | None]], Field(description="one list per y; null: no result")]
+    values: list[list[FiniteNumber | None]]
+    """One list per y; null: no result."""
     lower: FiniteNumber | None
     upper: FiniteNumber | None
 
@@ -39,31 +40,38 @@ class ValueStatistics(ResultsPart):
     """Statistics of a value over the random designs of one point of the grid."""
 
     label: str
-    group: Annotated[str, Field(description="case, system and grid inputs; empty if there is one group")]
+    group: str
+    """Case, system and grid inputs; empty if there is one group."""
     runs: int
-    mean: Annotated[Estimate, Field(description="mean with its 95 % interval (normal approximation)")]
+    mean: Estimate
+    """Mean with its 95 % interval (normal approximation)."""
     std: FiniteNumber
-    quantiles: Annotated[dict[str, FiniteNumber], Field(description="quantiles 5, 50 and 95 %")]
-    limit: Annotated[str | None, Field(description="bounds of the limit; null: no limit")]
-    exceedance: Annotated[
-        Estimate | None, Field(description="share of runs outside the limit, with its 95 % interval (Wilson 1927)")
-    ]
+    quantiles: dict[str, FiniteNumber]
+    """Quantiles 5, 50 and 95 %."""
+    limit: str | None
+    """Bounds of the limit; null: no limit."""
+    exceedance: Estimate | None
+    """Share of runs outside the limit, with its 95 % interval (Wilson 1927)."""
 
 
 class InputShare(ResultsPart):
     """Sobol indices of one random input."""
 
     input: str
-    first: Annotated[Estimate, Field(description="share of the variance that the input causes alone")]
-    total: Annotated[Estimate, Field(description="share that the input causes, its interactions included")]
+    first: Estimate
+    """Share of the variance that the input causes alone."""
+    total: Estimate
+    """Share that the input causes, its interactions included."""
 
 
 class SobolIndices(ResultsPart):
     """Sobol indices of a value over the random inputs, with 95 % intervals."""
 
     label: str
-    group: Annotated[str, Field(description="case, system and grid inputs; empty if there is one group")]
-    runs: Annotated[int, Field(description="number of the designs of each set")]
+    group: str
+    """Case, system and grid inputs; empty if there is one group."""
+    runs: int
+    """Number of the designs of each set."""
     shares: list[InputShare]
 
 
@@ -71,11 +79,13 @@ class ValueComparison(ResultsPart):
     """Differences of a value between runs of two campaigns with equal inputs, this campaign minus the other."""
 
     label: str
-    runs: Annotated[int, Field(description="number of pairs of runs")]
+    runs: int
+    """Number of pairs of runs."""
     mean: FiniteNumber
     rms: FiniteNumber
     largest: FiniteNumber
-    place: Annotated[str, Field(description="case and inputs of the largest difference")]
+    place: str
+    """Case and inputs of the largest difference."""
 
 
 class CampaignResults(ResultsPart):
@@ -87,20 +97,22 @@ class CampaignResults(ResultsPart):
     ending: CampaignEnding
     cases: list[str]
     systems: list[str]
-    inputs: Annotated[dict[str, str], Field(description="varied inputs with their ranges as text")]
-    sources: Annotated[
-        dict[str, str], Field(description="source and trust of varied inputs, where they are stated")
-    ] = {}
+    inputs: dict[str, str]
+    """Varied inputs with their ranges as text."""
+    sources: dict[str, str] = {}
+    """Source and trust of varied inputs, where they are stated."""
     total: int
     finished: int
     failed: int
-    verdicts: Annotated[dict[str, int], Field(description="number of runs by verdict")]
-    reasons: Annotated[dict[str, int], Field(description="most frequent reasons of runs without a result")]
+    verdicts: dict[str, int]
+    """Number of runs by verdict."""
+    reasons: dict[str, int]
+    """Most frequent reasons of runs without a result."""
     charts: list[Chart]
     maps: list[ValueMap]
-    omitted_maps: Annotated[int, Field(description="number of further maps that are left out")] = 0
+    omitted_maps: int = 0
+    """Number of further maps that are left out."""
     statistics: list[ValueStatistics]
     indices: list[SobolIndices] = []
-    comparison: Annotated[
-        list[ValueComparison], Field(description="comparison with another campaign, if requested")
-    ] = []
+    comparison: list[ValueComparison] = []
+    """Comparison with another campaign, if requested."""

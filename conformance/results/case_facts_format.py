@@ -10,8 +10,10 @@ from pantocheck.conformance.results.results_part import FiniteNumber, Owner, Res
 class ContactLossFacts(ResultsPart):
     """Contact loss of a pantograph in its unfiltered force."""
 
-    position_m: Annotated[float, Field(description="position of the pantograph at the start of the loss [m]")]
-    time_s: Annotated[float, Field(description="time from the start of the analysis section [s]")]
+    position_m: float
+    """Position of the pantograph at the start of the loss [m]."""
+    time_s: float
+    """Time from the start of the analysis section [s]."""
     duration_s: float
     lowest_force_N: float
 
@@ -19,10 +21,13 @@ class ContactLossFacts(ResultsPart):
 class DerivedFact(ResultsPart):
     """Value that follows from the inputs of a case or, for a tuned force, from its run."""
 
-    name: Annotated[str, Field(description="name of the value")]
+    name: str
+    """Name of the value."""
     value: FiniteNumber
-    unit: Annotated[str, Field(description="unit; empty for a ratio")]
-    basis: Annotated[str, Field(description="inputs or formula from which the value follows")]
+    unit: str
+    """Unit; empty for a ratio."""
+    basis: str
+    """Inputs or formula from which the value follows."""
 
 
 class StoredRange(ResultsPart):
@@ -48,8 +53,10 @@ class AppliedForceFacts(ResultsPart):
     """Applied forces of a pantograph; its mean contact force is a result."""
 
     kind: Literal["applied_forces"] = "applied_forces"
-    static_force_N: Annotated[FiniteNumber, Field(description="static force [N]")]
-    aerodynamic_force_N: Annotated[FiniteNumber, Field(description="aerodynamic force at the speed of the case [N]")]
+    static_force_N: FiniteNumber
+    """Static force [N]."""
+    aerodynamic_force_N: FiniteNumber
+    """Aerodynamic force at the speed of the case [N]."""
 
     @property
     def text(self) -> str:
@@ -65,7 +72,8 @@ class MeanForceFacts(ResultsPart):
     """Mean contact force to which the uplift force of a pantograph is tuned."""
 
     kind: Literal["mean_force"] = "mean_force"
-    mean_force_N: Annotated[FiniteNumber, Field(description="mean contact force at the speed of the case [N]")]
+    mean_force_N: FiniteNumber
+    """Mean contact force at the speed of the case [N]."""
 
     @property
     def text(self) -> str:
@@ -93,5 +101,7 @@ class EventFacts(ResultsPart):
     name: str
     start_m: float
     end_m: float
-    excluded: Annotated[bool, Field(description="whether the statistics of the contact force leave it out")]
-    remark: Annotated[str, Field(description="stated reason of the exclusion, or why it is not applied")] = ""
+    excluded: bool
+    """Whether the statistics of the contact force leave it out."""
+    remark: str = ""
+    """Stated reason of the exclusion, or why it is not applied."""

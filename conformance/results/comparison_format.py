@@ -4,6 +4,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
+from pantocheck.conformance.comparison.response_sidecar import HeadPoint, ResponseKind
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
 from pantocheck.conformance.results.figure_data import Chart
@@ -15,10 +16,6 @@ ComparedValue = Rounded | tuple[Rounded, ...]
 StaticValue = Literal["elasticity", "contact_wire_height"]
 """Value measured along a line."""
 
-HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
-"""Point of the head: its centre, one of its contact strips, or another one."""
-
-ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]
 
 ComparedMotion = Literal["velocity", "acceleration"]
 
@@ -46,15 +43,19 @@ DROP_QUANTITIES: tuple[DropQuantity, ...] = get_args(DropQuantity)
 class ComparedSource(RoundedModel):
     """Model, record, results or system of a comparison."""
 
-    name: Annotated[str, Field(description="title of a model, name of a table, or name of a run")]
-    source: Annotated[str, Field(description="file, test report or kind of the source; empty: not stated")] = ""
-    digest: Annotated[str | None, Field(description="SHA-256 of the content; null: a simulation, or not read")]
+    name: str
+    """Title of a model, name of a table, or name of a run."""
+    source: str = ""
+    """File, test report or kind of the source; empty: not stated."""
+    digest: str | None
+    """SHA-256 of the content; null: a simulation, or not read."""
 
 
 class CriterionPlace(RoundedModel):
     """Place at which a criterion of a comparison holds; a key that does not apply is null."""
 
-    record: Annotated[str | None, Field(description="name of the table of a response; null: no such response")] = None
+    record: str | None = None
+    """Name of the table of a response; null: no such response."""
     static_force_N: Rounded | None = None
     height_m: Rounded | None = None
     sensor: int | None = None
@@ -69,22 +70,22 @@ class ComparisonCriterion(RoundedModel):
     quantity: ComparedQuantityName
     unit: str
     where: CriterionPlace
-    value: Annotated[Rounded | None, Field(description="null: no measured value")]
+    value: Rounded | None
+    """null: no measured value."""
     lower: Rounded | None
     upper: Rounded | None
-    source: Annotated[str | None, Field(description="source of the limit; null: not stated")]
+    source: str | None
+    """Source of the limit; null: not stated."""
     verdict: Verdict
-    reason: Annotated[str | None, Field(description="data that are missing, or distance beyond the limit")]
+    reason: str | None
+    """Data that are missing, or distance beyond the limit."""
     margin: Rounded | None
-    discretisation: Annotated[
-        Rounded | None,
-        Field(description="change of the value with half the element length and half the time step; null: not known"),
-    ]
-    measurement: Annotated[
-        Rounded | None,
-        Field(description="half-width of the 95 % interval of the value by the measurement; null: not stated"),
-    ]
-    close: Annotated[tuple[str, ...], Field(description="remark on a value closer to its limit than its uncertainty")]
+    discretisation: Rounded | None
+    """Change of the value with half the element length and half the time step; null: not known."""
+    measurement: Rounded | None
+    """Half-width of the 95 % interval of the value by the measurement; null: not stated."""
+    close: tuple[str, ...]
+    """Remark on a value closer to its limit than its uncertainty."""
 
 
 class ModelComparison(RoundedModel):
@@ -93,23 +94,32 @@ class ModelComparison(RoundedModel):
     model_config = ConfigDict(populate_by_name=True)
 
     suite: Suite
-    model: Annotated[ComparedSource, Field(description="line or pantograph")]
-    verdict: Annotated[Verdict, Field(description="worst verdict of the criteria; info: no limit is given")]
+    model: ComparedSource
+    """Line or pantograph."""
+    verdict: Verdict
+    """Worst verdict of the criteria; info: no limit is given."""
     criteria: tuple[ComparisonCriterion, ...]
-    warnings: Annotated[tuple[str, ...], Field(description="caveats for the reader of the report")]
+    warnings: tuple[str, ...]
+    """Caveats for the reader of the report."""
 
 
 class SpanDifferences(RoundedModel):
     """Differences between model and measurement in one span."""
 
-    number: Annotated[int, Field(description="number of the span, from 1")]
+    number: int
+    """Number of the span, from 1."""
     start_m: Rounded
     end_m: Rounded
-    values: Annotated[int, Field(description="number of measured values")]
-    measured: Annotated[Range | None, Field(description="lowest and highest measured value; null: no value")]
-    model: Annotated[Range | None, Field(description="lowest and highest value of the model, same positions")]
-    mean_difference: Annotated[Rounded | None, Field(description="mean of model minus measurement")]
-    largest_difference: Annotated[Rounded | None, Field(description="model minus measurement where it is largest")]
+    values: int
+    """Number of measured values."""
+    measured: Range | None
+    """Lowest and highest measured value; null: no value."""
+    model: Range | None
+    """Lowest and highest value of the model, same positions."""
+    mean_difference: Rounded | None
+    """Mean of model minus measurement."""
+    largest_difference: Rounded | None
+    """Model minus measurement where it is largest."""
 
 
 class ComparedValues(RoundedModel):
@@ -117,20 +127,26 @@ class ComparedValues(RoundedModel):
 
     name: StaticValue
     unit: Literal["mm/N", "mm"]
-    row: Annotated[tuple[int, ...], Field(description="row of the table, from 1 below the head line")]
+    row: tuple[int, ...]
+    """Row of the table, from 1 below the head line."""
     position_m: tuple[Rounded, ...]
     measured: tuple[Rounded, ...]
     model: tuple[Rounded, ...]
-    difference: Annotated[tuple[Rounded, ...], Field(description="model minus measurement")]
-    missing_rows: Annotated[tuple[int, ...], Field(description="rows without this value")]
-    outlier_rows: Annotated[
-        tuple[int, ...], Field(description="rows whose difference lies far from that of the other rows; they count")
-    ]
-    mean_difference: Annotated[Rounded, Field(description="mean of model minus measurement, evaluated section")]
-    rms_difference: Annotated[Rounded, Field(description="RMS of model minus measurement, evaluated section")]
+    difference: tuple[Rounded, ...]
+    """Model minus measurement."""
+    missing_rows: tuple[int, ...]
+    """Rows without this value."""
+    outlier_rows: tuple[int, ...]
+    """Rows whose difference lies far from that of the other rows; they count."""
+    mean_difference: Rounded
+    """Mean of model minus measurement, evaluated section."""
+    rms_difference: Rounded
+    """RMS of model minus measurement, evaluated section."""
     spans: tuple[SpanDifferences, ...]
-    curve_position_m: Annotated[tuple[Rounded, ...], Field(description="positions along the spans with values")]
-    curve: Annotated[tuple[Rounded, ...], Field(description="values of the model at these positions")]
+    curve_position_m: tuple[Rounded, ...]
+    """Positions along the spans with values."""
+    curve: tuple[Rounded, ...]
+    """Values of the model at these positions."""
 
 
 class StaticComparison(ModelComparison):
@@ -140,13 +156,14 @@ class StaticComparison(ModelComparison):
         "pantocheck.static-comparison/1"
     )
     record: ComparedSource
-    record_state: Annotated[
-        Literal["unverified"], Field(description="a table of static values has no second channel that confirms it")
-    ] = "unverified"
+    record_state: Literal["unverified"] = "unverified"
+    """A table of static values has no second channel that confirms it."""
     element_m: Rounded
-    force_N: Annotated[tuple[Rounded, ...], Field(description="static forces of the elasticity")]
+    force_N: tuple[Rounded, ...]
+    """Static forces of the elasticity."""
     evaluated_spans: tuple[int, int]
-    evaluated_m: Annotated[Range, Field(description="start and end of the evaluated section")]
+    evaluated_m: Range
+    """Start and end of the evaluated section."""
     largest_distance_m: Rounded | None
     values: tuple[ComparedValues, ...]
     note: str | None
@@ -156,28 +173,26 @@ class BandDeviation(RoundedModel):
     """Deviations in one frequency band; empty without a measured value."""
 
     band_Hz: Range
-    rows: Annotated[int, Field(description="number of measured values in the band")]
-    missing: Annotated[str | None, Field(description="missing data; null: the band is complete")]
-    deviations: Annotated[
-        dict[ResponseQuantity, Rounded], Field(description="RMS and largest deviations [%, degrees]; empty: no value")
-    ]
-    uncertainty: Annotated[
-        dict[ResponseQuantity, Rounded],
-        Field(description="half-width of their 95 % intervals by the measurement; empty: not stated"),
-    ]
+    rows: int
+    """Number of measured values in the band."""
+    missing: str | None
+    """Missing data; null: the band is complete."""
+    deviations: dict[ResponseQuantity, Rounded]
+    """RMS and largest deviations [%, degrees]; empty: no value."""
+    uncertainty: dict[ResponseQuantity, Rounded]
+    """Half-width of their 95 % intervals by the measurement; empty: not stated."""
     largest_modulus_at_Hz: Rounded | None
     largest_phase_at_Hz: Rounded | None
-    beyond_uncertainty_pct: Annotated[
-        Rounded | None,
-        Field(description="share of deviations above the uncertainty of the measurement; 5 % with noise alone"),
-    ]
+    beyond_uncertainty_pct: Rounded | None
+    """Share of deviations above the uncertainty of the measurement; 5 % with noise alone."""
 
 
 class HeadResponse(RoundedModel):
     """Frequency response as modulus and phase; the phase has no jumps of 360 degrees."""
 
     frequency_Hz: tuple[Rounded, ...]
-    modulus: Annotated[tuple[Rounded, ...], Field(description="in the unit of the response")]
+    modulus: tuple[Rounded, ...]
+    """In the unit of the response."""
     phase_deg: tuple[Rounded, ...]
 
 
@@ -190,24 +205,24 @@ class ComparedResponse(ComparedSource):
     height_m: Rounded | None
     excited_at: HeadPoint
     measured_at: HeadPoint
-    is_graded: Annotated[bool, Field(description="force and motion at the centre of the head; others are informative")]
+    is_graded: bool
+    """Force and motion at the centre of the head; others are informative."""
     note: str | None
-    row: Annotated[tuple[int, ...], Field(description="row of the table, from 1 below the head line")]
-    missing_rows: Annotated[tuple[int, ...], Field(description="rows without a value")]
+    row: tuple[int, ...]
+    """Row of the table, from 1 below the head line."""
+    missing_rows: tuple[int, ...]
+    """Rows without a value."""
     measured: HeadResponse
-    modulus_uncertainty_pct: Annotated[
-        tuple[Rounded, ...], Field(description="half-width of the 95 % interval; empty: not stated")
-    ]
-    phase_uncertainty_deg: Annotated[
-        tuple[Rounded, ...], Field(description="half-width of the 95 % interval; empty: not stated")
-    ]
-    modulus_deviation_pct: Annotated[
-        tuple[Rounded, ...], Field(description="100 ln of modulus of the dynamic stiffness, model over measurement")
-    ]
-    phase_deviation_deg: Annotated[
-        tuple[Rounded, ...], Field(description="phase of the dynamic stiffness, model minus measurement")
-    ]
-    model: Annotated[HeadResponse, Field(description="response of the model at many frequencies")]
+    modulus_uncertainty_pct: tuple[Rounded, ...]
+    """Half-width of the 95 % interval; empty: not stated."""
+    phase_uncertainty_deg: tuple[Rounded, ...]
+    """Half-width of the 95 % interval; empty: not stated."""
+    modulus_deviation_pct: tuple[Rounded, ...]
+    """100 ln of modulus of the dynamic stiffness, model over measurement."""
+    phase_deviation_deg: tuple[Rounded, ...]
+    """Phase of the dynamic stiffness, model minus measurement."""
+    model: HeadResponse
+    """Response of the model at many frequencies."""
     bands: tuple[BandDeviation, ...]
 
 
@@ -217,9 +232,8 @@ class ResponseComparison(ModelComparison):
     schema_: Annotated[Literal["pantocheck.response-comparison/1"], Field(alias="schema")] = (
         "pantocheck.response-comparison/1"
     )
-    record_state: Annotated[
-        Literal["unverified"], Field(description="a frequency response has no second channel that confirms it")
-    ] = "unverified"
+    record_state: Literal["unverified"] = "unverified"
+    """A frequency response has no second channel that confirms it."""
     responses: tuple[ComparedResponse, ...]
 
 
@@ -227,18 +241,14 @@ class ComparedQuantity(RoundedModel):
     """Values of one quantity; lists have one item per subject."""
 
     name: str
-    values: Annotated[tuple[ComparedValue | None, ...], Field(description="null: not known")]
-    uncertainty: Annotated[
-        tuple[ComparedValue | None, ...], Field(description="half-width of the 95 % interval; null: not known")
-    ]
-    difference: Annotated[
-        tuple[Rounded | None, ...],
-        Field(description="value minus that of the first subject; of several numbers, the largest in absolute value"),
-    ]
-    beyond_uncertainty: Annotated[
-        tuple[bool | None, ...],
-        Field(description="whether the difference exceeds the joint half-width of both values; null: not known"),
-    ]
+    values: tuple[ComparedValue | None, ...]
+    """null: not known."""
+    uncertainty: tuple[ComparedValue | None, ...]
+    """Half-width of the 95 % interval; null: not known."""
+    difference: tuple[Rounded | None, ...]
+    """Value minus that of the first subject; of several numbers, the largest in absolute value."""
+    beyond_uncertainty: tuple[bool | None, ...]
+    """Whether the difference exceeds the joint half-width of both values; null: not known."""
 
 
 class BandAgreement(RoundedModel):
@@ -266,8 +276,10 @@ class ForceAgreement(RoundedModel):
     """Agreement of the force of a subject with that of the first subject."""
 
     subject: str
-    section_m: Annotated[Range, Field(description="compared stretch")]
-    highest_Hz: Annotated[Rounded, Field(description="frequency up to which both forces are known")]
+    section_m: Range
+    """Compared stretch."""
+    highest_Hz: Rounded
+    """Frequency up to which both forces are known."""
     correlation: Rounded
     mean_difference_N: Rounded
     rms_difference_N: Rounded
@@ -278,17 +290,20 @@ class ForceAgreement(RoundedModel):
 class ComparedOwner(RoundedModel):
     """Comparison of one pantograph, or of the line."""
 
-    number: Annotated[int, Field(description="number of the pantograph; 0: the line")]
+    number: int
+    """Number of the pantograph; 0: the line."""
     quantities: tuple[ComparedQuantity, ...]
     agreements: tuple[ForceAgreement, ...] = ()
-    reasons: Annotated[tuple[str, ...], Field(description="reasons why forces were not compared")] = ()
+    reasons: tuple[str, ...] = ()
+    """Reasons why forces were not compared."""
     charts: tuple[Chart, ...] = ()
 
 
 class ComparedCase(RoundedModel):
     """Comparison of one case, or of records that state no common case."""
 
-    id: Annotated[str, Field(description="id of the case; empty: the records state none")]
+    id: str
+    """Id of the case; empty: the records state none."""
     notes: tuple[str, ...]
     owners: tuple[ComparedOwner, ...]
 
@@ -300,7 +315,6 @@ class RunComparison(RoundedModel):
 
     schema_: Annotated[Literal["pantocheck.comparison/1"], Field(alias="schema")] = "pantocheck.comparison/1"
     suite: Suite
-    subjects: Annotated[
-        tuple[ComparedSource, ...], Field(description="the first one is that with which the others are compared")
-    ]
+    subjects: tuple[ComparedSource, ...]
+    """The first one is that with which the others are compared."""
     cases: tuple[ComparedCase, ...]

@@ -14,10 +14,8 @@ MOST_LOSSES = 200
 def build_contact_losses(pantographs: Mapping[int, PantographSignals]) -> dict[str, list[ContactLossFacts]] | None:
     """Contact losses of every pantograph with an unfiltered force, in the order of their places; None without any.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals
-        Signals of the pantographs by number from 1.
+    Args:
+        pantographs: Signals of the pantographs by number from 1.
     """
     losses = {}
     for number, signals in pantographs.items():

@@ -1,8 +1,8 @@
 """Criterion of results.json: a value against its limits, with the components of its uncertainty."""
 
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Literal, Self, get_args
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.trust import Computed, Trust
@@ -38,10 +38,8 @@ class Criterion(ResultsPart):
     lower: FiniteNumber | None
     upper: FiniteNumber | None
     verdict: Verdict
-    trust: Annotated[
-        Trust | Computed | None,
-        Field(description="trust of the limits; null: the bounds are values of a baseline, without a published source"),
-    ]
+    trust: Trust | Computed | None
+    """Trust of the limits; null: the bounds are values of a baseline, without a published source."""
     source: str
     margin: float | None
     discretisation_error: float | None
@@ -52,25 +50,29 @@ class Criterion(ResultsPart):
     limit_uncertainty: float = 0.0
     close: list[str] = []
     baseline: float | None = None
-    finding: Annotated[
-        GradedFinding | None, Field(description="finding of a publication that the limits grade; null: none")
-    ] = None
+    finding: GradedFinding | None = None
+    """Finding of a publication that the limits grade; null: none."""
 
     @property
     def is_drift(self) -> bool:
         """Whether the criterion compares with a baseline, or states that a comparison is impossible."""
         return self.baseline is not None or self.quantity == BASELINE
 
+    @property
+    def is_close(self) -> bool:
+        """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
+        return bool(self.close) and self.verdict in ("pass", "fail")
+
+    @property
+    def error(self) -> float | None:
+        """Uncertainty of the value or, where it is not known, its discretisation error."""
+        return self.discretisation_error if self.uncertainty is None else self.uncertainty
+
     @model_validator(mode="after")
     def _demand_trust(self) -> Self:
         if self.trust is None and not self.is_drift:
             raise ValueError("a criterion without trust must compare with a baseline")
         return self
-
-
-def is_drift(row: dict[str, Any]) -> bool:
-    """Whether a criterion of results.json compares with a baseline, or states that a comparison is impossible."""
-    return row["baseline"] is not None or row["quantity"] == BASELINE
 
 
 class CaseVerification(ResultsPart):
@@ -80,8 +82,12 @@ class CaseVerification(ResultsPart):
     """
 
     verdict: Verdict
-    reason: Annotated[str | None, Field(description="reason why there are no criteria")]
-    confirmed_by: Annotated[str, Field(description="second formulation that confirms the converged values")]
-    digest: Annotated[str, Field(description="SHA-256 of the converged values and of the tolerances")]
-    omitted: Annotated[list[str], Field(description="quantities without a confirmed value, with the reason")]
+    reason: str | None
+    """Reason why there are no criteria."""
+    confirmed_by: str
+    """Second formulation that confirms the converged values."""
+    digest: str
+    """SHA-256 of the converged values and of the tolerances."""
+    omitted: list[str]
+    """Quantities without a confirmed value, with the reason."""
     criteria: list[Criterion]

@@ -13,12 +13,9 @@ from pantocheck.model.statics.wave_factors import doppler_factor
 def list_derived_facts(case: Case, uplift_forces: Sequence[float] = ()) -> list[DerivedFact]:
     """Derived values of a case: of its wires, and of its pantographs.
 
-    Parameters
-    ----------
-    case : Case
-        Any case, with or without a speed.
-    uplift_forces : sequence of float
-        Uplift force of every pantograph in the run [N]; empty: not known.
+    Args:
+        case: Any case, with or without a speed.
+        uplift_forces: Uplift force of every pantograph in the run [N]; empty: not known.
     """
     return [*_list_line_facts(case), *_list_pantograph_facts(case, uplift_forces)]
 

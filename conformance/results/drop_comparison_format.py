@@ -16,21 +16,26 @@ class ComparedDrop(RoundedModel):
     """Mass drop of the record."""
 
     mass_kg: Rounded
-    wire: Annotated[str, Field(description="CW contact wire, MW messenger wire")]
+    wire: str
+    """CW contact wire, MW messenger wire."""
     position_m: Rounded
-    release_duration_s: Annotated[Rounded, Field(description="time in which the weight decreases to zero")]
-    planned_release_s: Annotated[
-        Rounded | None, Field(description="planned release, in the time of the record; null: not stated")
-    ]
-    release_s: Annotated[Rounded, Field(description="release in the time of the record, by the best fit of the model")]
-    release_correlation: Annotated[Rounded, Field(description="correlation of record and first model at this release")]
+    release_duration_s: Rounded
+    """Time in which the weight decreases to zero."""
+    planned_release_s: Rounded | None
+    """Planned release, in the time of the record; null: not stated."""
+    release_s: Rounded
+    """Release in the time of the record, by the best fit of the model."""
+    release_correlation: Rounded
+    """Correlation of record and first model at this release."""
 
 
 class ComparedPlace(RoundedModel):
     """Place on the line whose motion is compared."""
 
-    name: Annotated[str, Field(description="name of the channel, or `mass`")]
-    sensor: Annotated[int | None, Field(description="number of the sensor; null: no sensor, only the models are shown")]
+    name: str
+    """Name of the channel, or `mass`."""
+    sensor: int | None
+    """Number of the sensor; null: no sensor, only the models are shown."""
     wire: str
     position_m: Rounded
 
@@ -39,22 +44,23 @@ class ComparedModel(RoundedModel):
     """Damping model of a simulation."""
 
     name: str
-    source: Annotated[str, Field(description="name of the damping file, or of the line")]
+    source: str
+    """Name of the damping file, or of the line."""
     damping: Damping
-    last_slack_s: Annotated[
-        Rounded | None, Field(description="last time after the release with a slack dropper; null: none was slack")
-    ]
+    last_slack_s: Rounded | None
+    """Last time after the release with a slack dropper; null: none was slack."""
 
 
 class ModelAgreement(RoundedModel):
     """Motion of a model beside the record."""
 
     model: str
-    rms: Annotated[Rounded, Field(description="RMS of the model [m/s or m/s2]")]
-    rms_ratio: Annotated[
-        Rounded | None, Field(description="RMS of the model over `record_rms`; null: no record, or too much noise")
-    ]
-    correlation: Annotated[Rounded | None, Field(description="correlation of the samples; null: as the ratio")]
+    rms: Rounded
+    """RMS of the model [m/s or m/s2]."""
+    rms_ratio: Rounded | None
+    """RMS of the model over `record_rms`; null: no record, or too much noise."""
+    correlation: Rounded | None
+    """Correlation of the samples; null: as the ratio."""
 
 
 class WindowStatistics(RoundedModel):
@@ -64,12 +70,10 @@ class WindowStatistics(RoundedModel):
     motion: ComparedMotion
     window_s: Range
     band_Hz: Range
-    record_rms: Annotated[
-        Rounded | None, Field(description="RMS of the record without its noise [m/s or m/s2]; null: no record")
-    ]
-    noise_rms: Annotated[
-        Rounded | None, Field(description="RMS of the record at rest before the release; null: not known")
-    ]
+    record_rms: Rounded | None
+    """RMS of the record without its noise [m/s or m/s2]; null: no record."""
+    noise_rms: Rounded | None
+    """RMS of the record at rest before the release; null: not known."""
     models: tuple[ModelAgreement, ...]
 
 
@@ -77,10 +81,14 @@ class EnergyCurve(RoundedModel):
     """Mean square of the velocity in short windows against time."""
 
     place: str
-    time_s: Annotated[CurveValues, Field(description="middle of each window after the release [s]")]
-    record: Annotated[CurveValues | None, Field(description="mean square of the velocity of the record [m2/s2]")]
-    models: Annotated[dict[str, CurveValues], Field(description="mean square by model [m2/s2]")]
-    differences: Annotated[dict[str, CurveValues], Field(description="mean square of model minus record [m2/s2]")]
+    time_s: CurveValues
+    """Middle of each window after the release [s]."""
+    record: CurveValues | None
+    """Mean square of the velocity of the record [m2/s2]."""
+    models: dict[str, CurveValues]
+    """Mean square by model [m2/s2]."""
+    differences: dict[str, CurveValues]
+    """Mean square of model minus record [m2/s2]."""
 
 
 class MotionCurve(RoundedModel):
@@ -90,23 +98,31 @@ class MotionCurve(RoundedModel):
     motion: ComparedMotion
     window_s: Range
     time_s: CurveValues
-    record: Annotated[CurveValues | None, Field(description="record [m/s or m/s2]; null: no record")]
-    models: Annotated[dict[str, CurveValues], Field(description="motion by model [m/s or m/s2]")]
+    record: CurveValues | None
+    """Record [m/s or m/s2]; null: no record."""
+    models: dict[str, CurveValues]
+    """Motion by model [m/s or m/s2]."""
 
 
 class DropComparison(ModelComparison):
     """Content of drop_comparison.json."""
 
     schema_: Annotated[Literal["pantocheck.drop-comparison/1"], Field(alias="schema")] = "pantocheck.drop-comparison/1"
-    record: Annotated[ComparedSource, Field(description="test and run, its file, and the SHA-256 of the file")]
-    line_comparison: Annotated[LineComparison, Field(description="line of the record beside the line of the models")]
+    record: ComparedSource
+    """Test and run, its file, and the SHA-256 of the file."""
+    line_comparison: LineComparison
+    """Line of the record beside the line of the models."""
     drop: ComparedDrop
-    rate_Hz: Annotated[Rounded, Field(description="sampling rate of the comparison")]
+    rate_Hz: Rounded
+    """Sampling rate of the comparison."""
     element_m: Rounded
     time_step_s: Rounded
-    windows_s: Annotated[tuple[Range, ...], Field(description="windows after the release")]
-    bands_Hz: Annotated[tuple[Range, ...], Field(description="compared bands")]
-    models: Annotated[tuple[ComparedModel, ...], Field(description="damping models; the first one is graded")]
+    windows_s: tuple[Range, ...]
+    """Windows after the release."""
+    bands_Hz: tuple[Range, ...]
+    """Compared bands."""
+    models: tuple[ComparedModel, ...]
+    """Damping models; the first one is graded."""
     places: tuple[ComparedPlace, ...]
     statistics: tuple[WindowStatistics, ...]
     energies: tuple[EnergyCurve, ...]

@@ -20,10 +20,8 @@ UPLIFT_EXTREME = "max_uplift_at_support_mm"
 def find_force_places(pantographs: Mapping[int, PantographSignals]) -> dict[str, dict[str, ExtremePlace]]:
     """Place of each extreme of the graded force, by pantograph and quantity.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals
-        Signals of the pantographs by number from 1; one without a graded force has no places.
+    Args:
+        pantographs: Signals of the pantographs by number from 1; one without a graded force has no places.
     """
     places = {}
     for number, signals in pantographs.items():
@@ -40,12 +38,9 @@ def find_force_places(pantographs: Mapping[int, PantographSignals]) -> dict[str,
 def find_uplift_place(line: LineSignals, time: NDArray[np.float64]) -> dict[str, dict[str, ExtremePlace]]:
     """Place of the largest uplift at a support, under the key of the line; empty if the uplift is not known.
 
-    Parameters
-    ----------
-    line : LineSignals
-        Uplift at the supports.
-    time : (n,) ndarray
-        Times of the record [s].
+    Args:
+        line: Uplift at the supports.
+        time: Times of the record, (n,) [s].
     """
     try:
         line.check_supports()

@@ -53,12 +53,13 @@ class UpliftTrace(ResultsPart):
 class Series(ResultsPart):
     """Data of a chart.
 
-    `boxes` draws a box plot of the values at each x; `bars` stand side by side at the ticks; `tornado` draws horizontal
-    bars, one below the other, at the ticks; `band` is the area between `y` and `high`.
+    `crosses` lie over points of other series; `boxes` draws a box plot of the values at each x; `bars` stand side by
+    side at the ticks; `tornado` draws horizontal bars, one below the other, at the ticks; `band` is the area between
+    `y` and `high`.
     """
 
     label: str
-    style: Literal["line", "points", "boxes", "bars", "band", "tornado"]
+    style: Literal["line", "points", "crosses", "boxes", "bars", "band", "tornado"]
     x: list[float]
     y: list[float]
     high: list[float] | None = None

@@ -7,40 +7,26 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class FilePlace:
-    """Line of a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    line : int or None
-        Number of the line, from 1; None: the file as a whole.
-    """
+    """Line of a file."""
 
     path: Path
+    """The file."""
     line: int | None = None
+    """Number of the line, from 1; None: the file as a whole."""
 
 
 @dataclass(frozen=True)
 class LimitPlace:
-    """Place of a limit.
-
-    Parameters
-    ----------
-    quantity : str
-        Name of the quantity.
-    pantograph : int or None
-        Number of the pantograph; None: every pantograph, or the line.
-    item : int or None
-        Number of the value among several.
-    place : FilePlace
-        Head of its table.
-    """
+    """Place of a limit."""
 
     quantity: str
+    """Name of the quantity."""
     pantograph: int | None
+    """Number of the pantograph; None: every pantograph, or the line."""
     item: int | None
+    """Number of the value among several."""
     place: FilePlace
+    """Head of its table."""
 
     def bounds(self, quantity: str, pantograph: int, item: int | None) -> bool:
         """Whether the limit bounds a value."""
@@ -49,40 +35,26 @@ class LimitPlace:
 
 @dataclass(frozen=True)
 class CasePlaces:
-    """Places of a case.
-
-    Parameters
-    ----------
-    case : FilePlace or None
-        Place of the case as a whole.
-    limits : tuple of LimitPlace
-        Places of the limits; the first that bounds a value counts.
-    """
+    """Places of a case."""
 
     case: FilePlace | None
+    """Place of the case as a whole."""
     limits: tuple[LimitPlace, ...] = ()
+    """Places of the limits; the first that bounds a value counts."""
 
 
 @dataclass(frozen=True)
 class ReportPlaces:
-    """Places of the criteria of a report.
-
-    Parameters
-    ----------
-    default : FilePlace or None
-        Place of everything that has no place of its own.
-    baseline : FilePlace or None
-        Place of a comparison with a baseline.
-    cases : mapping of str to CasePlaces
-        Places of the cases by their id.
-    limits : tuple of LimitPlace
-        Places of the limits of any other case.
-    """
+    """Places of the criteria of a report."""
 
     default: FilePlace | None = None
+    """Place of everything that has no place of its own."""
     baseline: FilePlace | None = None
+    """Place of a comparison with a baseline."""
     cases: Mapping[str, CasePlaces] = field(default_factory=dict)
+    """Places of the cases by their id."""
     limits: tuple[LimitPlace, ...] = ()
+    """Places of the limits of any other case."""
 
     def find_case(self, case_id: str) -> FilePlace | None:
         """Place of a case as a whole."""

@@ -2,9 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable
-from typing import Annotated, Literal
-
-from pydantic import Field
+from typing import Literal
 
 from pantocheck.conformance.cases.finding import PublishedFinding, Role
 from pantocheck.conformance.grading.verdicts import Verdict
@@ -15,22 +13,13 @@ FindingOutcome = Literal["imposed", "reproduced", "not_reproduced", "not_evaluat
 IMPOSED_REASON = "imposed: the inputs were chosen to meet this finding, so meeting it does not count"
 
 
-class GradedFinding(ResultsPart):
+class GradedFinding(PublishedFinding):
     """Finding of a publication, and its outcome in this run."""
 
-    section: str
-    sentence: str
-    role: Role
-    printed: str
-    tolerance: str
-    sensitivity: str
-    outcome: Annotated[
-        FindingOutcome,
-        Field(
-            description="reproduced: held out and inside its limits; imposed: imposed and inside; not_reproduced: "
-            "outside; not_evaluated: no value"
-        ),
-    ]
+    outcome: FindingOutcome
+    """reproduced: held out and inside its limits; imposed: imposed and inside; not_reproduced: outside;
+    not_evaluated: no value.
+    """
 
 
 class FindingCounts(ResultsPart):

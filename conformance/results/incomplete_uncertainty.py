@@ -16,10 +16,8 @@ UNKNOWN_COMPONENT = "not known"
 def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
     """Components that are not known.
 
-    Parameters
-    ----------
-    basis : mapping of str to str
-        `uncertainty_basis` of a case.
+    Args:
+        basis: `uncertainty_basis` of a case.
     """
     return tuple(name for name, text in basis.items() if text.startswith(UNKNOWN_COMPONENT))
 
@@ -29,14 +27,10 @@ def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str
 
     A comparison with the converged solution needs the discretisation only: both have the same start and section.
 
-    Parameters
-    ----------
-    basis : mapping of str to str
-        `uncertainty_basis` of the case.
-    uncertainty : float or None
-        Half-width of the criterion; None: not known at all.
-    trust : str or None
-        Trust of its limits.
+    Args:
+        basis: `uncertainty_basis` of the case.
+        uncertainty: Half-width of the criterion; None: not known at all.
+        trust: Trust of its limits.
     """
     return () if uncertainty is None or trust == "computed" else list_unknown(basis)
 
@@ -44,16 +38,11 @@ def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str
 def mark_half_width(width: float, text: str, missing: Sequence[str], sign: str = "") -> str:
     """Text of a half-width: marked if a component is missing, and `not known` if the known ones are zero.
 
-    Parameters
-    ----------
-    width : float
-        Half-width.
-    text : str
-        Its number with significant digits.
-    missing : sequence of str
-        Components that it lacks.
-    sign : str
-        Sign before the number.
+    Args:
+        width: Half-width.
+        text: Its number with significant digits.
+        missing: Components that it lacks.
+        sign: Sign before the number.
     """
     if not missing:
         return f"{sign}{text}"
@@ -63,10 +52,8 @@ def mark_half_width(width: float, text: str, missing: Sequence[str], sign: str =
 def explain_mark(missing: Sequence[str]) -> str:
     """Explanation of the mark, for the components of a case.
 
-    Parameters
-    ----------
-    missing : sequence of str
-        Components that are not known; at least one.
+    Args:
+        missing: Components that are not known; at least one.
     """
     names = " and ".join(filter(None, (", ".join(missing[:-1]), missing[-1])))
     verb = "is" if len(missing) == 1 else "are"

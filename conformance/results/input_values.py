@@ -16,14 +16,10 @@ MOST_LISTED = 12
 def list_input_values(table: SourcedTable, groups: set[str], group: str) -> dict[str, StoredValue]:
     """Values that the file of a table states.
 
-    Parameters
-    ----------
-    table : SourcedTable
-        Table of a case, line or pantograph.
-    groups : set of str
-        Names of all groups of inputs; a part of the table that is a group of its own is left out.
-    group : str
-        Name of the group of the table.
+    Args:
+        table: Table of a case, line or pantograph.
+        groups: Names of all groups of inputs; a part of the table that is a group of its own is left out.
+        group: Name of the group of the table.
     """
     excluded = {key for key in type(table).model_fields if f"{group}.{key}" in groups}
     excluded |= PROVENANCE | NAME_KEYS | (OTHER_PARTS if group == "case" else frozenset())

@@ -1,9 +1,5 @@
 """Simulated and measured run beside each other in results.json: curves, spectra, and statistics span by span."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from pantocheck.conformance.results.figure_data import Spectrum
 from pantocheck.conformance.results.results_part import FiniteNumber, Number, Owner, ResultsPart
 
@@ -40,12 +36,12 @@ class MeasuredPantograph(ResultsPart):
 class MeasuredRun(ResultsPart):
     """Measured run beside the simulated one of its case."""
 
-    name: Annotated[str, Field(description="name of the measured record")]
-    cutoff_Hz: Annotated[float, Field(description="cut-off of the filter of the drawn forces [Hz]")]
-    quantities: Annotated[
-        dict[Owner, dict[str, Number]], Field(description="quantities of the measured run, as those of the case")
-    ]
-    uncertainty: Annotated[
-        dict[Owner, dict[str, Number]], Field(description="half-widths of their 95 % intervals, as in `quantities`")
-    ]
+    name: str
+    """Name of the measured record."""
+    cutoff_Hz: float
+    """Cut-off of the filter of the drawn forces [Hz]."""
+    quantities: dict[Owner, dict[str, Number]]
+    """Quantities of the measured run, as those of the case."""
+    uncertainty: dict[Owner, dict[str, Number]]
+    """Half-widths of their 95 % intervals, as in `quantities`."""
     pantographs: dict[Owner, MeasuredPantograph]

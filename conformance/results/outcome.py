@@ -10,82 +10,54 @@ from pantocheck.conformance.results.figure_data import Chart, LineShape, TextTab
 
 @dataclass(frozen=True)
 class StudyResult:
-    """Result of a study that compares several runs.
-
-    Parameters
-    ----------
-    findings : dict of int to dict of str to Value
-        Quantities by pantograph (0: the line) and name.
-    spread : dict of int to dict of str to float
-        Largest change of these quantities when the analysis section is shifted.
-    charts : tuple of Chart
-        Figures for the report.
-    tables : tuple of TextTable
-        Tables for the report.
-    """
+    """Result of a study that compares several runs."""
 
     findings: dict[int, dict[str, Value]] = field(default_factory=dict)
+    """Quantities by pantograph (0: the line) and name."""
     spread: dict[int, dict[str, float]] = field(default_factory=dict)
+    """Largest change of these quantities when the analysis section is shifted."""
     charts: tuple[Chart, ...] = ()
+    """Figures for the report."""
     tables: tuple[TextTable, ...] = ()
+    """Tables for the report."""
 
 
 @dataclass(frozen=True)
 class Delivered:
-    """Data that a system delivered for a case.
-
-    Parameters
-    ----------
-    record : Record or None
-        Record of the passage; None for a static case, a mass drop or a summary.
-    static : dict of str to Value
-        Quantities of the line at rest, by name.
-    run : RunTable
-        Simulated time, computing time, time step and element length, as far as they are known.
-    notes : tuple of str
-        Remarks on the run for the reader of the report.
-    warnings : tuple of str
-        Caveats for the reader of the report.
-    model_uncertainty : tuple of str
-        Effects that the equations of the system leave out, with their sizes.
-    summary : Evaluation or None
-        Quantities delivered as numbers in place of a record.
-    study : StudyResult
-        Result of a study; empty for a single run.
-    case_digest : str or None
-        Digest of the case that the record was made for, as the record states it.
-    digest : str or None
-        SHA-256 of the files of the record; None for a record that was never in a file.
-    start : StartTable or None
-        Start of the run, as the system states it.
-    uplift_forces : tuple of float
-        Uplift force of every pantograph in the run [N]; empty: not known.
-    line_shape : LineShape or None
-        Line at rest for a drawing; None: not known.
-    refined : Delivered or None
-        The same case with element length and time step halved, for the discretisation error.
-    coarse : Delivered or None
-        The same case with element length and time step doubled, for the observed order of convergence.
-    starts : tuple of Delivered
-        The same case with other starts, for the uncertainty of a short run-in.
-    """
+    """Data that a system delivered for a case."""
 
     record: Record | None = None
+    """Record of the passage; None for a static case, a mass drop or a summary."""
     static: dict[str, Value] = field(default_factory=dict)
+    """Quantities of the line at rest, by name."""
     run: RunTable = field(default_factory=RunTable)
+    """Simulated time, computing time, time step and element length, as far as they are known."""
     notes: tuple[str, ...] = ()
+    """Remarks on the run for the reader of the report."""
     warnings: tuple[str, ...] = ()
+    """Caveats for the reader of the report."""
     model_uncertainty: tuple[str, ...] = ()
+    """Effects that the equations of the system leave out, with their sizes."""
     summary: Evaluation | None = None
+    """Quantities delivered as numbers in place of a record."""
     study: StudyResult = field(default_factory=StudyResult)
+    """Result of a study; empty for a single run."""
     case_digest: str | None = None
+    """Digest of the case that the record was made for, as the record states it."""
     digest: str | None = None
+    """SHA-256 of the files of the record; None for a record that was never in a file."""
     start: StartTable | None = None
+    """Start of the run, as the system states it."""
     uplift_forces: tuple[float, ...] = ()
+    """Uplift force of every pantograph in the run [N]; empty: not known."""
     line_shape: LineShape | None = None
+    """Line at rest for a drawing; None: not known."""
     refined: "Delivered | None" = None
+    """The same case with element length and time step halved, for the discretisation error."""
     coarse: "Delivered | None" = None
+    """The same case with element length and time step doubled, for the observed order of convergence."""
     starts: "tuple[Delivered, ...]" = ()
+    """The same case with other starts, for the uncertainty of a short run-in."""
 
 
 @dataclass(frozen=True)

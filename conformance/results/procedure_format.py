@@ -1,8 +1,6 @@
 """EN 50318 procedure in results.json: the steps of a dossier, their verdicts and the data of their figures."""
 
-from typing import Annotated, Literal, get_args
-
-from pydantic import Field
+from typing import Literal, get_args
 
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
@@ -30,23 +28,25 @@ class ProcedureStep(ResultsPart):
     """
 
     step: StepName
-    required: Annotated[bool, Field(description="whether the step decides the verdict; if not, it is for information")]
-    state: Annotated[StepState, Field(description="error: its data could not be used")]
-    verdict: Annotated[Verdict, Field(description="skip if the step was not done")] = "skip"
-    unverified: Annotated[
-        str | None, Field(description="reason why a pass counts as unverified; null: nothing is unverified")
-    ] = None
-    reason: Annotated[str | None, Field(description="reason why the step was not done, or remark on its verdict")] = (
-        None
-    )
-    closest: Annotated[str | None, Field(description="criterion with the smallest margin; null: none counts")] = None
+    required: bool
+    """Whether the step decides the verdict; if not, it is for information."""
+    state: StepState
+    """error: its data could not be used."""
+    verdict: Verdict = "skip"
+    """Skip if the step was not done."""
+    unverified: str | None = None
+    """Reason why a pass counts as unverified; null: nothing is unverified."""
+    reason: str | None = None
+    """Reason why the step was not done, or remark on its verdict."""
+    closest: str | None = None
+    """Criterion with the smallest margin; null: none counts."""
     margin: FiniteNumber | None = None
-    uncertainty: Annotated[
-        FiniteNumber | None,
-        Field(description="half-width of the 95 % interval of its value and of its limit, on the scale of the margin"),
-    ] = None
-    cases: Annotated[list[str], Field(description="ids of the cases and pairs of this step")] = []
-    criteria: Annotated[list[Criterion], Field(description="criteria that belong to no case")] = []
+    uncertainty: FiniteNumber | None = None
+    """Half-width of the 95 % interval of its value and of its limit, on the scale of the margin."""
+    cases: list[str] = []
+    """Ids of the cases and pairs of this step."""
+    criteria: list[Criterion] = []
+    """Criteria that belong to no case."""
     notes: list[str] = []
 
 
@@ -55,38 +55,43 @@ class DeclaredParameter(ResultsPart):
 
     name: str
     declared: str
-    runs: Annotated[str, Field(description="range of the values that the runs state")]
-    confirmed: Annotated[bool, Field(description="whether every run states a value that can be compared")]
+    runs: str
+    """Range of the values that the runs state."""
+    confirmed: bool
+    """Whether every run states a value that can be compared."""
 
 
 class Evidence(ResultsPart):
     """Case or pair of runs, with the conditions that it verifies if it passed."""
 
     id: str
-    passed: Annotated[bool, Field(description="pass, or an accepted unverified record")] = False
-    line: Annotated[str, Field(description="name of the line in the dossier, or its title")]
-    pantographs: Annotated[list[str], Field(description="names in the dossier, or titles, in running order")]
+    passed: bool = False
+    """Pass, or an accepted unverified record."""
+    line: str
+    """Name of the line in the dossier, or its title."""
+    pantographs: list[str]
+    """Names in the dossier, or titles, in running order."""
     speed_km_h: FiniteNumber
     spacing_m: list[FiniteNumber]
-    inputs: Annotated[dict[str, FiniteNumber], Field(description="inputs whose change is claimed, by key")] = {}
+    inputs: dict[str, FiniteNumber] = {}
+    """Inputs whose change is claimed, by key."""
 
 
 class ValidityClaim(ResultsPart):
     """Claim on the range of validity, and the range of the evidence that passed."""
 
     kind: ClaimKind
-    name: Annotated[str, Field(description="name of the line, pantograph or input; empty for speed and spacing")]
+    name: str
+    """Name of the line, pantograph or input; empty for speed and spacing."""
     unit: str
-    claimed: Annotated[tuple[FiniteNumber, FiniteNumber] | None, Field(description="range; null: a line or pantograph")]
-    verified: Annotated[
-        tuple[FiniteNumber, FiniteNumber] | None, Field(description="range of the passed evidence; null: none")
-    ] = None
-    evidence: Annotated[
-        list[str], Field(description="ids of the cases and pairs that passed under these conditions")
-    ] = []
-    verdict: Annotated[
-        Verdict, Field(description="pass: inside the verified range, and every step before passes; skip: not verified")
-    ] = "skip"
+    claimed: tuple[FiniteNumber, FiniteNumber] | None
+    """Range; null: a line or pantograph."""
+    verified: tuple[FiniteNumber, FiniteNumber] | None = None
+    """Range of the passed evidence; null: none."""
+    evidence: list[str] = []
+    """Ids of the cases and pairs that passed under these conditions."""
+    verdict: Verdict = "skip"
+    """pass: inside the verified range, and every step before passes; skip: not verified."""
     reason: str | None = None
 
 
@@ -94,32 +99,35 @@ class JoinedQuantity(ResultsPart):
     """Differences of one quantity, simulated minus measured, joined over all compared pairs."""
 
     quantity: str
-    pantograph: Annotated[int, Field(description="number of the pantograph, 0: the line")]
-    runs: Annotated[int, Field(description="number of pairs with this quantity")]
+    pantograph: int
+    """Number of the pantograph, 0: the line."""
+    runs: int
+    """Number of pairs with this quantity."""
     mean_difference: FiniteNumber
-    uncertainty: Annotated[
-        FiniteNumber | None,
-        Field(description="half-width of the 95 % interval of the mean, from those of the runs; null: not known"),
-    ]
-    spread: Annotated[FiniteNumber | None, Field(description="standard deviation of the differences; null: one pair")]
+    uncertainty: FiniteNumber | None
+    """Half-width of the 95 % interval of the mean, from those of the runs; null: not known."""
+    spread: FiniteNumber | None
+    """Standard deviation of the differences; null: one pair."""
     largest_difference: FiniteNumber
-    largest_in: Annotated[str, Field(description="id of the pair with the largest difference")]
+    largest_in: str
+    """Id of the pair with the largest difference."""
 
 
 class Procedure(ResultsPart):
     """Procedure of EN 50318 for one dossier."""
 
     title: str
-    digest: Annotated[str, Field(description="SHA-256 of the dossier and of the content of all files that it names")]
+    digest: str
+    """SHA-256 of the dossier and of the content of all files that it names."""
     note: str | None = None
-    steps: Annotated[list[ProcedureStep], Field(description="every step, in the order of the procedure")]
-    responses: Annotated[
-        list[ResponseComparison], Field(description="frequency responses of the pantographs, measured and computed")
-    ] = []
-    statics: Annotated[
-        list[StaticComparison], Field(description="values of the lines at rest, measured and computed")
-    ] = []
+    steps: list[ProcedureStep]
+    """Every step, in the order of the procedure."""
+    responses: list[ResponseComparison] = []
+    """Frequency responses of the pantographs, measured and computed."""
+    statics: list[StaticComparison] = []
+    """Values of the lines at rest, measured and computed."""
     parameters: list[DeclaredParameter] = []
-    joined: Annotated[list[JoinedQuantity], Field(description="line tests joined over the pairs")] = []
+    joined: list[JoinedQuantity] = []
+    """Line tests joined over the pairs."""
     evidence: list[Evidence] = []
     claims: list[ValidityClaim] = []

@@ -11,16 +11,11 @@ from pantocheck.conformance.results.traces import round_series
 def merge_reference(results: Results, reference: Results) -> Results:
     """Results with the values of the reference simulator; no verdict changes.
 
-    Parameters
-    ----------
-    results : Results
-        Results of the system under test.
-    reference : Results
-        Results of the reference simulator on the same cases.
+    Args:
+        results: Results of the system under test.
+        reference: Results of the reference simulator on the same cases.
 
-    Returns
-    -------
-    Results
+    Returns:
         Results whose cases have the key `reference`; a case that the reference did not run keeps its content.
     """
     by_id = {case.id: case for case in reference.cases}

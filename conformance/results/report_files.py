@@ -27,16 +27,12 @@ DEFAULT_FORMATS = ("html", "pdf", "json", "csv", "junit", "md")
 def check_formats(stated: Sequence[str] | None) -> tuple[str, ...]:
     """Formats in the order of writing; results.json is always written.
 
-    Parameters
-    ----------
-    stated : sequence of str or None
-        Formats that the user states. None: `DEFAULT_FORMATS`, without PDF if its extra is not installed
-        (`remark_missing_formats` says so).
+    Args:
+        stated: Formats that the user states. None: `DEFAULT_FORMATS`, without PDF if its extra is not installed
+            (`remark_missing_formats` says so).
 
-    Raises
-    ------
-    InputError
-        Unknown format, or PDF is stated and its extra is not installed.
+    Raises:
+        InputError: Unknown format, or PDF is stated and its extra is not installed.
     """
     if stated is None:
         return tuple(name for name in _order_formats(DEFAULT_FORMATS) if name != "pdf" or is_installed("typst"))

@@ -5,17 +5,24 @@ import platform as host
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.grading.uncertainty import Uncertainty
 from pantocheck.conformance.input_files.extras import version_or_absence
 from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.results.criterion_format import ComponentName
 from pantocheck.conformance.results.finding_format import count_findings
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.renderer_identity import identify_renderer
-from pantocheck.conformance.results.results_format import CaseResult, Platform, Results, SystemIdentity
+from pantocheck.conformance.results.results_format import (
+    CaseResult,
+    Platform,
+    Results,
+    SystemIdentity,
+    UncertaintyComponents,
+)
 from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.conformance.results.suite_identity import find_suite_commit, suite_digest
@@ -46,20 +53,16 @@ def select_finite(values: Mapping[int, Mapping[str, Value]]) -> dict[int, dict[s
     }
 
 
-def describe_uncertainty(uncertainty: Uncertainty) -> dict[str, Any]:
-    """Keys of a result that hold the uncertainty of its quantities."""
-    components = {
+def list_components(uncertainty: Uncertainty) -> UncertaintyComponents:
+    """Half-widths of the components of an uncertainty in the types of results.json."""
+    components: dict[int, dict[str, dict[ComponentName, Number]]] = {
         owner: {
             name: {part: list(width) if isinstance(width, tuple) else width for part, width in parts.items()}
             for name, parts in quantities.items()
         }
         for owner, quantities in uncertainty.by_quantity.items()
     }
-    return {
-        "uncertainty": key_by_owner(select_finite(uncertainty.combined)),
-        "uncertainty_components": key_by_owner(components),
-        "uncertainty_basis": {name: component.basis for name, component in uncertainty.components.items()},
-    }
+    return key_by_owner(components)
 
 
 def build_suite() -> Suite:
@@ -77,20 +80,13 @@ def build_results(
 ) -> Results:
     """Combine the results of cases.
 
-    Parameters
-    ----------
-    cases : sequence of CaseResult
-        Results of the cases, in the order of reports.
-    system : SystemIdentity
-        Graded system.
-    trust : Trust
-        Lowest trust of the limits that count.
-    started : str
-        Start of the run, from `utc_now`.
-    participation : Participation
-        Cases and verdicts that decide the verdict of the run, and accepted unverified records.
-    procedure : Procedure or None
-        Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
+    Args:
+        cases: Results of the cases, in the order of reports.
+        system: Graded system.
+        trust: Lowest trust of the limits that count.
+        started: Start of the run, from `utc_now`.
+        participation: Cases and verdicts that decide the verdict of the run, and accepted unverified records.
+        procedure: Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
     """
     results = Results(
         suite=build_suite(),

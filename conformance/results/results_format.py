@@ -8,9 +8,11 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
+from pantocheck.conformance.cases.case_origin import CaseOrigin
 from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.input_files.sourced_table import is_absent
 from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (
@@ -24,7 +26,6 @@ from pantocheck.conformance.results.criterion_format import CaseVerification, Co
 from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
-from pantocheck.conformance.results.origin_format import OriginFacts
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
@@ -63,7 +64,8 @@ class Renderer(ResultsPart):
     matplotlib: str
     jinja2: str
     numpy: str
-    fonts: Annotated[str, Field(description="SHA-256 of the fonts beside those of Typst")]
+    fonts: str
+    """SHA-256 of the fonts beside those of Typst."""
     machine: str
     system: str
 
@@ -77,15 +79,6 @@ class InputGroup(ResultsPart):
     values: StoredValues = {}
 
 
-class FilterFacts(ResultsPart):
-    """Filter of the graded force."""
-
-    kind: str
-    order: int
-    cutoff_Hz: float
-    phase: str
-
-
 class RunFacts(ResultsPart):
     """Computation of a case; unknown facts are null."""
 
@@ -95,7 +88,7 @@ class RunFacts(ResultsPart):
     element_m: float | None
     speed_km_h: float | None
     rate_Hz: float | None
-    filter: FilterFacts
+    filter: Filter
     evaluated_m: tuple[float, float] | None
     law_forces: LawForces = {}
 
@@ -126,6 +119,13 @@ def name_case(case_id: str, library: LibraryIdentity) -> str:
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
 
+Quantities = dict[Owner, dict[str, Number]]
+"""Values by owner and name of the quantity."""
+
+UncertaintyComponents = dict[Owner, dict[str, dict[ComponentName, Number]]]
+"""Half-widths by owner, name of the quantity and component."""
+
+
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line.
 
@@ -136,85 +136,58 @@ class CaseResult(ResultsPart):
     id: str
     title: str
     verdict: Verdict
-    criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: an assessment by a profile")
-    ]
-    verification: Annotated[
-        CaseVerification | None, Field(description="verification; null: the case has no converged values")
-    ] = None
-    baseline: Annotated[
-        BaselineComparison | None,
-        Field(
-            exclude_if=is_absent,
-            description="comparison with a baseline; missing: none was made",
-        ),
-    ] = None
+    criteria_verdict: Verdict | None
+    """Verdict by the EN 50318 criteria; null: an assessment by a profile."""
+    verification: CaseVerification | None = None
+    """Verification; null: the case has no converged values."""
+    baseline: Annotated[BaselineComparison | None, Field(exclude_if=is_absent)] = None
+    """Comparison with a baseline; missing: none was made."""
     reason: str | None
     notes: list[str]
     warnings: list[str]
     inputs: list[InputGroup]
-    derived: Annotated[
-        list[DerivedFact],
-        Field(description="values that the suite derives from the inputs, and the uplift forces of its own run"),
-    ] = []
+    derived: list[DerivedFact] = []
+    """Values that the suite derives from the inputs, and the uplift forces of its own run."""
     input_digest: str
-    changes: Annotated[
-        list[str],
-        Field(description="inputs that were changed on the command line, with the values of the files"),
-    ] = []
-    limits_digest: Annotated[str, Field(description="SHA-256 of the limits, those of a limits file included")]
-    stated_limits_digest: Annotated[
-        str, Field(description="SHA-256 of the limits of the case file or profile, without a limits file")
-    ]
-    limit_changes: Annotated[
-        list[str], Field(description="limits of the case file or profile that a limits file weakens")
-    ] = []
-    library: Annotated[LibraryIdentity, Field(description="comparison with the library case or profile of this name")]
-    origin: Annotated[
-        OriginFacts | None,
-        Field(exclude_if=is_absent, description="source of a case from outside; missing: the library, or not known"),
-    ] = None
-    profile: Annotated[str | None, Field(description="name of the profile of an assessment; null: a case")] = None
-    edition: Annotated[str | None, Field(description="edition of the standard that defines the case")] = None
-    superseded_by: Annotated[str | None, Field(description="edition that superseded it")] = None
-    steps: Annotated[list[Step], Field(description="steps of the procedure that the case belongs to")] = []
+    changes: list[str] = []
+    """Inputs that were changed on the command line, with the values of the files."""
+    limits_digest: str
+    """SHA-256 of the limits, those of a limits file included."""
+    stated_limits_digest: str
+    """SHA-256 of the limits of the case file or profile, without a limits file."""
+    limit_changes: list[str] = []
+    """Limits of the case file or profile that a limits file weakens."""
+    library: LibraryIdentity
+    """Comparison with the library case or profile of this name."""
+    origin: Annotated[CaseOrigin | None, Field(exclude_if=is_absent)] = None
+    """Source of a case from outside; missing: the library, or not known."""
+    profile: str | None = None
+    """Name of the profile of an assessment; null: a case."""
+    edition: str | None = None
+    """Edition of the standard that defines the case."""
+    superseded_by: str | None = None
+    """Edition that superseded it."""
+    steps: list[Step] = []
+    """Steps of the procedure that the case belongs to."""
     criteria: list[Criterion]
-    quantities: dict[Owner, dict[str, Number]]
+    quantities: Quantities
     skipped: dict[Owner, dict[str, str]]
-    spread: Annotated[
-        dict[Owner, dict[str, float]],
-        Field(
-            default_factory=dict,
-            description="largest change when the analysis section is shifted span by span, as in `quantities`; "
-            "not part of `uncertainty`",
-        ),
-    ]
-    uncertainty: Annotated[
-        dict[Owner, dict[str, Number]],
-        Field(
-            default_factory=dict,
-            description="half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the "
-            "components; without `uncertainty_components`: from the length of the record alone",
-        ),
-    ]
-    uncertainty_components: Annotated[
-        dict[Owner, dict[str, dict[ComponentName, Number]]],
-        Field(
-            default_factory=dict, description="half-widths by component, as in `quantities`; unknown ones are missing"
-        ),
-    ]
-    uncertainty_basis: Annotated[
-        dict[ComponentName, str],
-        Field(default_factory=dict, description="how each component was determined, or why it is not known"),
-    ]
-    places: Annotated[
-        dict[Owner, dict[str, ExtremePlace]],
-        Field(default_factory=dict, description="place of each extreme, as in `quantities`"),
-    ]
-    model_uncertainty: Annotated[
-        list[str],
-        Field(description="effects that the equations of the system leave out, with sizes; not part of `uncertainty`"),
-    ] = []
+    spread: Annotated[dict[Owner, dict[str, float]], Field(default_factory=dict)]
+    """Largest change when the analysis section is shifted span by span, as in `quantities`; not part of
+    `uncertainty`.
+    """
+    uncertainty: Annotated[Quantities, Field(default_factory=dict)]
+    """Half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the components; without
+    `uncertainty_components`: from the length of the record alone.
+    """
+    uncertainty_components: Annotated[UncertaintyComponents, Field(default_factory=dict)]
+    """Half-widths by component, as in `quantities`; unknown ones are missing."""
+    uncertainty_basis: Annotated[dict[ComponentName, str], Field(default_factory=dict)]
+    """How each component was determined, or why it is not known."""
+    places: Annotated[dict[Owner, dict[str, ExtremePlace]], Field(default_factory=dict)]
+    """Place of each extreme, as in `quantities`."""
+    model_uncertainty: list[str] = []
+    """Effects that the equations of the system leave out, with sizes; not part of `uncertainty`."""
     record: RecordFacts | None = None
     """Null without a record: line at rest, mass drop, or a study of several runs."""
     run: RunFacts
@@ -222,29 +195,16 @@ class CaseResult(ResultsPart):
     uplift: list[UpliftTrace]
     charts: list[Chart] = []
     tables: list[TextTable] = []
-    events: Annotated[
-        list[EventFacts] | None,
-        Field(exclude_if=is_absent, description="events of the line in the analysis section; missing: none is stated"),
-    ] = None
-    contact_losses: Annotated[
-        dict[Owner, list[ContactLossFacts]] | None,
-        Field(
-            exclude_if=is_absent,
-            description="contact losses of each pantograph, the longest 200; missing: none, or the force was filtered",
-        ),
-    ] = None
-    comparison: Annotated[
-        MeasuredRun | None,
-        Field(exclude_if=is_absent, description="measured run beside this one; missing: nothing is compared"),
-    ] = None
-    line_shape: Annotated[
-        LineShape | None,
-        Field(exclude_if=is_absent, description="line at rest around the analysis section; missing: not known"),
-    ] = None
-    reference: Annotated[
-        ReferenceValues | None,
-        Field(exclude_if=is_absent, description="values of the reference simulator; missing: not requested"),
-    ] = None
+    events: Annotated[list[EventFacts] | None, Field(exclude_if=is_absent)] = None
+    """Events of the line in the analysis section; missing: none is stated."""
+    contact_losses: Annotated[dict[Owner, list[ContactLossFacts]] | None, Field(exclude_if=is_absent)] = None
+    """Contact losses of each pantograph, the longest 200; missing: none, or the force was filtered."""
+    comparison: Annotated[MeasuredRun | None, Field(exclude_if=is_absent)] = None
+    """Measured run beside this one; missing: nothing is compared."""
+    line_shape: Annotated[LineShape | None, Field(exclude_if=is_absent)] = None
+    """Line at rest around the analysis section; missing: not known."""
+    reference: Annotated[ReferenceValues | None, Field(exclude_if=is_absent)] = None
+    """Values of the reference simulator; missing: not requested."""
 
 
 class Results(ResultsPart):
@@ -255,45 +215,33 @@ class Results(ResultsPart):
     system: SystemIdentity
     statement: str = STATEMENT
     verdict: Verdict
-    criteria_verdict: Annotated[
-        Verdict | None, Field(description="verdict by the EN 50318 criteria; null: no case takes part in it")
-    ]
-    verification_verdict: Annotated[
-        Verdict | None, Field(description="verdict by verification; null: no case has converged values")
-    ] = None
-    baseline_verdict: Annotated[
-        Verdict | None,
-        Field(
-            exclude_if=is_absent,
-            description="verdict by the baseline, which always counts; missing: no case was compared with one",
-        ),
-    ] = None
-    requested: Annotated[list[VerdictName], Field(description="verdicts that decide `verdict`, the worst of them")] = [
-        "criteria"
-    ]
-    verification_only: Annotated[
-        list[str],
-        Field(description="ids of the cases without limits that count, which take part in the verification only"),
-    ] = []
+    criteria_verdict: Verdict | None
+    """Verdict by the EN 50318 criteria; null: no case takes part in it."""
+    verification_verdict: Verdict | None = None
+    """Verdict by verification; null: no case has converged values."""
+    baseline_verdict: Annotated[Verdict | None, Field(exclude_if=is_absent)] = None
+    """Verdict by the baseline, which always counts; missing: no case was compared with one."""
+    requested: list[VerdictName] = ["criteria"]
+    """Verdicts that decide `verdict`, the worst of them."""
+    verification_only: list[str] = []
+    """Ids of the cases without limits that count, which take part in the verification only."""
     trust: Trust
     started: str | None
     platform: Platform
-    administration: Annotated[
-        Administration | None, Field(description="administrative data of the report; null: none were given")
-    ] = None
-    renderer: Annotated[Renderer, Field(description="software that made the pages")]
-    scope: Annotated[list[ScopeStep], Field(description="every step of the procedure")]
-    findings: Annotated[
-        FindingCounts | None, Field(description="findings of publications by outcome; null: the cases grade none")
-    ] = None
+    administration: Administration | None = None
+    """Administrative data of the report; null: none were given."""
+    renderer: Renderer
+    """Software that made the pages."""
+    scope: list[ScopeStep]
+    """Every step of the procedure."""
+    findings: FindingCounts | None = None
+    """Findings of publications by outcome; null: the cases grade none."""
     information: list[str] = []
     """Ids of the cases that are shown for information: they do not take part in the verdict."""
     accepted_unverified: list[str] = []
     """Names of systems whose unverified records the user accepts."""
-    procedure: Annotated[
-        Procedure | None,
-        Field(exclude_if=is_absent, description="steps of the EN 50318 procedure for a dossier; missing: no dossier"),
-    ] = None
+    procedure: Annotated[Procedure | None, Field(exclude_if=is_absent)] = None
+    """Steps of the EN 50318 procedure for a dossier; missing: no dossier."""
     cases: list[CaseResult]
 
     def to_dict(self) -> dict[str, Any]:

@@ -15,10 +15,8 @@ MAX_RESULTS_BYTES = 64 * 2**20
 def read_results(path: Path) -> Results:
     """Read and validate a results.json.
 
-    Raises
-    ------
-    InputError
-        It cannot be read or is not in the format of the suite.
+    Raises:
+        InputError: It cannot be read or is not in the format of the suite.
     """
     where = f"results '{path.name}'"
     return parse_results(read_bytes(path, where, MAX_RESULTS_BYTES), where)
@@ -27,17 +25,12 @@ def read_results(path: Path) -> Results:
 def parse_results(content: bytes, where: str) -> Results:
     """Parse and validate the content of a results.json.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file or of the attachment.
-    where : str
-        Name of the file in messages.
+    Args:
+        content: Content of the file or of the attachment.
+        where: Name of the file in messages.
 
-    Raises
-    ------
-    InputError
-        Too large, not JSON, or not in the format of the suite.
+    Raises:
+        InputError: Too large, not JSON, or not in the format of the suite.
     """
     return validate_json(
         parse_json(content, where, MAX_RESULTS_BYTES),

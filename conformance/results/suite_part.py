@@ -1,9 +1,5 @@
 """Suite in the files that it writes."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from pantocheck.conformance.results.results_part import ResultsPart
 
 
@@ -12,4 +8,5 @@ class Suite(ResultsPart):
 
     version: str
     commit: str | None
-    digest: Annotated[str, Field(description="SHA-256 of the installed files of the suite")]
+    digest: str
+    """SHA-256 of the installed files of the suite."""

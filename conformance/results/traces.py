@@ -26,12 +26,9 @@ def build_pantograph_traces(
 ) -> dict[str, Traces]:
     """Force, spectrum and histogram of every pantograph that covers the analysis section.
 
-    Parameters
-    ----------
-    pantographs : mapping of int to PantographSignals
-        Signals of the pantographs by number from 1.
-    supports : sequence of float
-        Positions of the supports of the line [m].
+    Args:
+        pantographs: Signals of the pantographs by number from 1.
+        supports: Positions of the supports of the line [m].
     """
     traces = {}
     for number, pantograph in pantographs.items():

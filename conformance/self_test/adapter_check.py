@@ -68,10 +68,8 @@ def check_adapter(system: System) -> AdapterCheck:
 
     The line at rest and two pantographs follow a short case that ended without an error.
 
-    Parameters
-    ----------
-    system : System
-        The adapter.
+    Args:
+        system: The adapter.
     """
     case, simulator = build_short_case(), ReferenceSimulator()
     outcome = system.run(case)

@@ -41,24 +41,16 @@ class MutantResult:
 
 @dataclass(frozen=True)
 class SelfTest:
-    """Results of the reference simulator and of the mutants.
-
-    Parameters
-    ----------
-    reference : dict of (Verdict, str)
-        Verdict of the reference simulator on each case, with the reason if it did not pass.
-    severe : tuple of MutantResult
-        Mutants that must be detected.
-    mild : tuple of MutantResult
-        Mutants that may remain undetected.
-    numerical : tuple of NumericalResult
-        Numerical faults with both verdicts.
-    """
+    """Results of the reference simulator and of the mutants."""
 
     reference: dict[str, tuple[Verdict, str]]
+    """Verdict of the reference simulator on each case, with the reason if it did not pass."""
     severe: tuple[MutantResult, ...]
+    """Mutants that must be detected."""
     mild: tuple[MutantResult, ...]
+    """Mutants that may remain undetected."""
     numerical: tuple[NumericalResult, ...] = ()
+    """Numerical faults with both verdicts."""
 
     @property
     def passed(self) -> bool:
@@ -71,17 +63,12 @@ class SelfTest:
 def run_self_test(cases: Sequence[Case], progress: Callable[[str], None]) -> SelfTest:
     """Run the reference simulator and all mutants on cases.
 
-    Parameters
-    ----------
-    cases : sequence of Case
-        Cases that the reference simulator passes.
-    progress : callable
-        Function that receives the name of each mutant before it runs.
+    Args:
+        cases: Cases that the reference simulator passes.
+        progress: Function that receives the name of each mutant before it runs.
 
-    Raises
-    ------
-    RuntimeError
-        The reference simulator delivers no record of a case, so that there is nothing to mutate.
+    Raises:
+        RuntimeError: The reference simulator delivers no record of a case, so that there is nothing to mutate.
     """
     reference: dict[str, tuple[Verdict, str]] = {}
     records: dict[str, Record] = {}

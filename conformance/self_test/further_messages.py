@@ -17,10 +17,8 @@ TWIN_SUBJECT = "two pantographs"
 def check_line_at_rest(system: System) -> AdapterFinding:
     """Send a check of the line at rest, and name the answer: values, a refusal or an error.
 
-    Parameters
-    ----------
-    system : System
-        The adapter.
+    Args:
+        system: The adapter.
     """
     case = build_case_at_rest()
     outcome = system.run(case)
@@ -44,10 +42,8 @@ def check_line_at_rest(system: System) -> AdapterFinding:
 def check_two_pantographs(system: System) -> AdapterFinding:
     """Send the short case with two pantographs, and name the answer: a record of both, a refusal or an error.
 
-    Parameters
-    ----------
-    system : System
-        The adapter.
+    Args:
+        system: The adapter.
     """
     case = build_twin_case()
     outcome = system.run(case)

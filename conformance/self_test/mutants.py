@@ -27,25 +27,18 @@ SAMPLE_CHANNELS = ("time", "position", "force", "contact_height", "support_uplif
 
 @dataclass(frozen=True)
 class Mutant:
-    """A system with a fault.
-
-    Parameters
-    ----------
-    name : str
-        Short name.
-    fault : str
-        The fault in one sentence.
-    run : RunMutant
-        Run of the faulty system.
-    expected_check : {"coverage", "support passing", "roll-off", "dynamics", "limits", "record file"} or None
-        Check that must detect the fault; `limits`: the limits of the case; None: a mild fault, which may remain
-        undetected.
-    """
+    """A system with a fault."""
 
     name: str
+    """Short name."""
     fault: str
+    """The fault in one sentence."""
     run: RunMutant
+    """Run of the faulty system."""
     expected_check: Literal["coverage", "support passing", "roll-off", "dynamics", "limits", "record file"] | None
+    """Check that must detect the fault; `limits`: the limits of the case; None: a mild fault, which may remain
+    undetected.
+    """
 
 
 def _replace_channels(**changes: Callable[[Case, Record], Any]) -> RunMutant:

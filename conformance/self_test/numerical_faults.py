@@ -19,24 +19,16 @@ TRUST: Final = "secondary"
 
 @dataclass(frozen=True)
 class NumericalFault:
-    """A fault of the equations or of their solution.
-
-    Parameters
-    ----------
-    name : str
-        Short name.
-    element_m : float or None
-        Element length [m]; None: that of the case.
-    change : callable
-        Change of the discretised line.
-    must_be_detected : bool
-        Whether the verification must fail on every case; otherwise the fault shows the limit of detection.
-    """
+    """A fault of the equations or of their solution."""
 
     name: str
+    """Short name."""
     element_m: float | None
+    """Element length [m]; None: that of the case."""
     change: Callable[[DiscretisedLine], DiscretisedLine]
+    """Change of the discretised line."""
     must_be_detected: bool
+    """Whether the verification must fail on every case; otherwise the fault shows the limit of detection."""
 
 
 @dataclass(frozen=True)
@@ -80,12 +72,9 @@ FAULTS: tuple[NumericalFault, ...] = (
 def run_numerical_faults(cases: Sequence[Case], progress: Callable[[str], None]) -> tuple[NumericalResult, ...]:
     """Run the numerical faults on the cases that have converged values.
 
-    Parameters
-    ----------
-    cases : sequence of Case
-        Cases with a train.
-    progress : callable
-        Function that receives the name of each fault before it runs.
+    Args:
+        cases: Cases with a train.
+        progress: Function that receives the name of each fault before it runs.
     """
     results = []
     for fault in FAULTS:

@@ -18,14 +18,10 @@ The contact height of the short case varies by 0.05 m. Usual other zeros, the ra
 def describe_other_position(case: Case, record: Record, stated: StartTable | None) -> str | None:
     """Text on positions that begin before the start; None if they do not.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    record : Record
-        Delivered record.
-    stated : StartTable or None
-        Start that the sidecar states; None stands for that of the case.
+    Args:
+        case: Case with a speed.
+        record: Delivered record.
+        stated: Start that the sidecar states; None stands for that of the case.
     """
     first, place = float(record.position[-1, 0]), (stated or case.start_table).place_m
     if first >= place - PLACE_TOLERANCE_M:
@@ -40,12 +36,9 @@ def describe_other_position(case: Case, record: Record, stated: StartTable | Non
 def describe_other_height(case: Case, record: Record) -> str | None:
     """Text on a contact height with another zero than that of the case; None for the same zero or without a height.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed and one tension section.
-    record : Record
-        Delivered record.
+    Args:
+        case: Case with a speed and one tension section.
+        record: Delivered record.
     """
     train = build_derived(case).train
     if record.contact_height is None or train is None:

@@ -31,21 +31,14 @@ shifts the pantographs by 1.2 spans."""
 
 @dataclass(frozen=True)
 class PassageRun:
-    """Simulated passage of a case.
-
-    Parameters
-    ----------
-    record : Record
-        Record of the passage.
-    run : RunTable
-        Simulated time, computing time, time step and element length.
-    uplift_forces : tuple of float
-        Uplift force of every pantograph [N].
-    """
+    """Simulated passage of a case."""
 
     record: Record
+    """Record of the passage."""
     run: RunTable
+    """Simulated time, computing time, time step and element length."""
     uplift_forces: tuple[float, ...]
+    """Uplift force of every pantograph [N]."""
 
 
 def run_passage(
@@ -57,29 +50,20 @@ def run_passage(
 ) -> PassageRun:
     """Simulate the passage of a case on a discretised line.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    line : DiscretisedLine
-        Line of the case, discretised with the element length of `discretisation`.
-    discretisation : Discretisation
-        Element length and time step.
-    uplift_forces : tuple of float, optional
-        Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force is required.
-    progress : callable
-        Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not known: each is
-        half of the rest.
+    Args:
+        case: Case with a speed.
+        line: Line of the case, discretised with the element length of `discretisation`.
+        discretisation: Element length and time step.
+        uplift_forces: Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force
+            is required.
+        progress: Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not
+            known: each is half of the rest.
 
-    Returns
-    -------
-    PassageRun
+    Returns:
         Record, run facts and uplift forces.
 
-    Raises
-    ------
-    TuningFailed
-        No uplift force gives the mean contact force that the case requires.
+    Raises:
+        TuningFailed: No uplift force gives the mean contact force that the case requires.
     """
     start = uplift_forces or estimate_uplift_forces(case, line)
     # The computing time must not include the compilation of the kernels: one time step compiles all of them.

@@ -16,9 +16,8 @@ from pantocheck.model.catenary import GRAVITY
 class SectionLimits(InputTable):
     """First key of a tension section."""
 
-    span_limits_m: Annotated[
-        Numbers, Field(description="positions of both anchors, and of the supports between them [m]")
-    ]
+    span_limits_m: Numbers
+    """Positions of both anchors, and of the supports between them [m]."""
 
 
 _KEYS: dict[str, Any] = {key: content for element in ELEMENTS for key, content in element.derived.items()}
@@ -33,24 +32,18 @@ DerivedSection: Any = create_model(
 class DerivedLine(DerivedSection):
     """Line at rest: x counts from the first anchor, y from the centre line, z from the datum of the line."""
 
-    gravity_m_s2: Annotated[float, Field(description="acceleration of gravity [m/s2]")]
-    origin_x_m: Annotated[float, Field(description="position of the first anchor of the line [m]")] = 0.0
-    zero_height_m: Annotated[
-        float,
-        Field(
-            description="datum of all heights [m]; on a level line the height of the contact wire at anchors, and at "
-            "supports whose arm keeps it level"
-        ),
-    ] = 0.0
-    further_sections: Annotated[
-        tuple[DerivedSection, ...],
-        Field(
-            strict=False,
-            exclude_if=is_absent,
-            description="every tension section behind the first one, in running order; the tables beside this key hold "
-            "for the first. Absent: one section",
-        ),
-    ] = ()
+    gravity_m_s2: float
+    """Acceleration of gravity [m/s2]."""
+    origin_x_m: float = 0.0
+    """Position of the first anchor of the line [m]."""
+    zero_height_m: float = 0.0
+    """Datum of all heights [m]; on a level line the height of the contact wire at anchors, and at supports whose arm
+    keeps it level.
+    """
+    further_sections: Annotated[tuple[DerivedSection, ...], Field(strict=False, exclude_if=is_absent)] = ()
+    """Every tension section behind the first one, in running order; the tables beside this key hold for the first.
+    Absent: one section.
+    """
 
 
 def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:

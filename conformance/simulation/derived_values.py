@@ -35,22 +35,15 @@ ELEMENT_M = 0.125
 def build_derived(case: Case) -> Derived:
     """Derived values of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Case with or without a train.
+    Args:
+        case: Case with or without a train.
 
-    Returns
-    -------
-    Derived
+    Returns:
         Values of the line and, with a speed, of the train.
 
-    Raises
-    ------
-    NoInitialState
-        The prescribed geometry of the line has no equilibrium.
-    NoEquilibrium
-        The line has no equilibrium under the uplift forces.
+    Raises:
+        NoInitialState: The prescribed geometry of the line has no equilibrium.
+        NoEquilibrium: The line has no equilibrium under the uplift forces.
     """
     line = discretise(build_catenary(case.line), ELEMENT_M)
     train = None if case.is_static else _train(case, line)

@@ -22,20 +22,14 @@ FILLED = 0.94
 
 @dataclass(frozen=True)
 class DrawingRow:
-    """Spans of one row.
-
-    Parameters
-    ----------
-    first, last : int
-        First and last span, from 1.
-    start, end : float
-        Positions of both ends [m].
-    """
+    """Spans of one row."""
 
     first: int
     last: int
+    """First and last span, from 1."""
     start: float
     end: float
+    """Positions of both ends [m]."""
 
 
 def divide_into_rows(geometry: Geometry) -> tuple[DrawingRow, ...]:

@@ -13,20 +13,13 @@ from pantocheck.model import Catenary, DiscretisedLine
 def find_deflection(line: DiscretisedLine, wire: str, field: str, position: RealArray | float) -> RealArray:
     """Height (`z`) or lateral position (`y`) of a wire at rest.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line at rest.
-    wire : str
-        Name of the wire.
-    field : str
-        `z` or `y`.
-    position : ndarray or float
-        Positions along the line [m].
+    Args:
+        line: Line at rest.
+        wire: Name of the wire.
+        field: `z` or `y`.
+        position: Positions along the line [m].
 
-    Returns
-    -------
-    ndarray
+    Returns:
         Deflection at every position [m].
     """
     row = line.mesh.row_of[wire, field]

@@ -27,44 +27,29 @@ WIRE_NAMES: dict[str, WireName] = {"CW": "contact_wire", "MW": "messenger_wire"}
 
 @dataclass(frozen=True)
 class DropCampaign:
-    """Factors of a campaign; an empty factor keeps the values of the case.
-
-    Parameters
-    ----------
-    masses : tuple of float
-        Masses [kg].
-    places : tuple of (str, float)
-        Wire and position of the mass [-, m].
-    contact_tensions, messenger_tensions : tuple of float
-        Tensions of one contact wire and of the messenger wire [N].
-    repeats : int
-        Number of records of each drop, which differ in their noise.
-    """
+    """Factors of a campaign; an empty factor keeps the values of the case."""
 
     masses: tuple[float, ...] = ()
+    """Masses [kg]."""
     places: tuple[tuple[WireName, float], ...] = ()
+    """Wire and position of the mass [-, m]."""
     contact_tensions: tuple[float, ...] = ()
     messenger_tensions: tuple[float, ...] = ()
+    """Tensions of one contact wire and of the messenger wire [N]."""
     repeats: int = 1
+    """Number of records of each drop, which differ in their noise."""
 
 
 @dataclass(frozen=True)
 class SensorChain:
-    """Sensors of a campaign.
-
-    Parameters
-    ----------
-    axes : tuple of {"z", "y"}
-        Axes of each sensor.
-    noise : float
-        RMS of the white noise of each channel [SI unit of the record].
-    seed : int
-        Seed of the noise of the campaign.
-    """
+    """Sensors of a campaign."""
 
     axes: tuple[Axis, ...]
+    """Axes of each sensor."""
     noise: float
+    """RMS of the white noise of each channel [SI unit of the record]."""
     seed: int
+    """Seed of the noise of the campaign."""
 
 
 def list_tension_changes(campaign: DropCampaign) -> tuple[tuple[InputChange, ...], ...]:
@@ -84,10 +69,8 @@ def list_tension_changes(campaign: DropCampaign) -> tuple[tuple[InputChange, ...
 def list_drops(case: Case, campaign: DropCampaign) -> tuple[DropTest, ...]:
     """Drops of a case for every combination of mass and place.
 
-    Raises
-    ------
-    InputError
-        A place is not on the line.
+    Raises:
+        InputError: A place is not on the line.
     """
     drops = require_mass_drop(case).drop
     masses = campaign.masses or tuple(dict.fromkeys(drop.mass_kg for drop in drops))
@@ -106,10 +89,8 @@ def list_drops(case: Case, campaign: DropCampaign) -> tuple[DropTest, ...]:
 def require_axes(case: Case, axes: tuple[Axis, ...]) -> None:
     """Require that the model of a line has the axes of the sensors.
 
-    Raises
-    ------
-    InputError
-        The model has no motion along an axis.
+    Raises:
+        InputError: The model has no motion along an axis.
     """
     if "x" in axes:
         raise InputError(
@@ -130,18 +111,12 @@ def simulate_records(
 ) -> Iterator[tuple[DropRecord, SimulatedDrop]]:
     """Simulate one drop of a campaign; yield its records, which differ in their noise.
 
-    Parameters
-    ----------
-    case : Case
-        Case with the line of the drop.
-    drop : DropTest
-        Mass and place.
-    sensors : SensorChain
-        Axes and noise of the sensors.
-    records : range
-        Numbers of the records in the campaign, from 0. Noise depends on the seed and on the number only.
-    progress : callable, optional
-        Function that receives the completed share of the simulation, 0 to 1.
+    Args:
+        case: Case with the line of the drop.
+        drop: Mass and place.
+        sensors: Axes and noise of the sensors.
+        records: Numbers of the records in the campaign, from 0. Noise depends on the seed and on the number only.
+        progress: Function that receives the completed share of the simulation, 0 to 1.
     """
     simulation = simulate_drop(_replace_drops(case, (drop,)), 1, progress, axes=sensors.axes)
     clean = simulation.record

@@ -26,18 +26,12 @@ PASS_BAND = 0.8
 
 @dataclass(frozen=True)
 class SimulatedDrop:
-    """Simulated drop.
-
-    Parameters
-    ----------
-    record : DropRecord
-        Record of the sensors, as of a measurement.
-    decay : FreeDecay
-        Motion at every time step of the simulation.
-    """
+    """Simulated drop."""
 
     record: DropRecord
+    """Record of the sensors, as of a measurement."""
     decay: FreeDecay
+    """Motion at every time step of the simulation."""
 
 
 def simulate_drop(
@@ -49,28 +43,18 @@ def simulate_drop(
 ) -> SimulatedDrop:
     """Simulate a drop of a case.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a mass drop.
-    number : int
-        Number of the drop, from 1.
-    progress : callable, optional
-        Function that receives the completed share of the simulation, 0 to 1.
-    line : Catenary, optional
-        Catenary; default: that of the case.
-    axes : tuple of {"z", "y"}
-        Axes of each sensor: vertical, and lateral on a line with stagger.
+    Args:
+        case: Case with a mass drop.
+        number: Number of the drop, from 1.
+        progress: Function that receives the completed share of the simulation, 0 to 1.
+        line: Catenary; default: that of the case.
+        axes: Axes of each sensor: vertical, and lateral on a line with stagger.
 
-    Returns
-    -------
-    SimulatedDrop
+    Returns:
         Record and motion.
 
-    Raises
-    ------
-    NoInitialState, NoEquilibrium, DidNotConverge
-        The simulation has no solution.
+    Raises:
+        NoInitialState, NoEquilibrium, DidNotConverge: The simulation has no solution.
     """
     mass_drop, discretisation = require_mass_drop(case), case.file.discretisation
     drop, catenary = mass_drop.drop[number - 1], line or build_catenary(case.line)
@@ -103,10 +87,8 @@ def simulate_drop(
 def require_mass_drop(case: Case) -> MassDrop:
     """Mass drop of a case.
 
-    Raises
-    ------
-    ValueError
-        The case has no mass drop.
+    Raises:
+        ValueError: The case has no mass drop.
     """
     if case.file.mass_drop is None:
         raise ValueError(f"case {case.id} has no mass drop")
@@ -118,17 +100,12 @@ def decimate(signals: RealArray, every: int) -> RealArray:
 
     The filter passes frequencies below 0.8 of half the new rate and attenuates those above half the new rate by 90 dB.
 
-    Parameters
-    ----------
-    signals : (n, c) ndarray
-        Signals of c channels.
-    every : int
-        Ratio k of the rates.
+    Args:
+        signals: Signals of c channels, (n, c).
+        every: Ratio k of the rates.
 
-    Returns
-    -------
-    (n / k, c) ndarray
-        Decimated signals.
+    Returns:
+        Decimated signals, (n / k, c).
     """
     if every == 1:
         return signals

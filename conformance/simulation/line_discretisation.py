@@ -22,22 +22,15 @@ class _Content:
 def discretise_line(line: LineFile, element: float) -> DiscretisedLine:
     """Discretise a line; the last lines are kept.
 
-    Parameters
-    ----------
-    line : LineFile
-        Content of the line file.
-    element : float
-        Largest length of an element [m].
+    Args:
+        line: Content of the line file.
+        element: Largest length of an element [m].
 
-    Returns
-    -------
-    DiscretisedLine
+    Returns:
         Line at rest.
 
-    Raises
-    ------
-    NoInitialState
-        The prescribed geometry has no equilibrium.
+    Raises:
+        NoInitialState: The prescribed geometry has no equilibrium.
     """
     return _discretise(_Content(line.model_dump_json(), line), element)
 

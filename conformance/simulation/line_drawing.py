@@ -43,27 +43,18 @@ LABEL_SPACE = 0.085
 
 @dataclass(frozen=True)
 class LineDrawing:
-    """Content of a drawing.
-
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line at rest.
-    title : str
-        Title of the line.
-    geometry : Geometry
-        Spans of the line.
-    marks : tuple of DrawnMark
-        Sensors and masses.
-    sections : tuple of SectionPlace
-        Tension sections; empty: one section.
-    """
+    """Content of a drawing."""
 
     line: DiscretisedLine
+    """Line at rest."""
     title: str
+    """Title of the line."""
     geometry: Geometry
+    """Spans of the line."""
     marks: tuple[DrawnMark, ...] = ()
+    """Sensors and masses."""
     sections: tuple[SectionPlace, ...] = ()
+    """Tension sections; empty: one section."""
 
     @property
     def rows(self) -> tuple[DrawingRow, ...]:
@@ -127,14 +118,10 @@ def draw_line_pdf(drawing: LineDrawing) -> bytes:
 def paint_rows(drawing: LineDrawing, rows: tuple[DrawingRow, ...], height: float) -> Figure:
     """Paint rows of a drawing below each other.
 
-    Parameters
-    ----------
-    drawing : LineDrawing
-        The drawing.
-    rows : tuple of DrawingRow
-        Rows of this sheet.
-    height : float
-        Height of the sheet [in].
+    Args:
+        drawing: The drawing.
+        rows: Rows of this sheet.
+        height: Height of the sheet [in].
     """
     lateral = drawing.line.catenary.has_lateral_field
     figure = Figure(figsize=(SHEET[0], height))

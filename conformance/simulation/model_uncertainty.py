@@ -22,15 +22,18 @@ Sizes = Annotated[dict[QuantityName, Positive], Field(default_factory=dict)]
 class Effect(InputTable):
     """Effect that the equations leave out, and its size on one line."""
 
-    along_track: Annotated[
-        Literal["free", "fixed"],
-        Field(description="lines that it concerns: fixed: those with a fixed messenger_support"),
-    ]
-    effect: Annotated[str, Field(description="equation of the simulator and effect that it leaves out", max_length=200)]
-    compared: Annotated[str, Field(description="line, speed and mesh of the comparison", max_length=200)]
-    source: Annotated[str, Field(description="source of the sizes: a key of sources.toml, or free text")]
-    relative_pct: Annotated[Sizes, Field(description="size of the effect on quantities, relative to the value [%]")]
-    absolute: Annotated[Sizes, Field(description="size of the effect on quantities, in their units")]
+    along_track: Literal["free", "fixed"]
+    """Lines that it concerns: fixed: those with a fixed messenger_support."""
+    effect: Annotated[str, Field(max_length=200)]
+    """Equation of the simulator and effect that it leaves out."""
+    compared: Annotated[str, Field(max_length=200)]
+    """Line, speed and mesh of the comparison."""
+    source: str
+    """Source of the sizes: a key of sources.toml, or free text."""
+    relative_pct: Sizes
+    """Size of the effect on quantities, relative to the value [%]."""
+    absolute: Sizes
+    """Size of the effect on quantities, in their units."""
 
     @property
     def sentence(self) -> str:
@@ -44,7 +47,8 @@ class Effect(InputTable):
 class ModelUncertaintyFile(InputTable):
     """Content of the file of model uncertainties."""
 
-    effect: Annotated[tuple[Effect, ...], Field(strict=False, description="effects that the equations leave out")]
+    effect: Annotated[tuple[Effect, ...], Field(strict=False)]
+    """Effects that the equations leave out."""
 
 
 @cache

@@ -23,22 +23,14 @@ def build_pantograph(
     head, and with all of them zero every spring is without force. The base spring of a chain whose uplift force acts
     below the head therefore carries a part of it: the frame is above that datum, as the springs over it are compressed.
 
-    Parameters
-    ----------
-    file : PantographFile
-        Content of the pantograph file.
-    uplift_force : float
-        Uplift force [N].
-    working_height : float
-        Static height of the head under this force [m].
-    wire_height : float
-        Nominal height of the contact wire [m].
-    aerodynamic_force : float
-        Part of the uplift force that acts at the point of the aerodynamic force [N].
+    Args:
+        file: Content of the pantograph file.
+        uplift_force: Uplift force [N].
+        working_height: Static height of the head under this force [m].
+        wire_height: Nominal height of the contact wire [m].
+        aerodynamic_force: Part of the uplift force that acts at the point of the aerodynamic force [N].
 
-    Returns
-    -------
-    Pantograph
+    Returns:
         Pantograph for the simulator.
     """
     model = _build_model(file, uplift_force, working_height, wire_height)

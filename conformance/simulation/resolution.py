@@ -41,12 +41,9 @@ def longest_element(speed: float, frequency: float) -> float:
 def resolution_warnings(case: Case, discretisation: Discretisation) -> tuple[str, ...]:
     """Warnings on elements and a time step that are too coarse for a reported band, with the largest suitable value.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    discretisation : Discretisation
-        Element length and time step of the reported run.
+    Args:
+        case: Case with a speed.
+        discretisation: Element length and time step of the reported run.
     """
     warnings = []
     h, dt = discretisation.element_m, discretisation.time_step_s

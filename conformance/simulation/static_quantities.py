@@ -33,16 +33,11 @@ MODES = 10
 def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Value]:
     """Quantities of a line at rest, in its middle span.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the line.
-    line : DiscretisedLine
-        Line of the case in finite elements.
+    Args:
+        case: Case of the line.
+        line: Line of the case in finite elements.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity.
     """
     quantities: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
@@ -67,16 +62,11 @@ def sample_span(start: float, end: float) -> RealArray:
 def first_modes(line: LineFile, element: float) -> Modes:
     """First modes of a shortened line whose motion is mainly vertical.
 
-    Parameters
-    ----------
-    line : LineFile
-        Content of the line file.
-    element : float
-        Longest element [m].
+    Args:
+        line: Content of the line file.
+        element: Longest element [m].
 
-    Returns
-    -------
-    Modes
+    Returns:
         Modes of the first spans of the line.
     """
     short = discretise_line(line.shorten(SPANS_OF_MODES), element)

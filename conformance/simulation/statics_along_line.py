@@ -17,16 +17,11 @@ def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict
 
     With several tension sections only the elasticity: a span of an overlap has the droppers of both.
 
-    Parameters
-    ----------
-    file : LineFile
-        Content of the line file.
-    line : DiscretisedLine
-        Its finite elements.
+    Args:
+        file: Content of the line file.
+        line: Its finite elements.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity: per span, per position (24 per span), or per dropper.
     """
     if not isinstance(file.geometry, ListedSpans):

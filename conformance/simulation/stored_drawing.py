@@ -36,12 +36,9 @@ class _Window:
 def build_line_shape(case: Case, line: DiscretisedLine) -> LineShape:
     """Shape of a line at rest over the spans of the analysis section and one span on either side.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the line.
-    line : DiscretisedLine
-        Line at rest.
+    Args:
+        case: Case of the line.
+        line: Line at rest.
     """
     geometry, (first, last) = case.line.geometry, case.analysed_spans
     first = max(first - 1, 1)
@@ -100,12 +97,9 @@ def _deflection(window: _Window, wire: str, field: str, position: float) -> floa
 def thin_curve(x: RealArray, y: RealArray, tolerance: float) -> RealArray:
     """Indices of the corners of a polygon that leaves a curve by no more than a tolerance (Douglas and Peucker, 1973).
 
-    Parameters
-    ----------
-    x, y : ndarray
-        Points of the curve, with rising x.
-    tolerance : float
-        Largest difference in y.
+    Args:
+        x, y: Points of the curve, with rising x.
+        tolerance: Largest difference in y.
     """
     kept, parts = {0, x.size - 1}, [(0, x.size - 1)]
     while parts:

@@ -14,10 +14,8 @@ def integrate_passage(
 ) -> History:
     """Simulate a passage; parameters and errors as in `model.simulate_passage`.
 
-    Raises
-    ------
-    InputError
-        The extra `simulator` is not installed.
+    Raises:
+        InputError: The extra `simulator` is not installed.
     """
     with refuse_missing_package("the simulation of a passage"):
         from pantocheck.model.dynamics.simulation import simulate_passage
@@ -29,10 +27,8 @@ def integrate_mass_drop(
 ) -> FreeDecay:
     """Simulate a mass drop; parameters and errors as in `model.dynamics.mass_drop.simulate_mass_drop`.
 
-    Raises
-    ------
-    InputError
-        The extra `simulator` is not installed.
+    Raises:
+        InputError: The extra `simulator` is not installed.
     """
     with refuse_missing_package("the simulation of a mass drop"):
         from pantocheck.model.dynamics.mass_drop import simulate_mass_drop

@@ -27,22 +27,15 @@ FORCE_STEP = 1.0
 def estimate_uplift_forces(case: Case, line: DiscretisedLine) -> tuple[float, ...]:
     """Estimate the uplift forces of a case: those that it states, and for a mean contact force the estimate.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    line : DiscretisedLine
-        Line of the case.
+    Args:
+        case: Case with a speed.
+        line: Line of the case.
 
-    Returns
-    -------
-    tuple of float
+    Returns:
         Uplift force of every pantograph [N].
 
-    Raises
-    ------
-    NoEquilibrium
-        The line has no equilibrium under a mean contact force.
+    Raises:
+        NoEquilibrium: The line has no equilibrium under a mean contact force.
     """
     return tuple(_estimate_uplift_force(case, line, index, lift) for index, lift in enumerate(case.lift_forces))
 

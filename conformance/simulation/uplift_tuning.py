@@ -34,26 +34,17 @@ def tune_uplift(
 ) -> TunedRun:
     """Tune the uplift forces by the secant method, each pantograph with its own slope.
 
-    Parameters
-    ----------
-    run : callable
-        Function that simulates the passage for given uplift forces [N].
-    mean_forces : callable
-        Function that gives the mean contact force of every pantograph of a run [N].
-    start : sequence of float
-        Uplift forces of the first run [N].
-    targets : sequence of float or None
-        Target of every mean contact force [N]; None: the uplift force remains.
+    Args:
+        run: Function that simulates the passage for given uplift forces [N].
+        mean_forces: Function that gives the mean contact force of every pantograph of a run [N].
+        start: Uplift forces of the first run [N].
+        targets: Target of every mean contact force [N]; None: the uplift force remains.
 
-    Returns
-    -------
-    TunedRun
+    Returns:
         The run that meets the targets.
 
-    Raises
-    ------
-    TuningFailed
-        None of the first `MAX_RUNS` runs meets the targets.
+    Raises:
+        TuningFailed: None of the first `MAX_RUNS` runs meets the targets.
     """
     target = np.array([np.nan if value is None else value for value in targets])
     has_target = np.isfinite(target)

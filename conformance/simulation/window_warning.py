@@ -14,18 +14,12 @@ def smallest_reach(wave_speed: float, speed: float, duration: float) -> float:
     A wave of speed c needs the time R / (c - v) to get R ahead of a pantograph of speed v, and R / (c + v) to return
     from there; behind the pantograph the two are exchanged.
 
-    Parameters
-    ----------
-    wave_speed : float
-        Speed of the fastest wave [m/s].
-    speed : float
-        Speed of the pantographs [m/s].
-    duration : float
-        Simulated time [s].
+    Args:
+        wave_speed: Speed of the fastest wave [m/s].
+        speed: Speed of the pantographs [m/s].
+        duration: Simulated time [s].
 
-    Returns
-    -------
-    float
+    Returns:
         Half-width [m]; infinite for a train faster than the waves.
     """
     c, v = wave_speed, speed
@@ -35,14 +29,10 @@ def smallest_reach(wave_speed: float, speed: float, duration: float) -> float:
 def window_warnings(case: Case, line: DiscretisedLine, discretisation: Discretisation) -> tuple[str, ...]:
     """Warn of an active window (`reach_m`) from whose edges waves return; none without a limited window.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    line : DiscretisedLine
-        Line of the case.
-    discretisation : Discretisation
-        Discretisation with the half-width of the window.
+    Args:
+        case: Case with a speed.
+        line: Line of the case.
+        discretisation: Discretisation with the half-width of the window.
     """
     reach, length = discretisation.reach_m, float(line.mesh.position[-1] - line.mesh.position[0])
     smallest = smallest_reach(max_wave_speed(line), case.speed, (case.end - case.start) / case.speed)

@@ -43,16 +43,11 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
 
     The pre-sag of the line at rest is left out.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a speed.
-    line : DiscretisedLine
-        Line of the case.
-    file : PantographFile
-        Pantograph.
-    uplift_force : float
-        Its uplift force [N].
+    Args:
+        case: Case with a speed.
+        line: Line of the case.
+        file: Pantograph.
+        uplift_force: Its uplift force [N].
     """
     uplift = mean_static_uplift(line, tuple(working_height_positions(case).tolist()), uplift_force)
     return nominal_wire_height(case) + (uplift + uplift_force / file.contact.stiffness_N_m)

@@ -19,18 +19,12 @@ def draw_band_bars(
 ) -> tuple[Chart, ...]:
     """Draw one bar chart per pantograph: computed and printed RMS of the contact force in each band.
 
-    Parameters
-    ----------
-    values : mapping of str to ValuesByOwner
-        Computed values by damping model.
-    printed : PrintedValues
-        Printed values; may be empty.
-    bands : sequence of str
-        Names of the quantities.
+    Args:
+        values: Computed values by damping model.
+        printed: Printed values; may be empty.
+        bands: Names of the quantities.
 
-    Returns
-    -------
-    tuple of Chart
+    Returns:
         Charts in the order of the pantographs.
     """
     origin = "computed on the assumed line and printed" if printed else "computed under each damping model"

@@ -18,16 +18,12 @@ ONLY_BUILTIN = "only the reference simulator can run this study"
 def run_study(case: Case, system: System) -> Outcome:
     """Run a case on a system: a single run, a study with all its runs, or a mass drop with its identification.
 
-    Parameters
-    ----------
-    case : Case
-        Case to run.
-    system : System
-        System under test. Any system can run the studies of changed damping. The others need the reference simulator.
+    Args:
+        case: Case to run.
+        system: System under test. Any system can run the studies of changed damping. The others need the reference
+            simulator.
 
-    Returns
-    -------
-    Outcome
+    Returns:
         Delivered run or study, or the reason why there is none.
     """
     match case.file.study:

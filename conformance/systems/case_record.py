@@ -11,22 +11,15 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 def read_case_record(path: Path, case: Case) -> tuple[Record, RecordSidecar]:
     """Read the record of a case.
 
-    Parameters
-    ----------
-    path : Path
-        Sidecar of the record.
-    case : Case
-        Case that the record belongs to.
+    Args:
+        path: Sidecar of the record.
+        case: Case that the record belongs to.
 
-    Returns
-    -------
-    tuple of (Record, RecordSidecar)
+    Returns:
         Record and its sidecar.
 
-    Raises
-    ------
-    InputError
-        A file is missing, damaged or contradictory. A missing start is named with that of the case.
+    Raises:
+        InputError: A file is missing, damaged or contradictory. A missing start is named with that of the case.
     """
     if case.is_static:
         return read_record(path)

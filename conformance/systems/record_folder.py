@@ -19,19 +19,13 @@ from pantocheck.conformance.systems.case_record import read_case_record
 
 @dataclass(frozen=True)
 class RecordFolder:
-    """Records of other simulators or of measurements, by the case id of their sidecars.
-
-    Parameters
-    ----------
-    name, version : str
-        System that all sidecars name; otherwise the name of the folder.
-    sidecars : tuple of (str, Path)
-        Case id and file of every sidecar or summary record.
-    """
+    """Records of other simulators or of measurements, by the case id of their sidecars."""
 
     name: str
     version: str
+    """System that all sidecars name; otherwise the name of the folder."""
     sidecars: tuple[tuple[str, Path], ...]
+    """Case id and file of every sidecar or summary record."""
     kind: Literal["record"] = "record"
 
     def run(self, case: Case) -> Outcome:
@@ -76,20 +70,15 @@ def _deliver_summary(summary: RecordSummary, case: Case, digest: str) -> Outcome
 def open_record_folder(folder: Path) -> RecordFolder:
     """Find the records of a folder and of the folders below it.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder; a relative path may start at the library.
+    Args:
+        folder: Folder; a relative path may start at the library.
 
-    Returns
-    -------
-    RecordFolder
+    Returns:
         System with the records of the folder.
 
-    Raises
-    ------
-    InputError
-        There is no such folder or no record in it, a sidecar is invalid, or two sidecars have the same case.
+    Raises:
+        InputError: There is no such folder or no record in it, a sidecar is invalid, or two sidecars have the same
+            case.
     """
     where = f"system record:{folder}"
     if not folder.is_dir() and not folder.is_absolute() and (library_folder() / folder).is_dir():

@@ -13,22 +13,12 @@ TIMEOUT_S = 600.0
 def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
     """Choose the system under test: `builtin`, `record:DIR` or `command:PROGRAM ARGUMENTS`.
 
-    Parameters
-    ----------
-    text : str
-        Value of `--system`.
-    timeout_s : float
-        Time limit of a program for a case [s].
+    Args:
+        text: Value of `--system`.
+        timeout_s: Time limit of a program for a case [s].
 
-    Returns
-    -------
-    System
-        The system under test.
-
-    Raises
-    ------
-    InputError
-        There is no such system.
+    Raises:
+        InputError: There is no such system.
     """
     kind, _, rest = text.partition(":")
     if text == "builtin":

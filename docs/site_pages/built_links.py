@@ -19,10 +19,8 @@ EXTERNAL = re.compile(r"https?://[\w.-]+\.[a-z]{2,}(:\d+)?(/[^\s<>\"]*)?(\?[^\s]
 class PageLinks(HTMLParser):
     """Anchors and targets of a page.
 
-    Parameters
-    ----------
-    text : str
-        The page in HTML.
+    Args:
+        text: The page in HTML.
     """
 
     def __init__(self, text: str) -> None:

@@ -23,10 +23,8 @@ ORDER = (
 class GalleryOrder:
     """Sort key of the examples, as sphinx-gallery needs it.
 
-    Parameters
-    ----------
-    folder : str or PathLike
-        Folder of the examples; the order does not depend on it.
+    Args:
+        folder: Folder of the examples; the order does not depend on it.
     """
 
     def __init__(self, folder: str | PathLike[str]) -> None:

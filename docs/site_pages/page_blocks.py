@@ -16,24 +16,16 @@ RUN_LANGUAGES = ("sh", "bash", "python")
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block of a page.
-
-    Parameters
-    ----------
-    page : Path
-        Page that contains the block.
-    line : int
-        Number of its first line of text in the page, from 1.
-    language : str
-        Language behind the fence; empty if none is stated.
-    text : str
-        Text between the fences.
-    """
+    """A fenced block of a page."""
 
     page: Path
+    """Page that contains the block."""
     line: int
+    """Number of its first line of text in the page, from 1."""
     language: str
+    """Language behind the fence; empty if none is stated."""
     text: str
+    """Text between the fences."""
 
     @property
     def file(self) -> str | None:

@@ -46,18 +46,12 @@ class BlockFault(Exception):
 
 @dataclass
 class PageRun:
-    """State of a run: folder, names of the Python blocks, and the output of the last block.
-
-    Parameters
-    ----------
-    root : Path
-        Folder with the files of the clone.
-    environment : dict of str to str
-        Environment of the commands.
-    """
+    """State of a run: folder, names of the Python blocks, and the output of the last block."""
 
     root: Path
+    """Folder with the files of the clone."""
     environment: dict[str, str]
+    """Environment of the commands."""
     current: Path = field(init=False)
     names: dict[str, Any] = field(default_factory=lambda: {"__name__": "__main__"})
     output: str = ""

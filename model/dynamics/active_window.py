@@ -40,31 +40,23 @@ changes the contact force by 3e-8 N with 5e-5 s, by 3e-5 N with 3e-5 s, and by 2
 
 
 class WindowArrays(NamedTuple):
-    """Limits of the active window.
-
-    Parameters
-    ----------
-    position : (S,) ndarray
-        Positions of the stations [m].
-    wave_speed : float
-        Upper bound of the wave speed, which moves the edges of the window [m/s].
-    duration : float
-        Simulated time [s].
-    kept_behind, kept_ahead : float
-        Distances behind the last and ahead of the first pantograph within which the motion is known until the end [m].
-    reach : float
-        Largest half-width around the pantographs [m].
-    whole_line : bool
-        Whether the whole line is active at all times.
-    """
+    """Limits of the active window."""
 
     position: Array
+    """Positions of the stations, (S,) [m]."""
     wave_speed: float
+    """Upper bound of the wave speed, which moves the edges of the window [m/s]."""
     duration: float
+    """Simulated time [s]."""
     kept_behind: float
     kept_ahead: float
+    """Distances behind the last and ahead of the first pantograph within which the motion is known until the end
+    [m].
+    """
     reach: float
+    """Largest half-width around the pantographs [m]."""
     whole_line: bool
+    """Whether the whole line is active at all times."""
 
 
 class Window(NamedTuple):
@@ -130,19 +122,13 @@ def active_window(limits: WindowArrays, train: Train) -> Window:
 def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray[np.bool_]:
     """Find the times at which the motion of each watched station is unknown: a wave from a cut can have reached it.
 
-    Parameters
-    ----------
-    limits : WindowArrays
-        Limits of the active window.
-    passage : Passage
-        Train, its speed and the U watched stations.
-    time : (T,) ndarray
-        Times at the ends of the steps [s].
+    Args:
+        limits: Limits of the active window.
+        passage: Train, its speed and the U watched stations.
+        time: Times at the ends of the steps, (T,) [s].
 
-    Returns
-    -------
-    (U, T) ndarray of bool
-        True where the motion is unknown.
+    Returns:
+        True where the motion is unknown, (U, T).
     """
     unknown = np.zeros((len(passage.watched), time.size), dtype=np.bool_)
     if limits.whole_line:

@@ -24,35 +24,23 @@ ForceMoment = tuple[float, float]
 
 
 class Factor(NamedTuple):
-    """Block factors of B rows with S stations.
-
-    Parameters
-    ----------
-    inverse : (B, S, 3) ndarray
-        Entries ww, wr, rr of D_s^-1; zero for fixed unknowns.
-    link : (B, S, 4) ndarray
-        Entries ww, wr, rw, rr of the factor L_s, which transfers the force at station s to the next one.
-    """
+    """Block factors of B rows with S stations."""
 
     inverse: Array
+    """Entries ww, wr, rr of D_s^-1, (B, S, 3); zero for fixed unknowns."""
     link: Array
+    """Entries ww, wr, rw, rr of the factor L_s, which transfers the force at station s to the next one, (B, S, 4)."""
 
 
 def factorise_blocks(diagonal: Array, below: Array, free: NDArray[np.bool_]) -> Factor:
     """Eliminate all rows.
 
-    Parameters
-    ----------
-    diagonal : (B, S, 2, 2) ndarray
-        Diagonal blocks A_s.
-    below : (B, S, 2, 2) ndarray
-        Sub-diagonal blocks; entry s couples station s to station s - 1.
-    free : (B, S, 2) ndarray of bool
-        Whether deflection and slope can move.
+    Args:
+        diagonal: Diagonal blocks A_s, (B, S, 2, 2).
+        below: Sub-diagonal blocks, (B, S, 2, 2); entry s couples station s to station s - 1.
+        free: Whether deflection and slope can move, (B, S, 2).
 
-    Returns
-    -------
-    Factor
+    Returns:
         Block factors.
     """
     rows, stations = diagonal.shape[:2]
@@ -89,19 +77,13 @@ def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], factor: F
 def solve_stations(factor: Factor, row: int, first: int, last: int, w: Array, r: Array, shift: int) -> None:
     """Solve A x = f in place for some stations of one row; f is zero and x negligible at all others.
 
-    Parameters
-    ----------
-    factor : Factor
-        Block factors of A.
-    row : int
-        Index of the row.
-    first, last : int
-        First and last of the stations.
-    w, r : (n,) ndarray
-        Forces and moments [N, N m], replaced by accelerations of deflection and slope [m/s2, 1/s2]. Station s is at
-        index s + shift.
-    shift : int
-        Index of station 0.
+    Args:
+        factor: Block factors of A.
+        row: Index of the row.
+        first, last: First and last of the stations.
+        w, r: Forces and moments [N, N m], replaced by accelerations of deflection and slope [m/s2, 1/s2], (n,). Station
+            s is at index s + shift.
+        shift: Index of station 0.
     """
     inverse, link = factor.inverse, factor.link
     force, moment = 0.0, 0.0

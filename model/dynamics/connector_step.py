@@ -25,58 +25,37 @@ from pantocheck.model.fem.connectors import Connectors
 
 
 class NodeArrays(NamedTuple):
-    """Nodes of the connectors, row by row; J nodes, L ends of connectors, B rows.
-
-    Parameters
-    ----------
-    first : (B + 1,) int ndarray
-        First node of each row, and J.
-    row, station : (J,) int ndarray
-        Places of the nodes; the stations of a row increase.
-    column : (J, 2, n) ndarray
-        Columns of the inverse around the nodes: deflection and slope [1/kg, 1/(kg m)].
-    column_start : (J,) int ndarray
-        Station of the first value of each column; it can lie before the line.
-    first_end : (J + 1,) int ndarray
-        First end of a connector at each node, and L.
-    connector : (L,) int ndarray
-        Connector of each end.
-    coefficient : (L,) ndarray
-        Its coefficient in the elongation of the connector [-].
-    """
+    """Nodes of the connectors, row by row; J nodes, L ends of connectors, B rows."""
 
     first: Indices
+    """First node of each row, and J, (B + 1,)."""
     row: Indices
     station: Indices
+    """Places of the nodes, (J,); the stations of a row increase."""
     column: Array
+    """Columns of the inverse around the nodes, (J, 2, n): deflection and slope [1/kg, 1/(kg m)]."""
     column_start: Indices
+    """Station of the first value of each column, (J,); it can lie before the line."""
     first_end: Indices
+    """First end of a connector at each node, and L, (J + 1,)."""
     connector: Indices
+    """Connector of each end, (L,)."""
     coefficient: Array
+    """Its coefficient in the elongation of the connector, (L,) [-]."""
 
 
 class ConnectorArrays(NamedTuple):
-    """Connectors of a line in a time step; N connectors in R runs with at most E ends.
-
-    Parameters
-    ----------
-    run : (R + 1,) int ndarray
-        First connector of each run (`find_runs`), and N.
-    station : (N,) int ndarray
-        Stations of the connectors.
-    end_node, end_index : (N, E) int ndarray
-        Node of each end, and its index in a flattened plane of rows.
-    end_coefficient : (N, E) ndarray
-        Coefficient of each end in the elongation; zero for a missing end [-].
-    nodes : NodeArrays
-        Nodes.
-    """
+    """Connectors of a line in a time step; N connectors in R runs with at most E ends."""
 
     run: Indices
+    """First connector of each run (`find_runs`), and N, (R + 1,)."""
     station: Indices
+    """Stations of the connectors, (N,)."""
     end_node: Indices
     end_index: Indices
+    """Node of each end, and its index in a flattened plane of rows, (N, E)."""
     end_coefficient: Array
+    """Coefficient of each end in the elongation, (N, E); zero for a missing end [-]."""
     nodes: NodeArrays
 
 
@@ -169,18 +148,12 @@ def accelerate_connectors(
 ) -> None:
     """Compute the accelerations of the active nodes and elongations under all forces.
 
-    Parameters
-    ----------
-    connectors : ConnectorArrays
-        Connectors of a line.
-    motion : Motion
-        Forces in place of the accelerations.
-    node : (J,) ndarray
-        Accelerations of the nodes, replaced [m/s2].
-    work : ScalarWorkspace
-        Its accelerations are replaced.
-    window : Window
-        Active window.
+    Args:
+        connectors: Connectors of a line.
+        motion: Forces in place of the accelerations.
+        node: Accelerations of the nodes, replaced, (J,) [m/s2].
+        work: Its accelerations are replaced.
+        window: Active window.
     """
     nodes, width = connectors.nodes, motion.w.shape[2]
     size = nodes.column.shape[2]
@@ -203,16 +176,11 @@ def accelerate_connectors(
 def inner_product(pair: Array, first: int, size: int, w: Array, r: Array, at: int) -> float:
     """Inner product of two rows, deflections and slopes, with parts of two fields.
 
-    Parameters
-    ----------
-    pair : ndarray
-        Array with both rows one after the other.
-    first, size : int
-        Index of the first row in the flattened array, and length of a row: whole vectors.
-    w, r : ndarray
-        Deflections and slopes.
-    at : int
-        Index of their parts in the flattened arrays.
+    Args:
+        pair: Array with both rows one after the other.
+        first, size: Index of the first row in the flattened array, and length of a row: whole vectors.
+        w, r: Deflections and slopes.
+        at: Index of their parts in the flattened arrays.
     """
     product, other = splat(0.0), splat(0.0)
     for i in range(0, size, LANES):

@@ -16,90 +16,61 @@ from pantocheck.model.fem.contact_wires import ContactWires, locate_contact_wire
 
 
 class ContactArrays(NamedTuple):
-    """Contact wires of a line in a time step; W contact wires, S stations.
-
-    Parameters
-    ----------
-    time_step : float
-        Time step [s].
-    position : (S,) ndarray
-        Positions of the stations [m].
-    wires : ContactWires
-        Rows and extents of the contact wires.
-    rest : (B, S, 2) ndarray
-        Height and slope of the rows in the initial state [m, -].
-    flexibility : (B, S-1, 7) ndarray
-        Residual flexibility of the elements, see `element_flexibility` [m/N].
-    irregularity : IrregularityArrays
-        Additional heights of the contact wires.
-    factor : Factor
-        Block factors of the effective matrix.
-    half_width : int
-        Number of stations that a force influences on either side of an element (`column_half_width`).
-    """
+    """Contact wires of a line in a time step; W contact wires, S stations."""
 
     time_step: float
+    """Time step [s]."""
     position: Array
+    """Positions of the stations, (S,) [m]."""
     wires: ContactWires
+    """Rows and extents of the contact wires."""
     rest: Array
+    """Height and slope of the rows in the initial state, (B, S, 2) [m, -]."""
     flexibility: Array
+    """Residual flexibility of the elements, see `element_flexibility`, (B, S-1, 7) [m/N]."""
     irregularity: IrregularityArrays
+    """Additional heights of the contact wires."""
     factor: Factor
+    """Block factors of the effective matrix."""
     half_width: int
+    """Number of stations that a force influences on either side of an element (`column_half_width`)."""
 
 
 class ContactWorkspace(NamedTuple):
-    """Predictors of the contacts of one step; P pantographs, W contact wires, N scalar forces near a contact at most.
-
-    Parameters
-    ----------
-    element : (P,) int ndarray
-        Element above each pantograph.
-    above : (P, W) int ndarray
-        Contact wires above each pantograph, in the order of the line.
-    number_above : (P,) int ndarray
-        Their number.
-    shape : (P, W, 4) ndarray
-        Hermite functions at the contacts.
-    stiffness : (P, W) ndarray
-        Penalty and residual flexibility in series [N/m].
-    overlap : (P, W) ndarray
-        Predicted overlap of head and wire [m].
-    head_compliance : (P,) ndarray
-        Acceleration of each head per contact force [1/kg].
-    response : (P, W, 2, n) ndarray
-        Accelerations of deflection and slope around each contact per contact force [1/kg, 1/(kg m)].
-    start : (P,) int ndarray
-        Station of their first values, a multiple of the size of a vector; it can lie before the line.
-    wire_compliance : (P, P, W) ndarray
-        Acceleration of each wire at one contact per force at another [1/kg].
-    wire_acceleration : (P, W) ndarray
-        Acceleration of each wire at its contacts under the forces of the last step [m/s2].
-    first_guess : (P, W) ndarray
-        Contact forces of the last step [N].
-    near : (P, W, N) int ndarray
-        Scalar forces that a contact influences.
-    influence : (P, W, N) ndarray
-        Acceleration of their elongations per contact force [1/kg].
-    number_near : (P, W) int ndarray
-        Their number.
+    """Predictors of the contacts of one step; P pantographs, W contact wires, N scalar forces near a contact at
+    most.
     """
 
     element: Indices
+    """Element above each pantograph, (P,)."""
     above: Indices
+    """Contact wires above each pantograph, in the order of the line, (P, W)."""
     number_above: Indices
+    """Their number, (P,)."""
     shape: Array
+    """Hermite functions at the contacts, (P, W, 4)."""
     stiffness: Array
+    """Penalty and residual flexibility in series, (P, W) [N/m]."""
     overlap: Array
+    """Predicted overlap of head and wire, (P, W) [m]."""
     head_compliance: Array
+    """Acceleration of each head per contact force, (P,) [1/kg]."""
     response: Array
+    """Accelerations of deflection and slope around each contact per contact force, (P, W, 2, n) [1/kg, 1/(kg m)]."""
     start: Indices
+    """Station of their first values, a multiple of the size of a vector, (P,); it can lie before the line."""
     wire_compliance: Array
+    """Acceleration of each wire at one contact per force at another, (P, P, W) [1/kg]."""
     wire_acceleration: Array
+    """Acceleration of each wire at its contacts under the forces of the last step, (P, W) [m/s2]."""
     first_guess: Array
+    """Contact forces of the last step, (P, W) [N]."""
     near: Indices
+    """Scalar forces that a contact influences, (P, W, N)."""
     influence: Array
+    """Acceleration of their elongations per contact force, (P, W, N) [1/kg]."""
     number_near: Indices
+    """Their number, (P, W)."""
 
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:

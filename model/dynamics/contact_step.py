@@ -134,16 +134,11 @@ def accelerate_contacts(
 ) -> None:
     """Compute the accelerations of the wires at the contacts under all forces, and the influence of the contacts.
 
-    Parameters
-    ----------
-    contact, connectors, distributed : ContactArrays, ConnectorArrays, DistributedArrays
-        Contact wires, connectors and distributed forces of a line.
-    motion : Motion
-        Forces in place of the accelerations.
-    work : ContactWorkspace
-        Responses of the wires; the rest is filled.
-    window : Window
-        Active window.
+    Args:
+        contact, connectors, distributed: Contact wires, connectors and distributed forces of a line.
+        motion: Forces in place of the accelerations.
+        work: Responses of the wires; the rest is filled.
+        window: Active window.
     """
     pantographs, size = work.element.size, work.response.shape[3]
     wires, rows, width = work.shape.shape[1], motion.w.shape[1], motion.w.shape[2]
@@ -215,16 +210,11 @@ def _list_near_distributed(
 def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: ScalarWorkspace) -> float:
     """Solve every contact once, all other forces held; return the largest change of a contact force [N].
 
-    Parameters
-    ----------
-    dt : float
-        Time step [s].
-    train : Train
-        Pantographs; contact forces and accelerations are updated.
-    work : ContactWorkspace
-        Predictors of the contacts.
-    scalar : ScalarWorkspace
-        Scalar forces, whose accelerations are updated.
+    Args:
+        dt: Time step [s].
+        train: Pantographs; contact forces and accelerations are updated.
+        work: Predictors of the contacts.
+        scalar: Scalar forces, whose accelerations are updated.
     """
     largest = 0.0
     for p in range(train.position.size):

@@ -30,29 +30,20 @@ Strip = tuple[int, int, int, Array]
 
 
 class DistributedArrays(NamedTuple):
-    """Distributed forces of a line in a time step; D forces on Z strips.
-
-    Parameters
-    ----------
-    number : int
-        Number of forces, D.
-    force, row, station : (Z,) int ndarray
-        Force and row of each strip, and its first station, a multiple of the size of a vector.
-    first : (Z + 1,) int ndarray
-        Index of the first value of each strip in the two arrays below, and their size.
-    coefficient : (X,) ndarray
-        Coefficients of the elongation, strip by strip: first of the deflections, then of the slopes [-, m].
-    response : (X,) ndarray
-        Accelerations of deflections and slopes per force [1/kg, 1/(kg m)].
-    """
+    """Distributed forces of a line in a time step; D forces on Z strips."""
 
     number: int
+    """Number of forces, D."""
     force: Indices
     row: Indices
     station: Indices
+    """Force and row of each strip, and its first station, a multiple of the size of a vector, (Z,)."""
     first: Indices
+    """Index of the first value of each strip in the two arrays below, and their size, (Z + 1,)."""
     coefficient: Array
+    """Coefficients of the elongation, strip by strip, (X,): first of the deflections, then of the slopes [-, m]."""
     response: Array
+    """Accelerations of deflections and slopes per force, (X,) [1/kg, 1/(kg m)]."""
 
 
 def distributed_laws(stretches: HeldStretches, terms: ModalTerms) -> ScalarLaw:

@@ -7,58 +7,37 @@ from pantocheck.model.arrays import Array
 
 @dataclass(frozen=True)
 class MassDropSetup:
-    """Mass, position and release of a mass drop, and the recorded signals.
-
-    Parameters
-    ----------
-    mass : float
-        Dropped mass [kg].
-    wire : str
-        Name of the wire that carries it.
-    position : float
-        Position of the mass [m].
-    release_duration : float
-        Time in which its weight decreases linearly to zero; 0: at once [s].
-    hanging : float
-        Time recorded before the release [s].
-    duration : float
-        Time recorded after the release [s].
-    time_step : float
-        Time step [s].
-    sensors : tuple of (str, float)
-        Wire and position of each sensor [-, m].
-    axes : tuple of str
-        Axes that each sensor records: "z" vertical, "y" lateral, which needs a line with a lateral field.
-    """
+    """Mass, position and release of a mass drop, and the recorded signals."""
 
     mass: float
+    """Dropped mass [kg]."""
     wire: str
+    """Name of the wire that carries it."""
     position: float
+    """Position of the mass [m]."""
     release_duration: float
+    """Time in which its weight decreases linearly to zero; 0: at once [s]."""
     hanging: float
+    """Time recorded before the release [s]."""
     duration: float
+    """Time recorded after the release [s]."""
     time_step: float
+    """Time step [s]."""
     sensors: tuple[tuple[str, float], ...]
+    """Wire and position of each sensor [-, m]."""
     axes: tuple[str, ...] = ("z",)
+    """Axes that each sensor records: "z" vertical, "y" lateral, which needs a line with a lateral field."""
 
 
 @dataclass(frozen=True)
 class FreeDecay:
-    """Result of a mass drop; T samples, U sensors times axes, sensor by sensor.
-
-    Parameters
-    ----------
-    time : (T,) ndarray
-        Time after the release, negative before [s].
-    motion : (U, T, 3) ndarray
-        Displacement, velocity, acceleration along an axis [m, m/s, m/s2].
-    last_slack : float or None
-        Last time after the release at which a dropper was slack; None if never [s].
-    slack_at_start : int
-        Number of slack droppers under the hanging mass.
-    """
+    """Result of a mass drop; T samples, U sensors times axes, sensor by sensor."""
 
     time: Array
+    """Time after the release, negative before, (T,) [s]."""
     motion: Array
+    """Displacement, velocity, acceleration along an axis, (U, T, 3) [m, m/s, m/s2]."""
     last_slack: float | None
+    """Last time after the release at which a dropper was slack; None if never [s]."""
     slack_at_start: int
+    """Number of slack droppers under the hanging mass."""

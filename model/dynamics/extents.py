@@ -21,17 +21,12 @@ from pantocheck.model.fem.beams import Beams
 
 
 class Extents(NamedTuple):
-    """Extents of N wires, row by row.
-
-    Parameters
-    ----------
-    row, first, last : (N,) int ndarray
-        Row, first and last station of each wire.
-    """
+    """Extents of N wires, row by row."""
 
     row: Indices
     first: Indices
     last: Indices
+    """Row, first and last station of each wire, (N,)."""
 
 
 def find_extents(beams: Beams) -> Extents:

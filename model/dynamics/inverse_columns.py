@@ -56,16 +56,12 @@ def _largest_tail(factor: Factor, rows: Indices, stations: Indices, half_width: 
 def inverse_columns(factor: Factor, rows: Indices, stations: Indices, starts: Indices, columns: Array) -> None:
     """Fill local columns of the inverse for L unit forces.
 
-    Parameters
-    ----------
-    factor : Factor
-        Block factors.
-    rows, stations : (L,) int ndarray
-        Places of the forces.
-    starts : (L,) int ndarray
-        Station of the first value of each column; it can lie before the line.
-    columns : (L, 2, n) ndarray
-        Deflection and slope at n stations, zero on entry; they stay zero beyond the ends of the line.
+    Args:
+        factor: Block factors.
+        rows, stations: Places of the forces, (L,).
+        starts: Station of the first value of each column, (L,); it can lie before the line.
+        columns: Deflection and slope at n stations, zero on entry, (L, 2, n); they stay zero beyond the ends of the
+            line.
     """
     for k in range(rows.size):
         first, last = max(0, starts[k]), min(factor.link.shape[1], starts[k] + columns.shape[2]) - 1

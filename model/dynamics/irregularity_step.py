@@ -15,21 +15,16 @@ _find_interval = kernel(find_element)
 
 
 class IrregularityArrays(NamedTuple):
-    """Splines of W contact wires one after the other, with K points in all.
-
-    Parameters
-    ----------
-    first : (W + 1,) int ndarray
-        First point of each wire; the last entry is K.
-    position : (K,) ndarray
-        Positions of the points [m].
-    polynomial : (K, 4) ndarray
-        Polynomial from each point to the next, highest power first [m-2, m-1, -, m]; zero at the last point of a wire.
-    """
+    """Splines of W contact wires one after the other, with K points in all."""
 
     first: Indices
+    """First point of each wire, (W + 1,); the last entry is K."""
     position: Array
+    """Positions of the points, (K,) [m]."""
     polynomial: Array
+    """Polynomial from each point to the next, highest power first, (K, 4) [m-2, m-1, -, m]; zero at the last point
+    of a wire.
+    """
 
 
 def build_irregularity_arrays(wires: Sequence[Wire]) -> IrregularityArrays:

@@ -60,63 +60,41 @@ class Load(NamedTuple):
 
 
 class KernelArrays(NamedTuple):
-    """Arrays of the time step.
-
-    Parameters
-    ----------
-    time_step : float
-        Time step [s].
-    layout : Layout
-        Layout of the rows of a motion.
-    window : WindowArrays
-        Limits of the active window.
-    panels : PanelFactor
-        Block factors of the effective matrix.
-    wires : WireArrays
-        Wires and lumped parts.
-    connectors : ConnectorArrays
-        Droppers and other connectors.
-    distributed : DistributedArrays
-        Held stretches and modes with modal damping.
-    forces : ScalarForces
-        Scalar forces: tensions of the connectors, then distributed forces.
-    contact : ContactArrays
-        Contact wires under the pantographs.
-    load : Load
-        Position of the external load.
-    """
+    """Arrays of the time step."""
 
     time_step: float
+    """Time step [s]."""
     layout: Layout
+    """Layout of the rows of a motion."""
     window: WindowArrays
+    """Limits of the active window."""
     panels: PanelFactor
+    """Block factors of the effective matrix."""
     wires: WireArrays
+    """Wires and lumped parts."""
     connectors: ConnectorArrays
+    """Droppers and other connectors."""
     distributed: DistributedArrays
+    """Held stretches and modes with modal damping."""
     forces: ScalarForces
+    """Scalar forces: tensions of the connectors, then distributed forces."""
     contact: ContactArrays
+    """Contact wires under the pantographs."""
     load: Load
+    """Position of the external load."""
 
 
 class Workspace(NamedTuple):
-    """Scratch arrays that every step fills anew, so that a step allocates no memory.
-
-    Parameters
-    ----------
-    panels : PanelWorkspace
-        Active panels.
-    scalar : ScalarWorkspace
-        Scalar forces.
-    node : (J,) ndarray
-        Accelerations of the nodes of the connectors [m/s2].
-    contact : ContactWorkspace
-        Predictors of the contacts.
-    """
+    """Scratch arrays that every step fills anew, so that a step allocates no memory."""
 
     panels: PanelWorkspace
+    """Active panels."""
     scalar: ScalarWorkspace
+    """Scalar forces."""
     node: Array
+    """Accelerations of the nodes of the connectors, (J,) [m/s2]."""
     contact: ContactWorkspace
+    """Predictors of the contacts."""
 
 
 def build_kernel_arrays(
@@ -124,21 +102,14 @@ def build_kernel_arrays(
 ) -> KernelArrays:
     """Build the arrays of the time step.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    time_step : float
-        Time step [s].
-    window : WindowArrays or None
-        Limits of the active window; None: the whole line is active. With modal damping or held stretches the whole line
-        is active, too: a mode moves all of it, and a stretch moves its neighbours at once.
-    load : Load or None
-        Position of an external load.
+    Args:
+        line: Discretised line.
+        time_step: Time step [s].
+        window: Limits of the active window; None: the whole line is active. With modal damping or held stretches the
+            whole line is active, too: a mode moves all of it, and a stretch moves its neighbours at once.
+        load: Position of an external load.
 
-    Returns
-    -------
-    KernelArrays
+    Returns:
         Arrays of the line, shared by all simulations with this time step.
     """
     kernel = _build_line_arrays(line, time_step)

@@ -21,28 +21,18 @@ def simulate_mass_drop(
 ) -> FreeDecay:
     """Simulate a mass drop.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Line.
-    element_length : float
-        Largest length of an element [m].
-    test : MassDropSetup
-        Mass, position, sensors.
-    progress : callable or None
-        Called from time to time with the completed share, 0 to 1.
+    Args:
+        catenary: Line.
+        element_length: Largest length of an element [m].
+        test: Mass, position, sensors.
+        progress: Called from time to time with the completed share, 0 to 1.
 
-    Returns
-    -------
-    FreeDecay
+    Returns:
         Free decay at the sensors.
 
-    Raises
-    ------
-    NoInitialState, NoEquilibrium
-        The line has no equilibrium, without or with the mass.
-    DidNotConverge
-        The forces of a time step did not converge.
+    Raises:
+        NoInitialState, NoEquilibrium: The line has no equilibrium, without or with the mass.
+        DidNotConverge: The forces of a time step did not converge.
     """
     places = (test.position, *(position for _, position in test.sensors))
     line = discretise(catenary, element_length, places)

@@ -28,40 +28,29 @@ class Layout(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """State of the line; B rows, S' stations with those beyond the end, F scalar forces (`scalar_forces`).
-
-    Parameters
-    ----------
-    w, r : (3, B, S') ndarray
-        Deflection and slope: predicted displacement q*, predicted velocity v*, acceleration [m, -; per s; per s2].
-    force : (F,) ndarray
-        Scalar forces: tensions of the connectors [N], then those of the distributed forces.
-    load : (1,) ndarray
-        External load, upwards [N].
-    active : (2,) int ndarray
-        First and last station of the active window of the last step.
-    """
+    """State of the line; B rows, S' stations with those beyond the end, F scalar forces (`scalar_forces`)."""
 
     w: Array
     r: Array
+    """Deflection and slope, (3, B, S'): predicted displacement q*, predicted velocity v*, acceleration
+    [m, -; per s; per s2].
+    """
     force: Array
+    """Scalar forces, (F,): tensions of the connectors [N], then those of the distributed forces."""
     load: Array
+    """External load, upwards, (1,) [N]."""
     active: Indices
+    """First and last station of the active window of the last step, (2,)."""
 
 
 def build_motion(layout: Layout, time_step: float, fields: tuple[Array, Array], force: Array) -> Motion:
     """Build the state of a line.
 
-    Parameters
-    ----------
-    layout : Layout
-        Layout of the rows.
-    time_step : float
-        Time step [s].
-    fields : tuple of (3, B, S) ndarray
-        Displacement, velocity and acceleration of deflections, and those of slopes.
-    force : (F,) ndarray
-        Scalar forces.
+    Args:
+        layout: Layout of the rows.
+        time_step: Time step [s].
+        fields: Displacement, velocity and acceleration of deflections, and those of slopes, each (3, B, S).
+        force: Scalar forces, (F,).
     """
     padded = [np.pad(field, ((0, 0), (0, 0), (0, layout.width - layout.stations))) for field in fields]
     for field in padded:
@@ -76,14 +65,10 @@ def motion_at_rest(layout: Layout, deflection: Deflection, distributed: int = 0)
 
     The first step determines the distributed forces; zero is a first guess.
 
-    Parameters
-    ----------
-    layout : Layout
-        Layout of the rows.
-    deflection : Deflection
-        Static deflection.
-    distributed : int
-        Number of distributed forces.
+    Args:
+        layout: Layout of the rows.
+        deflection: Static deflection.
+        distributed: Number of distributed forces.
     """
     # Far from the loads the deflection decays to denormal numbers, which processors handle a hundred times slower.
     displacement = np.where(np.abs(deflection.displacement) < 1e-30, 0.0, deflection.displacement)

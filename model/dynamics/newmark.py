@@ -40,20 +40,13 @@ from pantocheck.model.dynamics.wire_step import add_lumped_forces, predict_wires
 def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) -> int:
     """Advance line and pantographs by one time step, in place.
 
-    Parameters
-    ----------
-    kernel : KernelArrays
-        Arrays of the line.
-    motion : Motion
-        State of the line.
-    train : Train
-        State of the pantographs; without a pantograph for a free line.
-    work : Workspace
-        Scratch arrays.
+    Args:
+        kernel: Arrays of the line.
+        motion: State of the line.
+        train: State of the pantographs; without a pantograph for a free line.
+        work: Scratch arrays.
 
-    Returns
-    -------
-    int
+    Returns:
         Number of sweeps; zero when the forces did not converge.
     """
     dt = kernel.time_step
@@ -81,20 +74,13 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
 def settle_forces(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, window: Window) -> int:
     """Sweep over contact forces and scalar forces until none of them changes.
 
-    Parameters
-    ----------
-    kernel : KernelArrays
-        Arrays of the line.
-    motion, train : Motion, Train
-        Their forces are replaced.
-    work : Workspace
-        Predicted forces, and accelerations under the forces of the last step.
-    window : Window
-        Active window.
+    Args:
+        kernel: Arrays of the line.
+        motion, train: Their forces are replaced.
+        work: Predicted forces, and accelerations under the forces of the last step.
+        window: Active window.
 
-    Returns
-    -------
-    int
+    Returns:
         Number of sweeps; zero when the forces did not converge.
     """
     connectors, forces = kernel.connectors, kernel.forces

@@ -47,59 +47,40 @@ SHORTEST_PIECE = 48
 
 
 class PanelFactor(NamedTuple):
-    """Block factors of B rows in panels; Q panels per row, pieces of n stations.
-
-    Parameters
-    ----------
-    piece, fade, panels : int
-        Number of stations of a piece and of a warm-up, and number of panels per row.
-    link : (B Q + 1, n, 4, 8) ndarray
-        Entries ww, wr, rw, rr of the factors L_s; the last panel is zero.
-    inverse : (B Q + 1, n, 3, 8) ndarray
-        Entries ww, wr, rr of D_s^-1.
-    """
+    """Block factors of B rows in panels; Q panels per row, pieces of n stations."""
 
     piece: int
     fade: int
     panels: int
+    """Number of stations of a piece and of a warm-up, and number of panels per row."""
     link: Array
+    """Entries ww, wr, rw, rr of the factors L_s, (B Q + 1, n, 4, 8); the last panel is zero."""
     inverse: Array
+    """Entries ww, wr, rr of D_s^-1, (B Q + 1, n, 3, 8)."""
 
 
 class PanelWorkspace(NamedTuple):
-    """Scratch arrays of a solution; N panels are active at most, those that complete a pair included.
-
-    Parameters
-    ----------
-    force : (N, n, 2, 8) ndarray
-        Forces and moments of the panels, and in the end accelerations.
-    panel : (N,) int ndarray
-        Number of each panel in the factor.
-    start, first, last : (N,) int ndarray
-        First station of the panel, and its first and last active station, as indices of a flattened array.
-    follows : (N,) ndarray
-        1 if the panel follows the one before it in a row, else 0.
-    """
+    """Scratch arrays of a solution; N panels are active at most, those that complete a pair included."""
 
     force: Array
+    """Forces and moments of the panels, and in the end accelerations, (N, n, 2, 8)."""
     panel: Indices
+    """Number of each panel in the factor, (N,)."""
     start: Indices
     first: Indices
     last: Indices
+    """First station of the panel, and its first and last active station, as indices of a flattened array, (N,)."""
     follows: Array
+    """1 if the panel follows the one before it in a row, else 0, (N,)."""
 
 
 def build_panels(factor: Factor, position: Array, beyond: int) -> PanelFactor:
     """Arrange block factors in panels.
 
-    Parameters
-    ----------
-    factor : Factor
-        Block factors of B rows with S stations.
-    position : (S,) ndarray
-        Positions of the stations [m].
-    beyond : int
-        Number of stations that the panels cover beyond the end of the line, at least.
+    Args:
+        factor: Block factors of B rows with S stations.
+        position: Positions of the stations, (S,) [m].
+        beyond: Number of stations that the panels cover beyond the end of the line, at least.
     """
     stations = factor.link.shape[1]
     fade = min(measure_fade(factor, position), stations)
@@ -154,23 +135,15 @@ def solve_wires(
 ) -> float:
     """Solve A x = f in place for the active stations of all wires; f must be zero outside, and stays so.
 
-    Parameters
-    ----------
-    factor : PanelFactor
-        Block factors of A.
-    extents : Extents
-        Merged extents of the wires: no panel belongs to two of them.
-    window : Window
-        First and last active station.
-    w, r : (3, B, S') ndarray
-        In the last plane, on entry forces and moments [N, N m], on return accelerations of deflection and slope
-        [m/s2, 1/s2].
-    work : PanelWorkspace
-        Scratch arrays.
+    Args:
+        factor: Block factors of A.
+        extents: Merged extents of the wires: no panel belongs to two of them.
+        window: First and last active station.
+        w, r: In the last plane, on entry forces and moments [N, N m], on return accelerations of deflection and slope
+            [m/s2, 1/s2], (3, B, S').
+        work: Scratch arrays.
 
-    Returns
-    -------
-    float
+    Returns:
         Sum of the accelerations at the first stations of all pieces: NaN if any force was NaN.
     """
     count = _list_panels(factor, extents, window, w.shape[1], work)

@@ -9,66 +9,48 @@ from pantocheck.model.pantograph import Pantograph
 
 @dataclass(frozen=True)
 class Passage:
-    """Pantographs, speed and duration of a simulation.
-
-    Parameters
-    ----------
-    pantographs : tuple of Pantograph
-        In running order, the leading one first.
-    start : tuple of float
-        Position of each pantograph at the start [m].
-    speed : float
-        Speed of the train [m/s].
-    duration : float
-        Simulated time [s].
-    time_step : float
-        Time step [s].
-    watched : tuple of (str, float)
-        Wire and position of the stations whose vertical motion is recorded [-, m].
-    reach : float
-        Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
-        although waves may return from there. Infinite: no limit.
-    kept_behind : float
-        Distance behind the last pantograph within which the motion is known until the end of the simulation [m].
-        Stations from which no wave returns there, or to a pantograph, in time are held at rest. Infinite: the whole
-        line is active.
-    ramp : float
-        Time over which every pantograph rises from zero contact force to its static force [s]. Zero: it presses with
-        its static force from the start.
-    """
+    """Pantographs, speed and duration of a simulation."""
 
     pantographs: tuple[Pantograph, ...]
+    """In running order, the leading one first."""
     start: tuple[float, ...]
+    """Position of each pantograph at the start [m]."""
     speed: float
+    """Speed of the train [m/s]."""
     duration: float
+    """Simulated time [s]."""
     time_step: float
+    """Time step [s]."""
     watched: tuple[tuple[str, float], ...] = ()
+    """Wire and position of the stations whose vertical motion is recorded [-, m]."""
     reach: float = math.inf
+    """Largest half-width of the active window around the pantographs [m]: stations farther away are held at rest,
+    although waves may return from there. Infinite: no limit.
+    """
     kept_behind: float = math.inf
+    """Distance behind the last pantograph within which the motion is known until the end of the simulation [m].
+    Stations from which no wave returns there, or to a pantograph, in time are held at rest. Infinite: the whole line
+    is active.
+    """
     ramp: float = 0.0
+    """Time over which every pantograph rises from zero contact force to its static force [s]. Zero: it presses with
+    its static force from the start.
+    """
 
 
 @dataclass(frozen=True)
 class History:
-    """Result of a passage; T steps, P pantographs, U watched stations.
-
-    Parameters
-    ----------
-    time : (T,) ndarray
-        Time at the end of each step [s].
-    position : (P, T) ndarray
-        Position of the pantographs [m].
-    force : (P, T) ndarray
-        Contact force, unfiltered [N].
-    height : (P, T) ndarray
-        Height of the head above the datum of the line [m].
-    motion : (U, T, 3) ndarray
-        Vertical displacement, velocity and acceleration at the watched stations [m, m/s, m/s2]; NaN while it is
-        unknown, see `active_window`.
-    """
+    """Result of a passage; T steps, P pantographs, U watched stations."""
 
     time: Array
+    """Time at the end of each step, (T,) [s]."""
     position: Array
+    """Position of the pantographs, (P, T) [m]."""
     force: Array
+    """Contact force, unfiltered, (P, T) [N]."""
     height: Array
+    """Height of the head above the datum of the line, (P, T) [m]."""
     motion: Array
+    """Vertical displacement, velocity and acceleration at the watched stations, (U, T, 3) [m, m/s, m/s2]; NaN while
+    it is unknown, see `active_window`.
+    """

@@ -21,28 +21,19 @@ BLOCK = 500
 
 
 class Recording(NamedTuple):
-    """Recorded time series; T steps, P pantographs, U stations.
-
-    Parameters
-    ----------
-    row, station : (U,) int ndarray
-        Rows and stations whose motion is recorded.
-    contact : (T, P) ndarray
-        Contact force of each pantograph, summed over the contact wires [N].
-    height : (T, P) ndarray
-        Height of the heads [m].
-    motion : (T, U, 3) ndarray
-        Displacement, velocity, acceleration at the stations [m, m/s, m/s2].
-    slack : (T,) int ndarray
-        Number of slack droppers in the active window.
-    """
+    """Recorded time series; T steps, P pantographs, U stations."""
 
     row: Indices
     station: Indices
+    """Rows and stations whose motion is recorded, (U,)."""
     contact: Array
+    """Contact force of each pantograph, summed over the contact wires, (T, P) [N]."""
     height: Array
+    """Height of the heads, (T, P) [m]."""
     motion: Array
+    """Displacement, velocity, acceleration at the stations, (T, U, 3) [m, m/s, m/s2]."""
     slack: Indices
+    """Number of slack droppers in the active window, (T,)."""
 
 
 def simulate_steps(
@@ -55,25 +46,16 @@ def simulate_steps(
 ) -> None:
     """Advance line and pantographs, in place, by the steps of a recording, and fill it.
 
-    Parameters
-    ----------
-    kernel : KernelArrays
-        Arrays of the line.
-    motion : Motion
-        State of the line.
-    train : Train
-        State of the pantographs.
-    load : (T,) ndarray
-        External load in each step, upwards [N].
-    recording : Recording
-        Recording of T steps.
-    progress : callable or None
-        Called from time to time with the completed share, 0 to 1.
+    Args:
+        kernel: Arrays of the line.
+        motion: State of the line.
+        train: State of the pantographs.
+        load: External load in each step, upwards, (T,) [N].
+        recording: Recording of T steps.
+        progress: Called from time to time with the completed share, 0 to 1.
 
-    Raises
-    ------
-    DidNotConverge
-        The forces of a time step did not converge.
+    Raises:
+        DidNotConverge: The forces of a time step did not converge.
     """
     work = build_workspace(kernel, train)
     for first in range(0, load.size, BLOCK):

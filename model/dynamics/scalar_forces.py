@@ -27,68 +27,44 @@ from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
 
 
 class ScalarLaw(NamedTuple):
-    """Laws of F scalar forces.
-
-    Parameters
-    ----------
-    preload, stiffness, damping : (F,) ndarray
-        Force at rest X0, and its coefficients k, c [N, N/m, N s/m].
-    unilateral : (F,) ndarray of bool
-        Whether the force cannot be negative.
-    """
+    """Laws of F scalar forces."""
 
     preload: Array
     stiffness: Array
     damping: Array
+    """Force at rest X0, and its coefficients k, c, (F,) [N, N/m, N s/m]."""
     unilateral: NDArray[np.bool_]
+    """Whether the force cannot be negative, (F,)."""
 
 
 class ScalarForces(NamedTuple):
-    """Scalar forces of a line in a time step; F forces, M pairs of forces that influence each other.
-
-    Parameters
-    ----------
-    law : ScalarLaw
-        Laws of the forces.
-    per_acceleration : (F,) ndarray
-        Force per acceleration of the elongation within a step, h [kg].
-    self_compliance : (F,) ndarray
-        Change of the force within a step per force, h_c [-].
-    settling : (F,) ndarray
-        1 / (1 + h_c) [-].
-    first : (F + 1,) int ndarray
-        First pair of each force, and M.
-    other : (M,) int ndarray
-        The other force of each pair; every force is also a pair with itself.
-    compliance : (M,) ndarray
-        Acceleration of its elongation per force [1/kg].
-    """
+    """Scalar forces of a line in a time step; F forces, M pairs of forces that influence each other."""
 
     law: ScalarLaw
+    """Laws of the forces."""
     per_acceleration: Array
+    """Force per acceleration of the elongation within a step, h, (F,) [kg]."""
     self_compliance: Array
+    """Change of the force within a step per force, h_c, (F,) [-]."""
     settling: Array
+    """1 / (1 + h_c), (F,) [-]."""
     first: Indices
+    """First pair of each force, and M, (F + 1,)."""
     other: Indices
+    """The other force of each pair, (M,); every force is also a pair with itself."""
     compliance: Array
+    """Acceleration of its elongation per force, (M,) [1/kg]."""
 
 
 class ScalarWorkspace(NamedTuple):
-    """Scratch arrays of a step for F scalar forces.
-
-    Parameters
-    ----------
-    predicted : (F,) ndarray
-        Forces of the predicted motion, X* [N].
-    acceleration : (F,) ndarray
-        Accelerations of the elongations under all forces so far [m/s2].
-    change : (F,) ndarray
-        Changes of the forces since the last step [N].
-    """
+    """Scratch arrays of a step for F scalar forces."""
 
     predicted: Array
+    """Forces of the predicted motion, X*, (F,) [N]."""
     acceleration: Array
+    """Accelerations of the elongations under all forces so far, (F,) [m/s2]."""
     change: Array
+    """Changes of the forces since the last step, (F,) [N]."""
 
 
 def build_scalar_forces(law: ScalarLaw, compliance: csr_array, time_step: float) -> ScalarForces:
@@ -116,16 +92,11 @@ def allocate_scalar_workspace(forces: int) -> ScalarWorkspace:
 def sweep_forces(forces: ScalarForces, work: ScalarWorkspace, force: Array, first: int, end: int) -> float:
     """Solve the forces from `first` to before `end` once, all others held; return the largest change [N].
 
-    Parameters
-    ----------
-    forces : ScalarForces
-        Scalar forces of a line.
-    work : ScalarWorkspace
-        Predicted forces; accelerations and changes are updated.
-    force : (F,) ndarray
-        Forces, replaced [N].
-    first, end : int
-        Range of the forces.
+    Args:
+        forces: Scalar forces of a line.
+        work: Predicted forces; accelerations and changes are updated.
+        force: Forces, replaced, (F,) [N].
+        first, end: Range of the forces.
     """
     largest = 0.0
     for n in range(first, end):

@@ -28,26 +28,17 @@ def simulate_passage(
 ) -> History:
     """Simulate the passage of pantographs along a line, starting from rest.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    passage : Passage
-        Pantographs, speed, duration.
-    progress : callable or None
-        Called from time to time with the completed share, 0 to 1.
+    Args:
+        line: Discretised line.
+        passage: Pantographs, speed, duration.
+        progress: Called from time to time with the completed share, 0 to 1.
 
-    Returns
-    -------
-    History
+    Returns:
         Contact forces and motion.
 
-    Raises
-    ------
-    ImpossiblePassage
-        There is no pantograph, or one would leave the line.
-    DidNotConverge
-        The forces of a time step did not converge.
+    Raises:
+        ImpossiblePassage: There is no pantograph, or one would leave the line.
+        DidNotConverge: The forces of a time step did not converge.
     """
     _check_passage(line, passage)
     kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))

@@ -11,49 +11,33 @@ from pantocheck.model.pantograph import equilibrium
 
 
 class Train(NamedTuple):
-    """Pantographs and their state; P pantographs of at most n unknowns, W contact wires of the line.
-
-    Parameters
-    ----------
-    position : (P,) ndarray
-        Position along the track [m].
-    speed : (1,) ndarray
-        Speed of the train [m/s].
-    elapsed : (1,) ndarray
-        Time since the start [s].
-    ramp : (1,) ndarray
-        Time over which the heads are released [s].
-    held : (P,) ndarray
-        Force that holds each head down at the start of the ramp [N].
-    inverse : (P, n, n) ndarray
-        Inverse of the effective matrix M + dt/2 C + dt^2/4 K of each pantograph [1/kg].
-    damping, stiffness : (P, n, n) ndarray
-        Matrices of each pantograph [N s/m, N/m].
-    head : (P, n) ndarray
-        Selects the displacement of the head [-].
-    force : (P, n) ndarray
-        Constant forces [N].
-    contact_stiffness : (P,) ndarray
-        Stiffness of the penalty contact [N/m].
-    z : (3, P, n) ndarray
-        Displacement, velocity, acceleration [m, m/s, m/s2].
-    contact : (P, W) ndarray
-        Contact forces [N].
-    """
+    """Pantographs and their state; P pantographs of at most n unknowns, W contact wires of the line."""
 
     position: Array
+    """Position along the track, (P,) [m]."""
     speed: Array
+    """Speed of the train, (1,) [m/s]."""
     elapsed: Array
+    """Time since the start, (1,) [s]."""
     ramp: Array
+    """Time over which the heads are released, (1,) [s]."""
     held: Array
+    """Force that holds each head down at the start of the ramp, (P,) [N]."""
     inverse: Array
+    """Inverse of the effective matrix M + dt/2 C + dt^2/4 K of each pantograph, (P, n, n) [1/kg]."""
     damping: Array
     stiffness: Array
+    """Matrices of each pantograph, (P, n, n) [N s/m, N/m]."""
     head: Array
+    """Selects the displacement of the head, (P, n) [-]."""
     force: Array
+    """Constant forces, (P, n) [N]."""
     contact_stiffness: Array
+    """Stiffness of the penalty contact, (P,) [N/m]."""
     z: Array
+    """Displacement, velocity, acceleration, (3, P, n) [m, m/s, m/s2]."""
     contact: Array
+    """Contact forces, (P, W) [N]."""
 
 
 def build_empty_train(contact_wires: int) -> Train:
@@ -66,20 +50,14 @@ def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array
 
     The touched contact wires share the force equally.
 
-    Parameters
-    ----------
-    passage : Passage
-        Pantographs, positions, speed, time step and ramp.
-    touched : (P, W) ndarray of bool
-        Whether each head touches each contact wire at the start.
-    wire_height : (P, W) ndarray
-        Height of each touched contact wire at the position of each head in the state at the start [m].
-    flexibility : (P, W) ndarray
-        Residual flexibility of each touched contact wire there [m/N].
+    Args:
+        passage: Pantographs, positions, speed, time step and ramp.
+        touched: Whether each head touches each contact wire at the start, (P, W).
+        wire_height: Height of each touched contact wire at the position of each head in the state at the start, (P, W)
+            [m].
+        flexibility: Residual flexibility of each touched contact wire there, (P, W) [m/N].
 
-    Returns
-    -------
-    Train
+    Returns:
         Pantographs and their state.
     """
     wires = wire_height.shape[1]

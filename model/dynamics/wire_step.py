@@ -43,37 +43,27 @@ ENTRIES = 6
 
 
 class WireArrays(NamedTuple):
-    """Wires of a line in a time step; B rows, S' stations with those beyond the end of the line.
-
-    Parameters
-    ----------
-    extents : Extents
-        Merged extents of the wires.
-    elements : (U, 6, S') ndarray
-        Entries k11, k12, (k22 + k24) / 2, (k22 - k24) / 2 of the stiffness of the element after each station [N/m, N,
-        N m, N m], its mass times its mass-proportional damping, over 420 [kg/s], and its length [m]. Equal rows are
-        stored once: U rows differ.
-    element_row : (B,) int ndarray
-        Row of the elements of each row of wires.
-    stiffness_coefficient : (B,) ndarray
-        Stiffness-proportional damping of the wires [s].
-    lumped_run : (R + 1,) int ndarray
-        First of the springs and dampers on a single row of each run (`find_runs`), and Q.
-    lumped_station, lumped_index : (Q,) int ndarray
-        Their stations, and their indices in a flattened plane of rows.
-    lumped_stiffness, lumped_damping : (Q,) ndarray
-        Their coefficients [N/m, N s/m].
-    """
+    """Wires of a line in a time step; B rows, S' stations with those beyond the end of the line."""
 
     extents: Extents
+    """Merged extents of the wires."""
     elements: Array
+    """Entries k11, k12, (k22 + k24) / 2, (k22 - k24) / 2 of the stiffness of the element after each station
+    [N/m, N, N m, N m], its mass times its mass-proportional damping, over 420 [kg/s], and its length [m],
+    (U, 6, S'). Equal rows are stored once: U rows differ.
+    """
     element_row: Indices
+    """Row of the elements of each row of wires, (B,)."""
     stiffness_coefficient: Array
+    """Stiffness-proportional damping of the wires, (B,) [s]."""
     lumped_run: Indices
+    """First of the springs and dampers on a single row of each run (`find_runs`), and Q, (R + 1,)."""
     lumped_station: Indices
     lumped_index: Indices
+    """Their stations, and their indices in a flattened plane of rows, (Q,)."""
     lumped_stiffness: Array
     lumped_damping: Array
+    """Their coefficients, (Q,) [N/m, N s/m]."""
 
 
 def build_wire_arrays(beams: Beams, extents: Extents, layout: Layout) -> WireArrays:

@@ -19,20 +19,14 @@ from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 @dataclass(frozen=True)
 class GlobalMatrices:
-    """Matrices of the free unknowns with every dropper taut and all tensions constant.
-
-    Parameters
-    ----------
-    mass, damping, stiffness : (n, n) sparse array
-        Matrices of the free unknowns [kg, N s/m, N/m; slopes accordingly].
-    free : (n,) ndarray
-        Indices of the free unknowns among all.
-    """
+    """Matrices of the free unknowns with every dropper taut and all tensions constant."""
 
     mass: sp.csc_array
     damping: sp.csc_array
     stiffness: sp.csc_array
+    """Matrices of the free unknowns, (n, n) [kg, N s/m, N/m; slopes accordingly]."""
     free: Indices
+    """Indices of the free unknowns among all, (n,)."""
 
 
 def _unknowns(line: DiscretisedLine, row: int | Indices, station: Indices, slope: int | Indices = 0) -> Indices:
@@ -110,19 +104,13 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 
     Their product with the unknowns is the deflection there; they are also the nodal forces of a unit force.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    row : int
-        Index of the row.
-    position : float
-        Position along the track [m].
+    Args:
+        line: Discretised line.
+        row: Index of the row.
+        position: Position along the track [m].
 
-    Returns
-    -------
-    (unknowns,) ndarray
-        Value of the shape function of every unknown, in global order [-, m].
+    Returns:
+        Value of the shape function of every unknown, in global order, (unknowns,) [-, m].
     """
     element, length, s = find_element(line.mesh.position, position)
     share = np.zeros(line.beams.free.size)
@@ -134,20 +122,13 @@ def point_load(line: DiscretisedLine, row: int, position: float) -> Array:
 def contact_stiffness(line: DiscretisedLine, row: int, position: float, penalty: float) -> float:
     """Contact stiffness at a position, for independent solvers: penalty and residual flexibility in series.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    row : int
-        Row of the contact wire.
-    position : float
-        Position along the track [m].
-    penalty : float
-        Stiffness of the penalty contact [N/m].
+    Args:
+        line: Discretised line.
+        row: Row of the contact wire.
+        position: Position along the track [m].
+        penalty: Stiffness of the penalty contact [N/m].
 
-    Returns
-    -------
-    float
+    Returns:
         Stiffness [N/m].
     """
     element, _, s = find_element(line.mesh.position, position)

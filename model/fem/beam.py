@@ -15,19 +15,13 @@ from pantocheck.model.arrays import Array
 def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float | Array) -> Array:
     """Stiffness of elements, the integral of EI w''^2 + T w'^2.
 
-    Parameters
-    ----------
-    h : float or ndarray
-        Length of each element, (...) [m].
-    tension : float or ndarray
-        Tension T, (...) [N].
-    bending_stiffness : float or ndarray
-        Bending stiffness EI, (...) [N m2].
+    Args:
+        h: Length of each element, (...) [m].
+        tension: Tension T, (...) [N].
+        bending_stiffness: Bending stiffness EI, (...) [N m2].
 
-    Returns
-    -------
-    (..., 4, 4) ndarray
-        Symmetric matrices [N/m, N, N m].
+    Returns:
+        Symmetric matrices, (..., 4, 4) [N/m, N, N m].
     """
     h = np.asarray(h, dtype=np.float64)
     bending = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
@@ -66,17 +60,12 @@ def uniform_load(h: Array, load_per_length: Array) -> Array:
 def shape(s: float, h: float) -> Array:
     """Hermite shape functions: the deflection at a point is their product with (w1, r1, w2, r2).
 
-    Parameters
-    ----------
-    s : float
-        Position within the element as a share of its length, 0 to 1 [-].
-    h : float
-        Length of the element [m].
+    Args:
+        s: Position within the element as a share of its length, 0 to 1 [-].
+        h: Length of the element [m].
 
-    Returns
-    -------
-    (4,) ndarray
-        Values of the four functions [-, m, -, m].
+    Returns:
+        Values of the four functions, (4,) [-, m, -, m].
     """
     return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
 
@@ -86,23 +75,15 @@ def pinned_frequencies(
 ) -> Array:
     """Natural frequencies of a pinned tensioned beam in closed form.
 
-    Parameters
-    ----------
-    n : int
-        Number of modes.
-    length : float
-        Length [m].
-    tension : float
-        Tension T [N].
-    bending_stiffness : float
-        Bending stiffness EI [N m2].
-    mass_per_length : float
-        Mass per length [kg/m].
+    Args:
+        n: Number of modes.
+        length: Length [m].
+        tension: Tension T [N].
+        bending_stiffness: Bending stiffness EI [N m2].
+        mass_per_length: Mass per length [kg/m].
 
-    Returns
-    -------
-    (n,) ndarray
-        Frequencies of the modes 1 to n [Hz].
+    Returns:
+        Frequencies of the modes 1 to n, (n,) [Hz].
     """
     k = np.arange(1, n + 1) * np.pi / length
     return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
@@ -111,11 +92,8 @@ def pinned_frequencies(
 def wave_speed(tension: float, mass_per_length: float) -> float:
     """Speed sqrt(T / m) of transverse waves on a wire without bending stiffness [m/s].
 
-    Parameters
-    ----------
-    tension : float
-        Tension T [N].
-    mass_per_length : float
-        Mass per length m [kg/m].
+    Args:
+        tension: Tension T [N].
+        mass_per_length: Mass per length m [kg/m].
     """
     return float(np.sqrt(tension / mass_per_length))

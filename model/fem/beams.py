@@ -19,36 +19,27 @@ from pantocheck.model.fem.residual_flexibility import element_flexibility, in_se
 
 
 class Beams(NamedTuple):
-    """Rows of beams; B rows, S stations.
-
-    Parameters
-    ----------
-    length : (S-1,) ndarray
-        Lengths of the elements [m].
-    tension, bending_stiffness, mass_per_length : (B, S-1) ndarray
-        Properties of each element, zero where the row has no wire [N, N m2, kg/m].
-    lumped_mass, lumped_stiffness, lumped_damping : (B, S) ndarray
-        Lumped parts on the deflections; springs and dampers are in series with the residual flexibility
-        [kg, N/m, N s/m].
-    mass_coefficient, stiffness_coefficient : (B,) ndarray
-        Rayleigh damping of the wires [1/s, s].
-    free : (B, S, 2) ndarray
-        Whether deflection and slope can move.
-    flexibility : (B, S-1, 7) ndarray
-        Residual flexibility of each element, see `element_flexibility` [m/N].
-    """
+    """Rows of beams; B rows, S stations."""
 
     length: Array
+    """Lengths of the elements, (S-1,) [m]."""
     tension: Array
     bending_stiffness: Array
     mass_per_length: Array
+    """Properties of each element, zero where the row has no wire, (B, S-1) [N, N m2, kg/m]."""
     lumped_mass: Array
     lumped_stiffness: Array
     lumped_damping: Array
+    """Lumped parts on the deflections, (B, S); springs and dampers are in series with the residual flexibility
+    [kg, N/m, N s/m].
+    """
     mass_coefficient: Array
     stiffness_coefficient: Array
+    """Rayleigh damping of the wires, (B,) [1/s, s]."""
     free: NDArray[np.bool_]
+    """Whether deflection and slope can move, (B, S, 2)."""
     flexibility: Array
+    """Residual flexibility of each element, see `element_flexibility`, (B, S-1, 7) [m/N]."""
 
 
 def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:

@@ -39,28 +39,19 @@ class Bar:
 
 
 class Connectors(NamedTuple):
-    """Connectors, droppers first, in the order of the line; N connectors, B rows.
-
-    Parameters
-    ----------
-    station : (N,) ndarray
-        Index of the station.
-    coefficient : (N, B) ndarray
-        Coefficient of each row's deflection in the elongation [-].
-    stiffness, damping : (N,) ndarray
-        Coefficients of the elongation and its rate [N/m, N s/m].
-    preload : (N,) ndarray
-        Tension in the initial state [N].
-    unilateral : (N,) ndarray
-        Whether the tension cannot be negative.
-    """
+    """Connectors, droppers first, in the order of the line; N connectors, B rows."""
 
     station: Indices
+    """Index of the station, (N,)."""
     coefficient: Array
+    """Coefficient of each row's deflection in the elongation, (N, B) [-]."""
     stiffness: Array
     damping: Array
+    """Coefficients of the elongation and its rate, (N,) [N/m, N s/m]."""
     preload: Array
+    """Tension in the initial state, (N,) [N]."""
     unilateral: NDArray[np.bool_]
+    """Whether the tension cannot be negative, (N,)."""
 
 
 def build_connectors(catenary: Catenary, mesh: Mesh, beams: Beams, state: InitialState) -> Connectors:

@@ -12,17 +12,12 @@ from pantocheck.model.fem.mesh import find_element
 
 
 class ContactWires(NamedTuple):
-    """Rows and extents of W contact wires, in the order of the line.
-
-    Parameters
-    ----------
-    row, first, last : (W,) int ndarray
-        Row, first and last station of each wire.
-    """
+    """Rows and extents of W contact wires, in the order of the line."""
 
     row: Indices
     first: Indices
     last: Indices
+    """Row, first and last station of each wire, (W,)."""
 
 
 def locate_contact_wires(line: DiscretisedLine) -> ContactWires:
@@ -38,22 +33,15 @@ def touched_wires(line: DiscretisedLine, position: float) -> Indices:
     Parallel wires have the same ends; they share a static force equally. A wire of the other section in an overlap does
     not count, although a large force may lift the lowest wire up to it.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    position : float
-        Position along the track [m].
+    Args:
+        line: Discretised line.
+        position: Position along the track [m].
 
-    Returns
-    -------
-    (n,) int ndarray
-        Indices in the order of the line, at least one.
+    Returns:
+        Indices in the order of the line, at least one, (n,).
 
-    Raises
-    ------
-    ImpossiblePassage
-        There is no contact wire at the position.
+    Raises:
+        ImpossiblePassage: There is no contact wire at the position.
     """
     wires = locate_contact_wires(line)
     element, length, s = find_element(line.mesh.position, position)

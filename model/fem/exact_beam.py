@@ -20,19 +20,13 @@ def exact_stiffness(h: Array, tension: Array, bending_stiffness: Array) -> Array
 
     A string has no stiffness against slopes; a unit stiffness there keeps matrices regular and carries no force.
 
-    Parameters
-    ----------
-    h : ndarray
-        Lengths, (...) [m].
-    tension : ndarray
-        Tension T, (...) [N].
-    bending_stiffness : ndarray
-        Bending stiffness EI, (...) [N m2].
+    Args:
+        h: Lengths, (...) [m].
+        tension: Tension T, (...) [N].
+        bending_stiffness: Bending stiffness EI, (...) [N m2].
 
-    Returns
-    -------
-    (..., 4, 4) ndarray
-        Symmetric matrices [N/m, N, N m].
+    Returns:
+        Symmetric matrices, (..., 4, 4) [N/m, N, N m].
     """
     string = np.zeros((*h.shape, 4, 4))
     string[..., 1, 1] = string[..., 3, 3] = 1.0

@@ -22,24 +22,18 @@ from pantocheck.model.fem.mesh import Mesh
 
 
 class HeldStretches(NamedTuple):
-    """Held stretches of all wires; K stretches with at most W stations, F fields.
-
-    Parameters
-    ----------
-    first : (K,) int ndarray
-        First station.
-    row : (K, F) int ndarray
-        Rows of the wire in every field.
-    stiffness : (K,) ndarray
-        Additional tension per elongation, EA over length [N/m].
-    coefficient : (K, F, W, 2) ndarray
-        Elongation per deflection and slope at the stations from `first` on, the vector a; zero after the last [-, m].
-    """
+    """Held stretches of all wires; K stretches with at most W stations, F fields."""
 
     first: Indices
+    """First station, (K,)."""
     row: Indices
+    """Rows of the wire in every field, (K, F)."""
     stiffness: Array
+    """Additional tension per elongation, EA over length, (K,) [N/m]."""
     coefficient: Array
+    """Elongation per deflection and slope at the stations from `first` on, the vector a, (K, F, W, 2); zero after
+    the last [-, m].
+    """
 
 
 def build_held_stretches(catenary: Catenary, mesh: Mesh, deflection: Array) -> HeldStretches:
@@ -47,24 +41,13 @@ def build_held_stretches(catenary: Catenary, mesh: Mesh, deflection: Array) -> H
 
     Between a tensioning weight and the next such point the tension is constant.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line.
-    mesh : Mesh
-        Stations and rows.
-    deflection : (rows, stations, 2) ndarray
-        Line at rest.
+    Args:
+        catenary: Description of the line.
+        mesh: Stations and rows.
+        deflection: Line at rest, (rows, stations, 2).
 
-    Returns
-    -------
-    HeldStretches
-        Stretches, wire by wire.
-
-    Raises
-    ------
-    ValueError
-        A held wire has no axial stiffness.
+    Raises:
+        ValueError: A held wire has no axial stiffness.
     """
     fields = dict.fromkeys(mesh.row_field)
     stretches = [(wire, *ends) for wire in catenary.wires for ends in pairwise(_held_stations(catenary, mesh, wire))]

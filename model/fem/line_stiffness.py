@@ -24,15 +24,11 @@ from pantocheck.model.kept_results import keep_with_line
 class LineStiffness:
     """Factored stiffness K of a line in global order, with the stiffness of held stretches.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
+    Args:
+        line: Discretised line.
 
-    Raises
-    ------
-    NoEquilibrium
-        The line is not stable.
+    Raises:
+        NoEquilibrium: The line is not stable.
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
@@ -50,15 +46,12 @@ class LineStiffness:
     def solve(self, force: Array) -> Array:
         """Solve K x = f.
 
-        Parameters
-        ----------
-        force : (n,) or (n, m) ndarray
-            Forces and moments on all unknowns in global order [N, N m]; those on fixed unknowns have no effect.
+        Args:
+            force: Forces and moments on all unknowns in global order, (n,) or (n, m) [N, N m]; those on fixed unknowns
+                have no effect.
 
-        Returns
-        -------
-        (n,) or (n, m) ndarray
-            Deflections and slopes [m, -], zero at fixed unknowns.
+        Returns:
+            Deflections and slopes, (n,) or (n, m) [m, -], zero at fixed unknowns.
         """
         displacement = self._solve_band(force)
         if self._stretch_flexibility.size == 0:

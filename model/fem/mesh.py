@@ -17,24 +17,16 @@ from pantocheck.model.catenary import Catenary, Kind, Wire
 
 @dataclass(frozen=True)
 class Mesh:
-    """Stations and rows.
-
-    Parameters
-    ----------
-    position : (stations,) ndarray
-        Position along the track [m].
-    row_kind : tuple of Kind
-        Kind of the wires of each row.
-    row_field : tuple of str
-        Field of each row, "z" or "y".
-    row_of : dict of (str, str) to int
-        Row by wire name and field.
-    """
+    """Stations and rows."""
 
     position: Array
+    """Position along the track, (stations,) [m]."""
     row_kind: tuple[Kind, ...]
+    """Kind of the wires of each row."""
     row_field: tuple[str, ...]
+    """Field of each row, "z" or "y"."""
     row_of: dict[tuple[str, str], int]
+    """Row by wire name and field."""
 
     @property
     def rows(self) -> int:
@@ -67,18 +59,12 @@ def find_element(stations: Array, position: float) -> tuple[int, float, float]:
 def build_mesh(catenary: Catenary, element_length: float, places: tuple[float, ...] = ()) -> Mesh:
     """Place stations at all connectors and divide the wires between them into elements.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line.
-    element_length : float
-        Largest length of an element [m].
-    places : tuple of float
-        Positions of additional stations [m].
+    Args:
+        catenary: Description of the line.
+        element_length: Largest length of an element [m].
+        places: Positions of additional stations [m].
 
-    Returns
-    -------
-    Mesh
+    Returns:
         Stations and rows.
     """
     fields = ("z", "y") if catenary.has_lateral_field else ("z",)

@@ -31,19 +31,13 @@ _NODES = np.linspace(0.0, 1.0, DEGREE + 1)
 def element_flexibility(length: Array, tension: Array, bending_stiffness: Array) -> Array:
     """Residual flexibility along every element of a row.
 
-    Parameters
-    ----------
-    length : (n,) ndarray
-        Lengths of the elements [m].
-    tension : (n,) ndarray
-        Tension, zero where the row has no wire [N].
-    bending_stiffness : (n,) ndarray
-        Bending stiffness [N m2].
+    Args:
+        length: Lengths of the elements, (n,) [m].
+        tension: Tension, zero where the row has no wire, (n,) [N].
+        bending_stiffness: Bending stiffness, (n,) [N m2].
 
-    Returns
-    -------
-    (n, 7) ndarray
-        Coefficients of the polynomial in the share s of the length, constant first [m/N].
+    Returns:
+        Coefficients of the polynomial in the share s of the length, constant first, (n, 7) [m/N].
     """
     coefficients = np.zeros((length.size, DEGREE + 1))
     present = np.flatnonzero(tension > 0)
@@ -68,15 +62,11 @@ def element_flexibility(length: Array, tension: Array, bending_stiffness: Array)
 def station_flexibility(elements: Array) -> Array:
     """Residual flexibility at every station of a row, the mean of the two elements there.
 
-    Parameters
-    ----------
-    elements : (n, 7) ndarray
-        Coefficients of the elements, see `element_flexibility` [m/N].
+    Args:
+        elements: Coefficients of the elements, see `element_flexibility`, (n, 7) [m/N].
 
-    Returns
-    -------
-    (n + 1,) ndarray
-        Residual flexibility, zero where the row has no wire [m/N].
+    Returns:
+        Residual flexibility, zero where the row has no wire, (n + 1,) [m/N].
     """
     at_start, at_end = np.append(elements[:, 0], 0.0), np.append(0.0, elements.sum(axis=1))
     known = (at_start != 0).astype(float) + (at_end != 0)
@@ -100,17 +90,13 @@ def in_series(stiffness: Array, damping: Array, flexibility: Array, lag: Array) 
     A wire with stiffness-proportional damping beta has the flexibility R / (1 + i w beta). With f = 1 / (1 + k R) the
     series has the stiffness f k and the damping f^2 (c + k^2 R beta). A line with one beta for all its parts keeps it.
 
-    Parameters
-    ----------
-    stiffness, damping : (n,) ndarray
-        Stiffness k and damping c of the parts [N/m, N s/m].
-    flexibility, lag : (n,) ndarray
-        Residual flexibility R of the wires at their ends, and its product with beta [m/N, m s/N].
+    Args:
+        stiffness, damping: Stiffness k and damping c of the parts, (n,) [N/m, N s/m].
+        flexibility, lag: Residual flexibility R of the wires at their ends, and its product with beta, (n,)
+            [m/N, m s/N].
 
-    Returns
-    -------
-    stiffness, damping : (n,) ndarray
-        Both in series [N/m, N s/m].
+    Returns:
+        stiffness, damping: Both in series, (n,) [N/m, N s/m].
     """
     factor = 1 / (1 + stiffness * flexibility)
     return np.asarray(factor * stiffness), np.asarray(factor**2 * (damping + stiffness**2 * lag))

@@ -17,18 +17,12 @@ from pantocheck.model.modal.modes import compute_modes_below, free_vectors
 
 @dataclass(frozen=True)
 class ModalTerms:
-    """Low-rank part of the damping matrix: sum over the modes of damping times weight weight'.
-
-    Parameters
-    ----------
-    damping : (n,) ndarray
-        2 zeta w minus the Rayleigh damping of the mode [1/s].
-    weight : (n, rows, stations, 2) ndarray
-        M phi [kg^1/2].
-    """
+    """Low-rank part of the damping matrix: sum over the modes of damping times weight weight'."""
 
     damping: Array
+    """2 zeta w minus the Rayleigh damping of the mode, (n,) [1/s]."""
     weight: Array
+    """M phi, (n, rows, stations, 2) [kg^1/2]."""
 
 
 def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
@@ -54,19 +48,13 @@ def build_modal_terms(line: DiscretisedLine) -> ModalTerms:
 def apply_modal_bands(ratios: Array, frequency: Array, bands: tuple[ModalBand, ...]) -> Array:
     """Damping ratios of Rayleigh plus modal damping: the ratio of the band inside a band, the Rayleigh ratio elsewhere.
 
-    Parameters
-    ----------
-    ratios : (n,) ndarray
-        Damping ratios of Rayleigh damping [-].
-    frequency : (n,) ndarray
-        Natural frequencies of the modes [Hz].
-    bands : tuple of ModalBand
-        Bands of the modal damping.
+    Args:
+        ratios: Damping ratios of Rayleigh damping, (n,) [-].
+        frequency: Natural frequencies of the modes, (n,) [Hz].
+        bands: Bands of the modal damping.
 
-    Returns
-    -------
-    (n,) ndarray
-        Damping ratios [-].
+    Returns:
+        Damping ratios, (n,) [-].
     """
     combined = ratios.copy()
     for band in bands:

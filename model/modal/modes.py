@@ -15,54 +15,33 @@ from pantocheck.model.one_thread import use_one_thread
 
 @dataclass(frozen=True)
 class Modes:
-    """Real modes of the undamped line, mass-normalised.
-
-    Parameters
-    ----------
-    frequency : (n,) ndarray
-        Natural frequencies, ascending [Hz].
-    shape : (n, rows, stations, 2) ndarray
-        Deflection and slope of each mode [kg^-1/2, kg^-1/2 m^-1].
-    """
+    """Real modes of the undamped line, mass-normalised."""
 
     frequency: Array
+    """Natural frequencies, ascending, (n,) [Hz]."""
     shape: Array
+    """Deflection and slope of each mode, (n, rows, stations, 2) [kg^-1/2, kg^-1/2 m^-1]."""
 
 
 @dataclass(frozen=True)
 class ComponentEnergies:
-    """Shares of the kinds of component in the energies of each mode.
-
-    Parameters
-    ----------
-    kinds : tuple of Kind
-        Kinds in the order of the columns.
-    stiffness : (n, kinds) ndarray
-        phi' K_e phi; the sum over the kinds is (2 pi f)^2, without the share of held stretches [1/s2].
-    mass : (n, kinds) ndarray
-        phi' M_e phi; the sum over the kinds is 1 [-].
-    """
+    """Shares of the kinds of component in the energies of each mode."""
 
     kinds: tuple[Kind, ...]
+    """Kinds in the order of the columns."""
     stiffness: Array
+    """phi' K_e phi, (n, kinds); the sum over the kinds is (2 pi f)^2, without the share of held stretches [1/s2]."""
     mass: Array
+    """phi' M_e phi, (n, kinds); the sum over the kinds is 1 [-]."""
 
 
 @use_one_thread
 def compute_modes(line: DiscretisedLine, count: int) -> Modes:
     """Compute the lowest modes of a line.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    count : int
-        Number of modes.
-
-    Returns
-    -------
-    Modes
-        Lowest modes.
+    Args:
+        line: Discretised line.
+        count: Number of modes.
     """
     matrices, factored = assemble_matrices(line), factored_stiffness(line)
 
@@ -112,16 +91,11 @@ def deflection_at(line: DiscretisedLine, modes: Modes, row: int, position: float
 def component_energies(line: DiscretisedLine, modes: Modes) -> ComponentEnergies:
     """Compute the share of every kind of component in the energies of the modes.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    modes : Modes
-        Modes of the line.
+    Args:
+        line: Discretised line.
+        modes: Modes of the line.
 
-    Returns
-    -------
-    ComponentEnergies
+    Returns:
         Energies. The damping C = sum of a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 w_j).
     """
     vectors = free_vectors(line, modes)
@@ -143,16 +117,11 @@ def _energy(line: DiscretisedLine, vectors: Array) -> Array:
 def damping_ratios(line: DiscretisedLine, modes: Modes) -> Array:
     """Damping ratio of every mode, phi' C phi / (2 w), without the coupling of modes through the damping.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line with its damping.
-    modes : Modes
-        Modes of the line.
+    Args:
+        line: Discretised line with its damping.
+        modes: Modes of the line.
 
-    Returns
-    -------
-    (n,) ndarray
-        Damping ratios [-].
+    Returns:
+        Damping ratios, (n,) [-].
     """
     return _energy(line, free_vectors(line, modes)) / (4 * np.pi * modes.frequency)

@@ -45,24 +45,16 @@ def hang_on_droppers(catenary: Catenary, length: Array, element_length: float) -
 
     Supports of the messenger wires, anchors, and arms that carry their share keep their heights.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line; its heights at the droppers are the start of the search.
-    length : (droppers,) ndarray
-        Lengths of the droppers without load [m].
-    element_length : float
-        Largest length of an element [m].
+    Args:
+        catenary: Description of the line; its heights at the droppers are the start of the search.
+        length: Lengths of the droppers without load, (droppers,) [m].
+        element_length: Largest length of an element [m].
 
-    Returns
-    -------
-    Catenary
+    Returns:
         The same line with other heights at the droppers.
 
-    Raises
-    ------
-    NoInitialState
-        A dropper would be slack at rest, or no heights are found.
+    Raises:
+        NoInitialState: A dropper would be slack at rest, or no heights are found.
     """
     mesh = build_mesh(catenary, element_length)
     beams = build_beams(catenary, mesh)

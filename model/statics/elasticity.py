@@ -16,19 +16,13 @@ from pantocheck.model.statics.static_solver import PointResponse, point_product,
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
     """Compute the uplift of the contact wire under a static force at each position in turn; droppers may slacken.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    position : (n,) ndarray
-        Positions of the force [m].
-    force : float
-        Force upwards, shared by the contact wires that a head touches there [N].
+    Args:
+        line: Discretised line.
+        position: Positions of the force, (n,) [m].
+        force: Force upwards, shared by the contact wires that a head touches there [N].
 
-    Returns
-    -------
-    (n,) ndarray
-        Uplift at the force, mean over these contact wires [m].
+    Returns:
+        Uplift at the force, mean over these contact wires, (n,) [m].
     """
     statics = static_solver(line)
     points = [_point_response(line, float(x)) for x in position]
@@ -46,17 +40,12 @@ def _point_response(line: DiscretisedLine, position: float) -> tuple[PointRespon
 def rest_height(line: DiscretisedLine, position: Array) -> Array:
     """Height of the contact wire at rest, with its irregularity.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    position : (n,) ndarray
-        Positions along the line [m].
+    Args:
+        line: Discretised line.
+        position: Positions along the line, (n,) [m].
 
-    Returns
-    -------
-    (n,) ndarray
-        Height above the datum of the line, mean over the contact wires that a head touches there [m].
+    Returns:
+        Height above the datum of the line, mean over the contact wires that a head touches there, (n,) [m].
     """
     deflection = line.state.deflection.transpose(1, 0, 2).ravel()
     heights = [
@@ -69,19 +58,13 @@ def rest_height(line: DiscretisedLine, position: Array) -> Array:
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
     """Compute the height of the contact wire, with its irregularity, at static forces; droppers may slacken.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    position : (n,) ndarray
-        Positions of the forces [m].
-    force : (n,) ndarray
-        Forces upwards, each shared by the contact wires that a head touches there [N].
+    Args:
+        line: Discretised line.
+        position: Positions of the forces, (n,) [m].
+        force: Forces upwards, each shared by the contact wires that a head touches there, (n,) [N].
 
-    Returns
-    -------
-    (n,) ndarray
-        Height, mean over these contact wires [m].
+    Returns:
+        Height, mean over these contact wires, (n,) [m].
     """
     rows = [touched_rows(line, float(x)) for x in position]
     shapes = [
@@ -115,14 +98,10 @@ def _mean_irregularity(line: DiscretisedLine, position: Array) -> Array:
 def non_uniformity(elasticity: Array) -> float:
     """Non-uniformity of the elasticity along a span: (max - min) / (max + min).
 
-    Parameters
-    ----------
-    elasticity : (n,) ndarray
-        Elasticity along a span, in any unit.
+    Args:
+        elasticity: Elasticity along a span, in any unit, (n,).
 
-    Returns
-    -------
-    float
+    Returns:
         Non-uniformity [-].
     """
     return float((elasticity.max() - elasticity.min()) / (elasticity.max() + elasticity.min()))

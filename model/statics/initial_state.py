@@ -28,30 +28,22 @@ Stiffness = Callable[[Beams, int], sp.csr_array]
 
 @dataclass(frozen=True)
 class InitialState:
-    """The line at rest.
-
-    Parameters
-    ----------
-    deflection : (rows, stations, 2) ndarray
-        Vertical rows: height; lateral rows: distance from the track centre line; each with its slope [m, -].
-    dropper_tension : (droppers,) ndarray
-        Axial tension at mid-length [N].
-    dropper_length : (droppers,) ndarray
-        Length between the axes of the wires [m].
-    dropper_direction : (droppers, 2) ndarray
-        Direction from the lower to the upper wire, y and z [-].
-    clamp_force : (clamps, 2) ndarray
-        Force of the upper on the lower wire, y and z [N].
-    arm_force : (steady arms, 2) ndarray
-        Static force of each steady arm on the contact wire, y and z [N].
-    """
+    """The line at rest."""
 
     deflection: Array
+    """Vertical rows, (rows, stations, 2): height; lateral rows: distance from the track centre line; each with its
+    slope [m, -].
+    """
     dropper_tension: Array
+    """Axial tension at mid-length, (droppers,) [N]."""
     dropper_length: Array
+    """Length between the axes of the wires, (droppers,) [m]."""
     dropper_direction: Array
+    """Direction from the lower to the upper wire, y and z, (droppers, 2) [-]."""
     clamp_force: Array
+    """Force of the upper on the lower wire, y and z, (clamps, 2) [N]."""
     arm_force: Array
+    """Static force of each steady arm on the contact wire, y and z, (steady arms, 2) [N]."""
 
 
 def compute_initial_state(
@@ -59,26 +51,17 @@ def compute_initial_state(
 ) -> InitialState:
     """Compute the equilibrium of the line under its weight.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Description of the line.
-    mesh : Mesh
-        Stations and rows.
-    beams : Beams
-        Rows of beams.
-    stiffness : callable
-        Stiffness of the wires of one row, as beams (default) or as strings.
+    Args:
+        catenary: Description of the line.
+        mesh: Stations and rows.
+        beams: Rows of beams.
+        stiffness: Stiffness of the wires of one row, as beams (default) or as strings.
 
-    Returns
-    -------
-    InitialState
+    Returns:
         Line at rest.
 
-    Raises
-    ------
-    NoInitialState
-        A dropper would have to push, or two wires cross.
+    Raises:
+        NoInitialState: A dropper would have to push, or two wires cross.
     """
     vertical = [row for row in range(mesh.rows) if mesh.row_field[row] == "z"]
     contact = [row for row in vertical if mesh.row_kind[row] is Kind.CONTACT_WIRE]

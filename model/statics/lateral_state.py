@@ -33,24 +33,16 @@ CLAMP_STIFFNESS = 1e9
 
 @dataclass(frozen=True)
 class LateralState:
-    """Plan view at rest.
-
-    Parameters
-    ----------
-    rows : list of int
-        Indices of the lateral rows.
-    shape : (lateral rows, stations, 2) ndarray
-        Distance from the track centre line, and slope [m, -].
-    clamps : (clamps,) ndarray
-        Lateral force of the upper on the lower wire [N].
-    arms : (steady arms,) ndarray
-        Lateral force of each arm on its wire [N].
-    """
+    """Plan view at rest."""
 
     rows: list[int]
+    """Indices of the lateral rows."""
     shape: Array
+    """Distance from the track centre line, and slope, (lateral rows, stations, 2) [m, -]."""
     clamps: Array
+    """Lateral force of the upper on the lower wire, (clamps,) [N]."""
     arms: Array
+    """Lateral force of each arm on its wire, (steady arms,) [N]."""
 
 
 def compute_lateral_state(catenary: Catenary, mesh: Mesh, beams: Beams, dropper_stiffness: Array) -> LateralState:

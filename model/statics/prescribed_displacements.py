@@ -15,21 +15,14 @@ def solve_with_prescribed_displacements(
 
     The unknowns are solved station by station, all rows together: in this order the matrix is a narrow band.
 
-    Parameters
-    ----------
-    stiffness : (n, n) sparse array
-        Stiffness matrix K, positive definite for the free unknowns; n = 2 B S.
-    load : (n,) ndarray
-        Forces and moments f [N, N m].
-    free : (B, S, 2) ndarray of bool
-        Whether an unknown of B rows with S stations is free.
-    prescribed : (n,) ndarray
-        Values of the other unknowns [m, -].
+    Args:
+        stiffness: Stiffness matrix K, positive definite for the free unknowns, (n, n); n = 2 B S.
+        load: Forces and moments f, (n,) [N, N m].
+        free: Whether an unknown of B rows with S stations is free, (B, S, 2).
+        prescribed: Values of the other unknowns, (n,) [m, -].
 
-    Returns
-    -------
-    (n,) ndarray
-        All unknowns q [m, -].
+    Returns:
+        All unknowns q, (n,) [m, -].
     """
     order = np.arange(free.size).reshape(free.shape).transpose(1, 0, 2).ravel()
     solution: Array = np.where(free.ravel(), 0.0, prescribed)

@@ -20,18 +20,12 @@ MAX_ITERATIONS = 100
 
 @dataclass(frozen=True)
 class Deflection:
-    """A static deflection about the initial state.
-
-    Parameters
-    ----------
-    displacement : (rows, stations, 2) ndarray
-        Deflection and slope [m, -].
-    tension : (connectors,) ndarray
-        Total tension [N].
-    """
+    """A static deflection about the initial state."""
 
     displacement: Array
+    """Deflection and slope, (rows, stations, 2) [m, -]."""
     tension: Array
+    """Total tension, (connectors,) [N]."""
 
     @property
     def slack(self) -> NDArray[np.bool_]:
@@ -40,18 +34,12 @@ class Deflection:
 
 
 class PointResponse(NamedTuple):
-    """Response of a line with taut droppers to a unit force.
-
-    Parameters
-    ----------
-    flexibility : float
-        Deflection at the force [m/N].
-    elongation : (connectors,) ndarray
-        Elongation of each connector [m/N].
-    """
+    """Response of a line with taut droppers to a unit force."""
 
     flexibility: float
+    """Deflection at the force [m/N]."""
     elongation: Array
+    """Elongation of each connector, (connectors,) [m/N]."""
 
 
 class StaticSolver:
@@ -60,10 +48,8 @@ class StaticSolver:
     Elongations of connectors under the load, and under the forces that release slack droppers, decide which droppers
     are slack. The deflection of the line follows once at the end.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
+    Args:
+        line: Discretised line.
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
@@ -76,20 +62,14 @@ class StaticSolver:
     def deflection(self, load: Array) -> Deflection:
         """Compute the deflection under a load.
 
-        Parameters
-        ----------
-        load : (unknowns,) ndarray
-            Forces and moments in global order [N, N m].
+        Args:
+            load: Forces and moments in global order, (unknowns,) [N, N m].
 
-        Returns
-        -------
-        Deflection
+        Returns:
             Displacements and tensions.
 
-        Raises
-        ------
-        NoEquilibrium
-            The set of slack droppers does not settle.
+        Raises:
+            NoEquilibrium: The set of slack droppers does not settle.
         """
         taut = self._stiffness.solve(np.asarray(load, dtype=float))
         slack, release, tension = self._release_slack(self._direction.T @ taut)
@@ -102,10 +82,8 @@ class StaticSolver:
     def point_response(self, direction: Array) -> PointResponse:
         """Compute the response to a unit force with taut droppers.
 
-        Parameters
-        ----------
-        direction : (unknowns,) ndarray
-            Nodal forces of the unit force, in global order; zero but for a few unknowns.
+        Args:
+            direction: Nodal forces of the unit force, in global order, (unknowns,); zero but for a few unknowns.
         """
         unit = self._stiffness.solve(direction)
         return PointResponse(point_product(direction, unit), self._direction.T @ unit)
@@ -113,22 +91,15 @@ class StaticSolver:
     def deflection_at(self, point: PointResponse, force: float) -> float:
         """Compute the deflection at a point, in the direction of a force there; droppers may slacken.
 
-        Parameters
-        ----------
-        point : PointResponse
-            Response to a unit force.
-        force : float
-            Size of the force [N].
+        Args:
+            point: Response to a unit force.
+            force: Size of the force [N].
 
-        Returns
-        -------
-        float
+        Returns:
             Product of the direction with the displacements [m].
 
-        Raises
-        ------
-        NoEquilibrium
-            The set of slack droppers does not settle.
+        Raises:
+            NoEquilibrium: The set of slack droppers does not settle.
         """
         slack, release, _ = self._release_slack(force * point.elongation)
         # A unit force elongates a dropper as much as a unit elongating force of the dropper moves the unit force.

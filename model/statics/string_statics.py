@@ -19,20 +19,14 @@ from pantocheck.model.statics.initial_state import InitialState, compute_initial
 def compute_string_state(catenary: Catenary) -> InitialState:
     """Compute the line at rest with its wires as strings, in the vertical plane.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Line; its staggers are ignored.
+    Args:
+        catenary: Line; its staggers are ignored.
 
-    Returns
-    -------
-    InitialState
+    Returns:
         State at the positions of the connectors.
 
-    Raises
-    ------
-    NoInitialState
-        The prescribed geometry has no equilibrium.
+    Raises:
+        NoInitialState: The prescribed geometry has no equilibrium.
     """
     vertical = remove_staggers(catenary)
     mesh = build_mesh(vertical, math.inf)

@@ -17,12 +17,9 @@ def impedance(wires: Iterable[Wire]) -> float:
 def doppler_factor(speed: float, wave_speed: float) -> float:
     """Doppler factor (c - v) / (c + v): frequency ratio between a wave sent ahead and its reflection at the train.
 
-    Parameters
-    ----------
-    speed : float
-        Speed v of the train [m/s].
-    wave_speed : float
-        Wave speed c of the contact wire [m/s].
+    Args:
+        speed: Speed v of the train [m/s].
+        wave_speed: Wave speed c of the contact wire [m/s].
     """
     return (wave_speed - speed) / (wave_speed + speed)
 
@@ -30,14 +27,10 @@ def doppler_factor(speed: float, wave_speed: float) -> float:
 def reflection_coefficient(contact_wires: Iterable[Wire], messenger_wires: Iterable[Wire]) -> float:
     """Share of a wave on the contact wire that a rigid, massless dropper reflects.
 
-    Parameters
-    ----------
-    contact_wires, messenger_wires : iterable of Wire
-        Wires that the dropper connects.
+    Args:
+        contact_wires, messenger_wires: Wires that the dropper connects.
 
-    Returns
-    -------
-    float
+    Returns:
         Coefficient sqrt(T_m m_m) / (sqrt(T_m m_m) + sqrt(T_c m_c)) [-].
     """
     upper = impedance(messenger_wires)

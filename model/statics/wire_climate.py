@@ -24,26 +24,17 @@ from pantocheck.model.statics.initial_state import compute_initial_state
 def fixed_tension(tension: float, excess_length: float, axial_stiffness: float, thermal_strain: float) -> float:
     """Tension of a wire between fixed anchors after a thermal strain.
 
-    Parameters
-    ----------
-    tension : float
-        Tension before [N].
-    excess_length : float
-        Excess of the length of the wire over its chord before, as a share of the chord [-].
-    axial_stiffness : float
-        Axial stiffness EA [N].
-    thermal_strain : float
-        Expansion coefficient times change of temperature [-].
+    Args:
+        tension: Tension before [N].
+        excess_length: Excess of the length of the wire over its chord before, as a share of the chord [-].
+        axial_stiffness: Axial stiffness EA [N].
+        thermal_strain: Expansion coefficient times change of temperature [-].
 
-    Returns
-    -------
-    float
+    Returns:
         Tension after [N].
 
-    Raises
-    ------
-    NoInitialState
-        A flat wire would have to push.
+    Raises:
+        NoInitialState: A flat wire would have to push.
     """
     flat = tension - axial_stiffness * thermal_strain
     if excess_length == 0.0:

@@ -21,6 +21,8 @@ from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
 from pantocheck.conformance.reports.site.published_results import publish_results
 from pantocheck.conformance.reports.site.site_index import build_site_index
+from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.results.results_format import Results, SystemIdentity
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 """Programs that Playwright can drive without a browser of its own."""
@@ -51,8 +53,8 @@ def build_plain_document() -> Document:
     """A page without results: a chart and a table long enough for sorting."""
     numbers = [{"f": f"{value:g}", "note": f"mode {value:g}"} for value in (3.5, -1.0, 20.0, *range(30, 40))]
     table = make_grid("Modes", numbers, {"f [Hz]": itemgetter("f"), "Note": itemgetter("note")})
-    data = chart("measured", "Damping ratios")
-    figure = Figure(draw_chart(data), data["alternative"], data["caption"])
+    data = Chart.model_validate(chart("measured", "Damping ratios"))
+    figure = Figure(draw_chart(data), data.alternative, data.caption)
     blocks = (Section("Modes", (Figures((figure,)), table)),)
     return Document("Identification", PlainHeader("Identification", "13 modes"), blocks)
 
@@ -61,10 +63,13 @@ def build_site_page() -> Document:
     """First page of a site: two systems on twelve cases; the second system passes every third of them."""
     contents = []
     for system, verdicts in (("first", ["pass"] * 12), ("second", ["pass", "fail", "skip"] * 4)):
-        cases = [{"id": f"case/{i}", "verdict": verdict, "library": "own"} for i, verdict in enumerate(verdicts, 1)]
-        identity = {"name": system, "version": "1"}
-        results = {"system": identity, "suite": {"version": "1"}, "started": "2026-01-01", "verdict": "fail"}
-        contents.append((results | {"cases": cases}, ()))
+        results = Results.model_validate(example())
+        cases = [
+            results.cases[0].model_copy(update={"id": f"case/{i}", "verdict": verdict, "library": "own"})
+            for i, verdict in enumerate(verdicts, 1)
+        ]
+        identity = SystemIdentity(name=system, version="1", kind="record")
+        contents.append((results.model_copy(update={"system": identity, "cases": cases}), ()))
     pages = {f"case/{i}": f"cases/{i}.html" for i in range(1, 13)}
     return build_site_index("Site", publish_results(contents), pages)
 
@@ -73,10 +78,10 @@ def build_site_page() -> Document:
 def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages by name: certificates, one of them with hostile texts, a mass-drop report, and a page without results."""
     documents = {
-        "certificate": build_certificate(example()),
-        "measured": build_certificate(with_measured_run()),
-        "reference": build_certificate(with_reference()),
-        "hostile": build_certificate(with_hostile_text()),
+        "certificate": build_certificate(Results.model_validate(example())),
+        "measured": build_certificate(Results.model_validate(with_measured_run())),
+        "reference": build_certificate(Results.model_validate(with_reference())),
+        "hostile": build_certificate(Results.model_validate(with_hostile_text())),
         "identification": build_identification_document([build_example_line()]),
         "plain": build_plain_document(),
         "site": build_site_page(),

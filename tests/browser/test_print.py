@@ -13,6 +13,7 @@ from pypdf import PdfReader
 from helpers.example_results import example
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import to_plain
+from pantocheck.conformance.results.results_format import Results
 
 pytestmark = pytest.mark.thorough
 
@@ -74,7 +75,7 @@ def join_words(text: str) -> str:
 
 def list_missing(printed: str) -> list[str]:
     """Texts of the certificate, which are also those of its PDF, that a printed page lacks."""
-    document = to_plain(build_certificate(example()))
+    document = to_plain(build_certificate(Results.model_validate(example())))
     texts = list_texts({key: document[key] for key in ("header", "blocks")})
     return [text for text in texts if join_words(text) not in printed]
 

@@ -23,17 +23,12 @@ from pantocheck.model.statics.static_solver import StaticSolver
 def contact_force(line: DiscretisedLine, passage: Passage) -> Array:
     """Contact force of one pantograph of two masses; the simulation starts at rest like `simulate_passage`.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line in the vertical plane.
-    passage : Passage
-        Passage with an explicit time step below 2 / w_max.
+    Args:
+        line: Discretised line in the vertical plane.
+        passage: Passage with an explicit time step below 2 / w_max.
 
-    Returns
-    -------
-    (T,) ndarray
-        Contact force [N].
+    Returns:
+        Contact force, (T,) [N].
     """
     (model,) = passage.pantographs
     matrices = assemble_matrices(without_connectors(line))

@@ -12,21 +12,14 @@ from pantocheck.conformance.results.outcome import Outcome, Skipped
 
 @dataclass(frozen=True)
 class Dying:
-    """System whose cases leave a file when they begin; the process of a fatal case ends as soon as a file exists.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the files.
-    fatal : dict of str to str
-        Name of the file that ends the process, by fatal case.
-    awaited : dict of str to str
-        Name of the file that another case waits for before it is finished, by case.
-    """
+    """System whose cases leave a file when they begin; the process of a fatal case ends as soon as a file exists."""
 
     folder: Path
+    """Folder of the files."""
     fatal: dict[str, str]
+    """Name of the file that ends the process, by fatal case."""
     awaited: dict[str, str]
+    """Name of the file that another case waits for before it is finished, by case."""
     name: str = "dying"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"

@@ -26,20 +26,13 @@ def build_exact_decay(
 ) -> PreparedDecay:
     """Prepared record whose sensors move by 2 Re(sum residues exp(poles t)), t from the release [s].
 
-    Parameters
-    ----------
-    poles : (m,) complex ndarray
-        Poles [1/s].
-    residues : (m, c) complex ndarray
-        Residues of the vertical channels at the release.
-    name : str
-        Name of the record.
-    after : float
-        Start of the linear decay after the release [s].
-    duration : float
-        Duration of the record after the release [s].
-    lateral : (m,) complex ndarray or None
-        Residues of a lateral channel at the release.
+    Args:
+        poles: Poles, (m,) [1/s].
+        residues: Residues of the vertical channels at the release, (m, c).
+        name: Name of the record.
+        after: Start of the linear decay after the release [s].
+        duration: Duration of the record after the release [s].
+        lateral: Residues of a lateral channel at the release, (m,).
     """
     t = np.arange(round((RELEASE + duration) * RATE)) / RATE - RELEASE
     table = residues if lateral is None else np.column_stack([residues, lateral])

@@ -374,7 +374,7 @@ def with_hostile_text() -> dict[str, Any]:
     results = example()
     results["system"] |= {"name": HOSTILE[0], "version": HOSTILE[1]}
     keys = ("report_number", "issuer", "organisation", "contact", "assessor", "remarks")
-    results["administration"] = dict(zip(keys, HOSTILE, strict=False))
+    results["administration"] = dict(zip(keys, (*HOSTILE[:4], HOSTILE[6]), strict=False))
     for number, case in enumerate(results["cases"]):
         case["id"] += HOSTILE[number + 2]
         case["title"] = HOSTILE[number]
@@ -400,19 +400,19 @@ def hostile() -> dict[str, Any]:
 @pytest.fixture(scope="session")
 def page_text() -> str:
     """The example as HTML."""
-    return render_html(build_certificate(example()))
+    return render_html(build_certificate(Results.model_validate(example())))
 
 
 @pytest.fixture(scope="session")
 def hostile_text() -> str:
     """The example with hostile text as HTML."""
-    return render_html(build_certificate(with_hostile_text()))
+    return render_html(build_certificate(Results.model_validate(with_hostile_text())))
 
 
 @pytest.fixture(scope="session")
 def certificate() -> bytes:
     """The example as PDF."""
-    return render_pdf(build_certificate(example()))
+    return render_pdf(build_certificate(Results.model_validate(example())))
 
 
 def with_reference() -> dict[str, Any]:

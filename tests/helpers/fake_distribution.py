@@ -24,16 +24,11 @@ def write_distribution(
 ) -> None:
     """Write a distribution.
 
-    Parameters
-    ----------
-    site : Path
-        Folder of installed packages.
-    name, version : str
-        Name and version of the distribution.
-    entries : mapping
-        Value of every entry point by its group and name.
-    files : mapping of str to str
-        Texts of the files of its packages by their paths.
+    Args:
+        site: Folder of installed packages.
+        name, version: Name and version of the distribution.
+        entries: Value of every entry point by its group and name.
+        files: Texts of the files of its packages by their paths.
     """
     metadata = site / f"{name.replace('-', '_')}-{version}.dist-info"
     lines = [line for group, row in entries.items() for line in (f"[{group}]", *(f"{k} = {row[k]}" for k in row))]

@@ -18,9 +18,9 @@ def render_document(results: dict[str, Any], name: str) -> bytes:
     """Content of a document with these results; `name` is that of the file."""
     match name.rpartition(".")[2]:
         case "pdf":
-            return render_pdf(build_certificate(results))
+            return render_pdf(build_certificate(Results.model_validate(results)))
         case "html":
-            return render_html(build_certificate(results)).encode()
+            return render_html(build_certificate(Results.model_validate(results))).encode()
         case _:
             return Results.model_validate(results).to_json()
 

@@ -43,12 +43,9 @@ class State:
 class PlainNewmark:
     """Line and pantographs as one system with dense matrices.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Discretised line.
-    passage : Passage
-        Pantographs, speed and time step.
+    Args:
+        line: Discretised line.
+        passage: Pantographs, speed and time step.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:

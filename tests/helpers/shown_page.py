@@ -5,9 +5,10 @@ from typing import Any
 
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.results.results_format import Results
 
 
 def shown_certificate(results: dict[str, Any]) -> str:
     """HTML of a certificate without its data block, with ordinary spaces between numbers and units."""
-    page = render_html(replace(build_certificate(results), results=None))
+    page = render_html(replace(build_certificate(Results.model_validate(results)), results=None))
     return page.replace("\N{NO-BREAK SPACE}", " ")

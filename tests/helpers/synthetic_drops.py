@@ -8,24 +8,16 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class SyntheticDrop:
-    """Record with its exact poles.
-
-    Parameters
-    ----------
-    samples : (n, c) ndarray
-        Accelerations [m/s2], at rest before the release.
-    rate : float
-        Sampling rate [Hz].
-    release : float
-        Time of the release [s].
-    poles : (m,) complex ndarray
-        Poles [1/s].
-    """
+    """Record with its exact poles."""
 
     samples: NDArray[np.float64]
+    """Accelerations, (n, c) [m/s2], at rest before the release."""
     rate: float
+    """Sampling rate [Hz]."""
     release: float
+    """Time of the release [s]."""
     poles: NDArray[np.complex128]
+    """Poles, (m,) [1/s]."""
 
     @property
     def frequency(self) -> NDArray[np.float64]:

@@ -12,24 +12,16 @@ from pantocheck.conformance.results.outcome import Outcome, Skipped
 
 @dataclass(frozen=True)
 class Waiting:
-    """System whose first case waits for the others to begin; they leave files when they begin and when they end.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the files.
-    quick : str
-        Id of the case that ends as soon as `others` cases have begun.
-    others : int
-        Number of the other cases.
-    deaf : bool
-        Whether the others ignore the signals that end a process.
-    """
+    """System whose first case waits for the others to begin; they leave files when they begin and when they end."""
 
     folder: Path
+    """Folder of the files."""
     quick: str
+    """Id of the case that ends as soon as `others` cases have begun."""
     others: int
+    """Number of the other cases."""
     deaf: bool = False
+    """Whether the others ignore the signals that end a process."""
     name: str = "waiting"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"

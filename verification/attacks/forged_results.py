@@ -347,14 +347,10 @@ CHANGES: dict[str, Change] = {
 def forge_results(results: Tree, name: str, seed: int) -> Tree:
     """Results with one kind of forgery.
 
-    Parameters
-    ----------
-    results : dict
-        Genuine results.
-    name : str
-        Name of the kind.
-    seed : int
-        Seed of the random choices.
+    Args:
+        results: Genuine results.
+        name: Name of the kind.
+        seed: Seed of the random choices.
     """
     forged = copy.deepcopy(results)
     CHANGES[name](forged, random.Random(f"{seed} {name}"))

@@ -101,17 +101,15 @@ class Attempt:
 
 def build_genuine(results: dict[str, Any]) -> Genuine:
     """Documents of results."""
-    certificate = build_certificate(results)
+    certificate = build_certificate(Results.model_validate(results))
     return Genuine(results, render_pdf(certificate), render_html(certificate))
 
 
 def run_failing(folder: Path) -> dict[str, Any]:
     """Results of a record that fails: another start of the train, where the standard deviation is below its limit.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the record, `run.h5`.
+    Args:
+        folder: Folder of the record, `run.h5`.
     """
     path = library_folder() / f"{CASE}.toml"
     simulated = ReferenceSimulator().run_unrefined(load_case(path, parse_changes(["start_m=120"]))).record
@@ -126,11 +124,19 @@ def list_result_forgeries(genuine: Genuine, kind: str, seed: int) -> Iterator[tu
     if forged == genuine.results:
         raise AssertionError(f"{kind}: nothing was forged")
     yield "results.json", Results.model_validate(forged).to_json(), "json"
-    yield "PDF, attachment alone", replace_attachment(genuine.pdf, encode_attachment(forged)), "pdf"
-    block = re.escape(encode_data_block(genuine.results))
-    yield "HTML, data alone", re.sub(block, lambda _: encode_data_block(forged), genuine.html).encode(), "html"
+    yield (
+        "PDF, attachment alone",
+        replace_attachment(genuine.pdf, encode_attachment(Results.model_validate(forged))),
+        "pdf",
+    )
+    block = re.escape(encode_data_block(Results.model_validate(genuine.results)))
+    yield (
+        "HTML, data alone",
+        re.sub(block, lambda _: encode_data_block(Results.model_validate(forged)), genuine.html).encode(),
+        "html",
+    )
     try:
-        certificate = build_certificate(forged)
+        certificate = build_certificate(Results.model_validate(forged))
     except KeyError:  # the results contradict themselves, so that no page can be made from them
         return
     yield "PDF made again", render_pdf(certificate), "pdf"

@@ -174,7 +174,7 @@ def _result_targets() -> Iterator[Target]:
     yield Target("results as baseline", {"r.json": results.to_json()}, "r.json", use_baseline(results))
     # Threads of the typesetter do not survive a fork: a round that renders would wait for them forever.
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        pdf = pool.submit(render_pdf, build_certificate(results.to_dict())).result()
+        pdf = pool.submit(render_pdf, build_certificate(results)).result()
     yield Target("certificate", {"c.pdf": pdf}, "c.pdf", lambda path: verify_document(path / "c.pdf"))
 
 

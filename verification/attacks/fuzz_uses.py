@@ -89,7 +89,7 @@ def use_baseline(results: Results) -> Callable[[Path], None]:
 
     def use(folder: Path) -> None:
         damaged_results = read_baseline(folder / "r.json")
-        find_discrepancies(damaged_results.to_dict())
+        find_discrepancies(damaged_results)
         check(compare_with_baseline(results, damaged_results, 1.0, "r.json"))
 
     return use
@@ -122,7 +122,7 @@ def use_answer(folder: Path) -> None:
 
 def check(results: Results) -> None:
     """Require consistent results, and for a case in `error` a reason that the suite formulated."""
-    found = find_discrepancies(results.to_dict())
+    found = find_discrepancies(results)
     if found and results.verdict in {"pass", "info"}:
         raise Falsehood(f"{results.verdict}: {found[0]}")
     for case in results.cases:

@@ -59,24 +59,16 @@ COMPARED = frozenset(
 
 @dataclass(frozen=True)
 class Base:
-    """Subject that does not pass.
-
-    Parameters
-    ----------
-    name : str
-        Reason why it does not pass.
-    dossier : Dossier
-        Its files.
-    groups : frozenset of str
-        Groups of manipulations that apply; a group that could repair the fault of the base is left out.
-    grade : callable
-        Grading of a folder with the files.
-    """
+    """Subject that does not pass."""
 
     name: str
+    """Reason why it does not pass."""
     dossier: Dossier
+    """Its files."""
     groups: frozenset[str]
+    """Groups of manipulations that apply; a group that could repair the fault of the base is left out."""
     grade: Callable[[Path], Results]
+    """Grading of a folder with the files."""
 
 
 def write_dossier(folder: Path, dossier: Dossier) -> None:

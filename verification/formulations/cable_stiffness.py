@@ -27,22 +27,14 @@ along the track and its inertia."""
 def linearise_wire(line: ExactLine, position: Array, wire: int, supports: Array, law: TensionLaw) -> ExactLine:
     """Replace a wire of an exact line by one with small slopes.
 
-    Parameters
-    ----------
-    line : ExactLine
-        Exact line.
-    position : (3, N) ndarray
-        Positions at rest, about which the wire is linearised [m].
-    wire : int
-        Number of the wire.
-    supports : (S,) int ndarray
-        Points of the wire that are held along the track.
-    law : TensionLaw
-        Change of tension.
+    Args:
+        line: Exact line.
+        position: Positions at rest, about which the wire is linearised, (3, N) [m].
+        wire: Number of the wire.
+        supports: Points of the wire that are held along the track, (S,) int.
+        law: Change of tension.
 
-    Returns
-    -------
-    ExactLine
+    Returns:
         Line with the linear wire.
     """
     wires = line.wires

@@ -17,21 +17,14 @@ FORMAL_ORDER = 2
 
 @dataclass(frozen=True)
 class Extrapolation:
-    """Value for vanishing element length and time step.
-
-    Parameters
-    ----------
-    value : float
-        Extrapolated value; the finest one where no order is observed.
-    half_width : float
-        Half-width of its interval.
-    order : float or None
-        Observed order of convergence; None if it is not observed.
-    """
+    """Value for vanishing element length and time step."""
 
     value: float
+    """Extrapolated value; the finest one where no order is observed."""
     half_width: float
+    """Half-width of its interval."""
     order: float | None
+    """Observed order of convergence; None if it is not observed."""
 
 
 def extrapolate(values: tuple[float, float, float]) -> Extrapolation:
@@ -58,14 +51,10 @@ def extrapolate_pair(coarse: float, fine: float) -> float:
 def difference_pct(quantity: str, value: float, second: float, mean: float | None) -> float:
     """Difference of the second formulation from the reference simulator [%].
 
-    Parameters
-    ----------
-    quantity : str
-        Name of the quantity.
-    value, second : float
-        Extrapolated values of the reference simulator and of the second formulation.
-    mean : float or None
-        Mean contact force [N], from which extremes are counted; None for a quantity of the line.
+    Args:
+        quantity: Name of the quantity.
+        value, second: Extrapolated values of the reference simulator and of the second formulation.
+        mean: Mean contact force [N], from which extremes are counted; None for a quantity of the line.
     """
     extreme = quantity.startswith(("statistical_", "max_force", "min_force"))
     return 100 * (second - value) / abs(value - (mean or 0.0) if extreme else value)

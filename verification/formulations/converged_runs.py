@@ -51,14 +51,10 @@ A quantity is named `pantograph|name`."""
 def complete_runs(case: Case, store: Path, report: Callable[[str], None]) -> Runs:
     """Runs of a case from a file, completed by those that are missing.
 
-    Parameters
-    ----------
-    case : Case
-        Case of the library.
-    store : Path
-        File of finished runs; it is written after every run.
-    report : callable
-        Function that receives a line before every run.
+    Args:
+        case: Case of the library.
+        store: File of finished runs; it is written after every run.
+        report: Function that receives a line before every run.
     """
     known = json.loads(store.read_text(encoding="utf-8")) if store.is_file() else {}
     runs: Runs = known.setdefault(case.id, {"reference": {}, "second": {}})

@@ -19,24 +19,16 @@ from verification.formulations.difference_strands import Floats, Strands, Weight
 
 @dataclass(frozen=True)
 class Rest:
-    """State of rest.
-
-    Parameters
-    ----------
-    shape : (size,) ndarray
-        Height above the contact wire at the supports or lateral position of every point [m].
-    dropper_force : (droppers,) ndarray
-        Vertical force at mid-length [N].
-    dropper_extent : (droppers, 2) ndarray
-        Upper minus lower end, y and z [m].
-    arm_force : (supports, 2) ndarray
-        Force of each steady arm on the contact wire, y and z [N].
-    """
+    """State of rest."""
 
     shape: Floats
+    """Height above the contact wire at the supports or lateral position of every point, (size,) [m]."""
     dropper_force: Floats
+    """Vertical force at mid-length, (droppers,) [N]."""
     dropper_extent: Floats
+    """Upper minus lower end, y and z, (droppers, 2) [m]."""
     arm_force: Floats
+    """Force of each steady arm on the contact wire, y and z, (supports, 2) [N]."""
 
     @property
     def dropper_length(self) -> Floats:

@@ -121,22 +121,15 @@ def march(
 ) -> None:
     """Advance line and pantographs by force.shape[1] steps.
 
-    Parameters
-    ----------
-    line : Lines
-        Arrays of the line.
-    heads : Heads
-        Pantographs; positions, heights and velocities are advanced in place.
-    w, v : (N,) ndarray
-        Displacement from the state of rest and velocity, advanced in place [m, m/s].
-    force : (P, T) ndarray
-        Filled with the contact force at the start of every step [N].
-    uplift : (U, (T - 1) // every + 1) ndarray
-        Filled with the displacement of the watched points at every `every`-th step [m].
-    watched : (U,) int ndarray
-        Watched points.
-    every : int
-        Steps between two recorded displacements.
+    Args:
+        line: Arrays of the line.
+        heads: Pantographs; positions, heights and velocities are advanced in place.
+        w, v: Displacement from the state of rest and velocity, advanced in place, (N,) [m, m/s].
+        force: Filled with the contact force at the start of every step, (P, T) [N].
+        uplift: Filled with the displacement of the watched points at every `every`-th step, (U, (T - 1) // every + 1)
+            [m].
+        watched: Watched points, (U,).
+        every: Steps between two recorded displacements.
     """
     p, before, tension = w.copy(), np.zeros(line.special.size), np.zeros(line.bar_stiffness.size)
     for t in range(force.shape[1]):

@@ -114,15 +114,11 @@ def excess_flexibility(tension: float, bending_stiffness: float, scheme_stiffnes
     B lie h F r^n / (T sqrt(a^2 + 4 a)) below it, n points away, with a = T h^2 / B and r + 1/r = 2 + a; the string
     itself adds h F n / (2 T). Both are the decaying solutions of the equation and of its difference equation.
 
-    Parameters
-    ----------
-    tension, bending_stiffness, scheme_stiffness, spacing : float
-        T [N], EI [N m2], B [N m2] and h [m].
+    Args:
+        tension, bending_stiffness, scheme_stiffness, spacing: T [N], EI [N m2], B [N m2] and h [m].
 
-    Returns
-    -------
-    (4,) ndarray
-        Excess for displacement and force 0, 1, 2 and 3 points apart [m/N].
+    Returns:
+        Excess for displacement and force 0, 1, 2 and 3 points apart, (4,) [m/N].
     """
     a = tension * spacing**2 / scheme_stiffness
     root = np.sqrt(a**2 + 4 * a)

@@ -20,19 +20,13 @@ def build_exact_line(
 ) -> tuple[ExactLine, Array]:
     """Build the exact model of a line and the positions of its points in the linear static state.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line with equidistant stations.
-    axial_stiffness : dict of str to float
-        EA of each wire by name [N].
-    along_track : {"fixed", "free"}
-        Support of the messenger wire along the track.
+    Args:
+        line: Line with equidistant stations.
+        axial_stiffness: EA of each wire by name [N].
+        along_track: Support of the messenger wire along the track.
 
-    Returns
-    -------
-    ExactLine, (3, N) ndarray
-        Line, and positions [m].
+    Returns:
+        Line, and positions, (3, N) [m].
     """
     wires = _build_wires(line, axial_stiffness)
     hinges = hinge_positions(line)

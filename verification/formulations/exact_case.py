@@ -20,21 +20,14 @@ AFTER = 2
 
 @dataclass(frozen=True)
 class ExactCase:
-    """AC simple with one pantograph.
-
-    Parameters
-    ----------
-    case : Case
-        Case with its number of spans and stagger.
-    line : DiscretisedLine
-        Line with equidistant stations.
-    passage : Passage
-        Passage from the end of the first span to the middle of the last but one.
-    """
+    """AC simple with one pantograph."""
 
     case: Case
+    """Case with its number of spans and stagger."""
     line: DiscretisedLine
+    """Line with equidistant stations."""
     passage: Passage
+    """Passage from the end of the first span to the middle of the last but one."""
 
     @property
     def section(self) -> tuple[int, int]:

@@ -9,27 +9,19 @@ from verification.formulations.exact_line import Array, ExactLine
 
 
 class ExactPantograph(NamedTuple):
-    """Pantograph M z'' + C z' + K z = force - contact force on the head, under one contact wire.
-
-    Parameters
-    ----------
-    inverse_mass, damping, stiffness : (n, n) ndarray
-        Matrices [1/kg, N s/m, N/m].
-    head, force : (n,) ndarray
-        Selects the head from the unknowns; constant forces [-, N].
-    contact_stiffness : float
-        Stiffness of the penalty contact [N/m]; zero: no contact.
-    wire : int
-        Number of the contact wire.
-    """
+    """Pantograph M z'' + C z' + K z = force - contact force on the head, under one contact wire."""
 
     inverse_mass: Array
     damping: Array
     stiffness: Array
+    """Matrices, (n, n) [1/kg, N s/m, N/m]."""
     head: Array
     force: Array
+    """Selects the head from the unknowns, (n,); constant forces [-, N]."""
     contact_stiffness: float
+    """Stiffness of the penalty contact [N/m]; zero: no contact."""
     wire: int
+    """Number of the contact wire."""
 
 
 @njit(cache=True)

@@ -19,71 +19,47 @@ Indices = NDArray[np.int64]
 
 
 class Wires(NamedTuple):
-    """Wires as chains of mass points; W wires.
-
-    Parameters
-    ----------
-    first, last : (W,) int ndarray
-        Mass points at the ends; the points of a wire are consecutive.
-    axial_stiffness, bending_stiffness : (W,) ndarray
-        EA [N] and EI [N m2].
-    tension : (W,) ndarray
-        Tension at rest, which scales the stiffness-proportional damping [N].
-    spacing : (W,) ndarray
-        Distance of neighbouring points along the track at rest [m].
-    stiffness_coefficient : (W,) ndarray
-        Stiffness-proportional damping [s].
-    """
+    """Wires as chains of mass points; W wires."""
 
     first: Indices
     last: Indices
+    """Mass points at the ends, (W,); the points of a wire are consecutive."""
     axial_stiffness: Array
     bending_stiffness: Array
+    """EA [N] and EI [N m2], (W,)."""
     tension: Array
+    """Tension at rest, which scales the stiffness-proportional damping, (W,) [N]."""
     spacing: Array
+    """Distance of neighbouring points along the track at rest, (W,) [m]."""
     stiffness_coefficient: Array
+    """Stiffness-proportional damping, (W,) [s]."""
 
 
 class Bars(NamedTuple):
-    """Massless bars between two points; B bars.
-
-    Parameters
-    ----------
-    ends : (B, 2) int ndarray
-        Mass points at both ends.
-    stiffness, length : (B,) ndarray
-        Axial stiffness [N/m] and unstretched length [m].
-    axial_damping, rotational_damping : (B,) ndarray
-        Damping along the bar, and across it [N s/m].
-    unilateral : (B,) ndarray
-        Whether the bar carries tension only.
-    """
+    """Massless bars between two points; B bars."""
 
     ends: Indices
+    """Mass points at both ends, (B, 2)."""
     stiffness: Array
     length: Array
+    """Axial stiffness [N/m] and unstretched length [m], (B,)."""
     axial_damping: Array
     rotational_damping: Array
+    """Damping along the bar, and across it, (B,) [N s/m]."""
     unilateral: NDArray[np.bool_]
+    """Whether the bar carries tension only, (B,)."""
 
 
 class Springs(NamedTuple):
-    """Springs and dampers from a point to the ground, one per direction; S springs.
-
-    Parameters
-    ----------
-    point : (S,) int ndarray
-        Mass points.
-    stiffness, damping : (3, S) ndarray
-        Coefficients in x, y and z [N/m, N s/m].
-    anchor : (3, S) ndarray
-        Position without force [m].
-    """
+    """Springs and dampers from a point to the ground, one per direction; S springs."""
 
     point: Indices
+    """Mass points, (S,)."""
     stiffness: Array
     damping: Array
+    """Coefficients in x, y and z, (3, S) [N/m, N s/m]."""
     anchor: Array
+    """Position without force, (3, S) [m]."""
 
 
 class Strings(NamedTuple):
@@ -91,60 +67,41 @@ class Strings(NamedTuple):
 
     The tension of a group changes with the elongation of its segments: a segment with the extent (dx, dy, dz) elongates
     by the sum of slope times extent and curvature times half the square of the extent.
-
-    Parameters
-    ----------
-    point : (n,) int ndarray
-        First point of each segment; the second is the next one.
-    stiffness : (3, n) ndarray
-        Constant tension over spacing, across the track [N/m].
-    slope : (3, n) ndarray
-        Linear coefficient of the elongation [-].
-    curvature : (3, n) ndarray
-        Quadratic coefficient of the elongation [1/m].
-    group : (n,) int ndarray
-        Group of each segment.
-    group_stiffness, group_length : (G,) ndarray
-        EA over length [N/m], and the sum of the elongations at rest [m].
     """
 
     point: Indices
+    """First point of each segment, (n,); the second is the next one."""
     stiffness: Array
+    """Constant tension over spacing, across the track, (3, n) [N/m]."""
     slope: Array
+    """Linear coefficient of the elongation, (3, n) [-]."""
     curvature: Array
+    """Quadratic coefficient of the elongation, (3, n) [1/m]."""
     group: Indices
+    """Group of each segment, (n,)."""
     group_stiffness: Array
     group_length: Array
+    """EA over length [N/m], and the sum of the elongations at rest [m], (G,)."""
 
 
 class ExactLine(NamedTuple):
-    """Line of N mass points.
-
-    Parameters
-    ----------
-    mass : (N,) ndarray
-        Mass of each point [kg].
-    drag : (N,) ndarray
-        Mass-proportional damping of each point [N s/m].
-    free : (3, N) ndarray
-        One where a point can move, zero where it is held.
-    unstretched : (N,) ndarray
-        Unstretched length of the segment between each point and the next of its wire [m].
-    gravity : float
-        Acceleration of gravity [m/s2].
-    wires, bars, springs, strings : Wires, Bars, Springs, Strings
-        Parts of the line; a wire whose tension is that of a string has no axial stiffness itself.
-    """
+    """Line of N mass points."""
 
     mass: Array
+    """Mass of each point, (N,) [kg]."""
     drag: Array
+    """Mass-proportional damping of each point, (N,) [N s/m]."""
     free: Array
+    """One where a point can move, zero where it is held, (3, N)."""
     unstretched: Array
+    """Unstretched length of the segment between each point and the next of its wire, (N,) [m]."""
     gravity: float
+    """Acceleration of gravity [m/s2]."""
     wires: Wires
     bars: Bars
     springs: Springs
     strings: Strings
+    """Parts of the line; a wire whose tension is that of a string has no axial stiffness itself."""
 
 
 def no_bars() -> Bars:

@@ -23,21 +23,14 @@ ADJUSTMENTS = 2
 
 @dataclass(frozen=True)
 class Rest:
-    """Line at rest without a pantograph.
-
-    Parameters
-    ----------
-    line : ExactLine
-        Line with adjusted droppers.
-    position : (3, N) ndarray
-        Positions of the points [m].
-    speed : float
-        Largest speed at the end of the relaxation [m/s].
-    """
+    """Line at rest without a pantograph."""
 
     line: ExactLine
+    """Line with adjusted droppers."""
     position: Array
+    """Positions of the points, (3, N) [m]."""
     speed: float
+    """Largest speed at the end of the relaxation [m/s]."""
 
     @property
     def bar_tension(self) -> Array:
@@ -55,17 +48,9 @@ def time_step(line: ExactLine) -> float:
 def find_rest(line: ExactLine, position: Array) -> Rest:
     """Let a line come to rest and adjust its droppers, so that the contact wire hangs at its prescribed heights.
 
-    Parameters
-    ----------
-    line : ExactLine
-        Line with the dropper lengths of the linear static state.
-    position : (3, N) ndarray
-        Positions of the linear static state [m].
-
-    Returns
-    -------
-    Rest
-        Line at rest.
+    Args:
+        line: Line with the dropper lengths of the linear static state.
+        position: Positions of the linear static state, (3, N) [m].
     """
     motion = ExactMotion(position.copy(), np.zeros_like(position), np.zeros(1), np.zeros(1))
     dt = time_step(line)
@@ -83,18 +68,12 @@ def find_rest(line: ExactLine, position: Array) -> Rest:
 def simulate_exact_passage(discretised: DiscretisedLine, rest: Rest, passage: Passage) -> History:
     """Simulate a passage that starts like the reference simulator: at rest, with the full static force.
 
-    Parameters
-    ----------
-    discretised : DiscretisedLine
-        Line from which the exact model was built.
-    rest : Rest
-        Exact model at rest.
-    passage : Passage
-        Passage of one pantograph; its time step is that of the samples.
+    Args:
+        discretised: Line from which the exact model was built.
+        rest: Exact model at rest.
+        passage: Passage of one pantograph; its time step is that of the samples.
 
-    Returns
-    -------
-    History
+    Returns:
         Contact force and uplift at the watched supports.
     """
     (pantograph,), (start,) = passage.pantographs, passage.start

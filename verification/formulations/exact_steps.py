@@ -15,20 +15,14 @@ from verification.formulations.exact_line import Array, ExactLine
 
 
 class ExactMotion(NamedTuple):
-    """Position at the end of a step and velocity half a step before, changed in place.
-
-    Parameters
-    ----------
-    position, velocity : (3, N) ndarray
-        Mass points [m, m/s].
-    z, v : (n,) ndarray
-        Unknowns of the pantograph [m, m/s].
-    """
+    """Position at the end of a step and velocity half a step before, changed in place."""
 
     position: Array
     velocity: Array
+    """Mass points, (3, N) [m, m/s]."""
     z: Array
     v: Array
+    """Unknowns of the pantograph, (n,) [m, m/s]."""
 
 
 @njit(cache=True)
@@ -44,24 +38,15 @@ def advance(
 ) -> float:
     """Advance by one step and return the contact force [N].
 
-    Parameters
-    ----------
-    line : ExactLine
-        Line.
-    train : ExactPantograph
-        Pantograph.
-    motion : ExactMotion
-        State, changed in place.
-    dt : float
-        Time step [s].
-    x : float
-        Position of the pantograph along the track [m].
-    drag : float
-        Additional mass-proportional damping of all masses, for the relaxation to rest [1/s].
-    force : (3, N) ndarray
-        Scratch array for the forces [N].
-    scratch : Scratch
-        Scratch arrays.
+    Args:
+        line: Line.
+        train: Pantograph.
+        motion: State, changed in place.
+        dt: Time step [s].
+        x: Position of the pantograph along the track [m].
+        drag: Additional mass-proportional damping of all masses, for the relaxation to rest [1/s].
+        force: Scratch array for the forces, (3, N) [N].
+        scratch: Scratch arrays.
     """
     position, velocity = motion.position, motion.velocity
     sum_forces(line, position, velocity, force, scratch)
@@ -104,20 +89,13 @@ def march(
 ) -> None:
     """Run the pantograph along the line and record.
 
-    Parameters
-    ----------
-    line, train, motion, dt
-        As in `advance`.
-    start, speed : float
-        Position [m] and speed [m/s] of the pantograph.
-    interval : int
-        Number of steps per sample.
-    watched : (U,) int ndarray
-        Recorded points.
-    contact : (T,) ndarray
-        Filled with the mean contact force of every interval [N].
-    height : (T, U) ndarray
-        Filled with the height of the watched points at the end of every interval [m].
+    Args:
+        line, train, motion, dt: As in `advance`.
+        start, speed: Position [m] and speed [m/s] of the pantograph.
+        interval: Number of steps per sample.
+        watched: Recorded points, (U,) int.
+        contact: Filled with the mean contact force of every interval, (T,) [N].
+        height: Filled with the height of the watched points at the end of every interval, (T, U) [m].
     """
     force, scratch = np.zeros_like(motion.position), allocate_scratch(line.mass.size)
     for n in range(contact.size):

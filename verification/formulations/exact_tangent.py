@@ -15,16 +15,11 @@ STEP = 1e-5
 def tangent_stiffness(line: ExactLine, position: Array) -> tuple[sp.csc_array, Indices]:
     """Negative derivative of the forces by the free displacements, by central differences.
 
-    Parameters
-    ----------
-    line : ExactLine
-        Line.
-    position : (3, N) ndarray
-        Positions at rest [m].
+    Args:
+        line: Line.
+        position: Positions at rest, (3, N) [m].
 
-    Returns
-    -------
-    sparse array, ndarray of int
+    Returns:
         Symmetric stiffness [N/m]; index of each free displacement among the 3 N.
     """
     free = np.flatnonzero(line.free.ravel())

@@ -13,16 +13,11 @@ def compare_relative(
 ) -> CheckedValue:
     """Compare a value with an expected one; the deviation is relative to the expected value.
 
-    Parameters
-    ----------
-    key, quantity, unit : str
-        Name within the topic, words and unit.
-    values : (float, float)
-        Computed and expected value.
-    tolerance : float
-        Largest relative deviation.
-    reason : str
-        Reason of the tolerance.
+    Args:
+        key, quantity, unit: Name within the topic, words and unit.
+        values: Computed and expected value.
+        tolerance: Largest relative deviation.
+        reason: Reason of the tolerance.
     """
     computed, expected = map(float, values)
     deviation = (computed - expected) / abs(expected)
@@ -69,18 +64,12 @@ def build_study(
 ) -> ConvergenceStudy:
     """Observed orders of convergence beside the theoretical one.
 
-    Parameters
-    ----------
-    key, quantity : str
-        Name within the topic, and quantity whose error is measured.
-    parameter : str
-        Refined step with its unit.
-    results : sequence of (float, float)
-        Step and relative error, the coarsest first.
-    theory : (float, float)
-        Theoretical order, and largest difference of the last observed order from it.
-    reason : str
-        Origin of the order and reason of the tolerance.
+    Args:
+        key, quantity: Name within the topic, and quantity whose error is measured.
+        parameter: Refined step with its unit.
+        results: Step and relative error, the coarsest first.
+        theory: Theoretical order, and largest difference of the last observed order from it.
+        reason: Origin of the order and reason of the tolerance.
     """
     steps, errors = np.array(results).T
     orders = np.log(errors[:-1] / errors[1:]) / np.log(steps[:-1] / steps[1:])

@@ -30,20 +30,13 @@ class GuideParts:
 def compute_parts(tasks: Sequence[GuideTask], store: GuideStore, jobs: int, report: Report) -> GuideParts:
     """Compute all parts that the store does not hold.
 
-    Parameters
-    ----------
-    tasks : sequence of GuideTask
-        Parts of the guide.
-    store : GuideStore
-        Finished parts.
-    jobs : int
-        Number of processes; 1 computes in this process.
-    report : callable
-        Callback after every part.
+    Args:
+        tasks: Parts of the guide.
+        store: Finished parts.
+        jobs: Number of processes; 1 computes in this process.
+        report: Callback after every part.
 
-    Returns
-    -------
-    GuideParts
+    Returns:
         All parts, in the order of the tasks.
     """
     known = {task.name: content for task in tasks if (content := store.read(task)) is not None}

@@ -16,18 +16,12 @@ FOLDER_OF_PARTS = "parts"
 
 @dataclass(frozen=True)
 class GuideStore:
-    """Folder of finished parts.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of the guide.
-    identity : str
-        Suite and platform of the guide; parts of another one are computed again.
-    """
+    """Folder of finished parts."""
 
     folder: Path
+    """Folder of the guide."""
     identity: str
+    """Suite and platform of the guide; parts of another one are computed again."""
 
     def read(self, task: GuideTask) -> ResultsPart | None:
         """Content of a finished part of this suite and platform; None if there is none."""
@@ -42,10 +36,8 @@ class GuideStore:
     def write(self, task: GuideTask, content: ResultsPart) -> None:
         """Store a finished part.
 
-        Raises
-        ------
-        InputError
-            The file cannot be written.
+        Raises:
+            InputError: The file cannot be written.
         """
         stored = {"identity": self._identify(task), "content": content.model_dump(mode="json", by_alias=True)}
         write_atomically(self._path(task), json.dumps(stored, allow_nan=False).encode("ascii"))

@@ -38,24 +38,16 @@ TOPICS: dict[str, Callable[[], Topic]] = {
 
 @dataclass(frozen=True)
 class GuideTask:
-    """Part of the guide.
-
-    Parameters
-    ----------
-    name : str
-        Section and name within it.
-    content : type of ResultsPart
-        Type of the content.
-    compute : callable
-        Computation of the content; it can be sent to another process.
-    subject : str
-        Further part of its identity, such as the installed version of a peer: with another one it is computed again.
-    """
+    """Part of the guide."""
 
     name: str
+    """Section and name within it."""
     content: type[ResultsPart]
+    """Type of the content."""
     compute: Callable[[], ResultsPart]
+    """Computation of the content; it can be sent to another process."""
     subject: str = ""
+    """Further part of its identity, such as the installed version of a peer: with another one it is computed again."""
 
 
 def list_tasks() -> list[GuideTask]:

@@ -11,14 +11,7 @@ from verification.guide.guide_format import Guide, LibraryCase, Topic
 def list_guide_values(guide: Guide) -> dict[str, float]:
     """Numbers that are the same in every run of one version on one machine, with eight significant digits.
 
-    Parameters
-    ----------
-    guide : Guide
-        The guide.
-
-    Returns
-    -------
-    dict of str to float
+    Returns:
         Number by name, such as `library/en50318-2002/250/1/std_force_N/value`.
     """
     values: dict[str, float] = {}

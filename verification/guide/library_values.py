@@ -14,15 +14,8 @@ from verification.guide.guide_format import ConvergedComparison, LibraryCase, Pu
 def compute_library_case(case_id: str) -> LibraryCase:
     """Run a library case on the reference simulator and list its values.
 
-    Parameters
-    ----------
-    case_id : str
-        Id of the case.
-
-    Raises
-    ------
-    RuntimeError
-        The reference simulator has no result.
+    Raises:
+        RuntimeError: The reference simulator has no result.
     """
     (case,) = (case for case in select_cases([case_id]) if case.id == case_id)
     result = run_case(case, ReferenceSimulator(), "provisional")

@@ -30,9 +30,7 @@ SHORT_DURATION_S = 2.0
 def sum_durations(parts: Iterable[str]) -> float:
     """Estimated duration of parts [s].
 
-    Parameters
-    ----------
-    parts : iterable of str
-        Names of the parts.
+    Args:
+        parts: Names of the parts.
     """
     return sum(DURATIONS_S.get(part, SHORT_DURATION_S) for part in parts)

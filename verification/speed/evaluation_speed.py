@@ -52,7 +52,7 @@ def main(runs: int, kind: str) -> None:
         measure("campaign.parquet", lambda: write_parquet(folder / "campaign.csv"))
         results = measure("evaluation", lambda: evaluate_campaign(prepared, store, "complete"))
         measure("campaign.json", lambda: write_model(folder / "campaign.json", results))
-        page = measure("figures", lambda: build_campaign_report(results.model_dump(mode="json", by_alias=True)))
+        page = measure("figures", lambda: build_campaign_report(results))
         for form in ("html", "pdf"):
             measure(f"campaign.{form}", lambda form=form: write_report(page, folder / f"campaign.{form}"))
         for path in sorted(folder.glob("campaign.*")):

@@ -47,12 +47,9 @@ def staggered(case: Case) -> Catenary:
 def vertical(case: Case, state: InitialState) -> Catenary:
     """Line of a case in the vertical plane; each arm has the stiffness of its axial force under the stagger.
 
-    Parameters
-    ----------
-    case : Case
-        Case with stagger.
-    state : InitialState
-        Initial state of the line with stagger, which gives the axial forces.
+    Args:
+        case: Case with stagger.
+        state: Initial state of the line with stagger, which gives the axial forces.
     """
     built = build_catenary(case.line)
     arms = tuple(
@@ -73,20 +70,13 @@ def passage(
 ) -> Passage:
     """Passage of pantographs from the end of the first span to a position.
 
-    Parameters
-    ----------
-    case : Case
-        Gives speed and pantograph.
-    line : DiscretisedLine
-        Discretised line.
-    step : float
-        Time step [s].
-    pantographs : int
-        Number of pantographs, 1 or 2.
-    until : float
-        Final position of the last pantograph [m].
-    reach : float
-        Half-width of the active window around the pantographs [m].
+    Args:
+        case: Gives speed and pantograph.
+        line: Discretised line.
+        step: Time step [s].
+        pantographs: Number of pantographs, 1 or 2.
+        until: Final position of the last pantograph [m].
+        reach: Half-width of the active window around the pantographs [m].
     """
     geometry = case.line.geometry
     first = geometry.span(1)[1]

@@ -24,10 +24,8 @@ from pantocheck.model.fem.assembly import (
 def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarray, float]:
     """Integrate with average acceleration and Newton's method on the set of taut droppers and closed contacts.
 
-    Returns
-    -------
-    tuple of ((T, P) ndarray, float)
-        Contact force [N], process time of the steps [s].
+    Returns:
+        Contact force, (T, P) [N], process time of the steps [s].
     """
     kernel = build_kernel_arrays(line, passage.time_step)
     motion, train = start_motion(line, kernel, passage)

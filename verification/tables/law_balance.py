@@ -37,22 +37,15 @@ SPEEDS_ON_SLOPES = (200, 300, 400)
 
 @dataclass(frozen=True)
 class MeanForce:
-    """Simulated mean contact force and that of the balance of momentum.
-
-    Parameters
-    ----------
-    static, aerodynamic : float
-        Applied forces [N].
-    balance : float
-        Mean contact force by the balance of momentum [N].
-    simulated : float
-        Mean contact force over the analysis section [N].
-    """
+    """Simulated mean contact force and that of the balance of momentum."""
 
     static: float
     aerodynamic: float
+    """Applied forces [N]."""
     balance: float
+    """Mean contact force by the balance of momentum [N]."""
     simulated: float
+    """Mean contact force over the analysis section [N]."""
 
     @property
     def difference(self) -> float:
@@ -63,14 +56,10 @@ class MeanForce:
 def compute_mean_force(case: Case, line: DiscretisedLine, slope: float) -> MeanForce:
     """Mean contact force of the pantograph of a case on a line with one slope.
 
-    Parameters
-    ----------
-    case : Case
-        Case with one pantograph and a law of its applied forces.
-    line : DiscretisedLine
-        Line of the case.
-    slope : float
-        Slope of the contact wire [-].
+    Args:
+        case: Case with one pantograph and a law of its applied forces.
+        line: Line of the case.
+        slope: Slope of the contact wire [-].
     """
     (lift,), (file,) = case.lift_forces, case.pantographs
     record = run_passage(case, line, case.file.discretisation).record

@@ -52,22 +52,15 @@ DIGITS = 5
 
 @dataclass(frozen=True)
 class GroupedLine:
-    """Line of the case without damping, and the reference model on it.
-
-    Parameters
-    ----------
-    frequency : (g,) ndarray
-        Median frequency of each group of span modes [Hz].
-    edges : (g + 1,) ndarray
-        Limits between the groups, half-way between their outer modes [Hz].
-    modes, reference : (n,) ndarray
-        Frequencies of the modes [Hz], and their damping ratios under the reference model [-].
-    """
+    """Line of the case without damping, and the reference model on it."""
 
     frequency: RealArray
+    """Median frequency of each group of span modes, (g,) [Hz]."""
     edges: RealArray
+    """Limits between the groups, half-way between their outer modes, (g + 1,) [Hz]."""
     modes: RealArray
     reference: RealArray
+    """Frequencies of the modes [Hz], and their damping ratios under the reference model [-], (n,)."""
 
 
 def group_line(case: Case) -> GroupedLine:
@@ -121,12 +114,9 @@ def grade_damping(ratio: RealArray, line: GroupedLine, limits: Sequence[Limit]) 
 def search(line: GroupedLine, limits: Sequence[Limit]) -> tuple[RealArray, RealArray]:
     """Search the candidates.
 
-    Returns
-    -------
-    chosen : (4,) ndarray
-        Parameters of the candidate with the largest least margin.
-    agreeing : (n, 4) ndarray
-        Candidates of the first round that meet every limit.
+    Returns:
+        chosen: Parameters of the candidate with the largest least margin, (4,).
+        agreeing: Candidates of the first round that meet every limit, (n, 4).
     """
     found = [search_box(*np.transpose(list(RANGES.values())), line, limits)]
     for _ in range(1, ROUNDS):

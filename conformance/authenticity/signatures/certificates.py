@@ -25,22 +25,15 @@ OTHER_PURPOSES = frozenset({"server_auth", "code_signing", "time_stamping", "ocs
 def read_certificates(path: Path, where: str) -> list[Any]:
     """Read all certificates of a PEM file, or the certificate of a DER file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    where : str
-        Name of the file in messages.
+    Args:
+        path: The file.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    list of asn1crypto.x509.Certificate
-        At least one certificate, in the order of the file.
+    Returns:
+        At least one certificate, in the order of the file (asn1crypto.x509.Certificate).
 
-    Raises
-    ------
-    InputError
-        The file cannot be read or holds no certificate.
+    Raises:
+        InputError: The file cannot be read or holds no certificate.
     """
     certificates = parse_certificates(read_bytes(path, where, MAX_KEY_FILE_BYTES), where)
     if not certificates:

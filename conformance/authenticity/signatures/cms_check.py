@@ -27,16 +27,11 @@ def check_cms(
 
     A trusted time stamp decides the moment at which certificates must be valid; without one it is the present.
 
-    Parameters
-    ----------
-    content : bytes
-        The signed bytes.
-    signed_data : asn1crypto.cms.SignedData
-        Signature of one signer.
-    roots : list of asn1crypto.x509.Certificate, or None
-        Trust roots; None if the user gave none.
-    stated_time : datetime or None
-        Time of the signature that the document states outside the signature itself.
+    Args:
+        content: The signed bytes.
+        signed_data: Signature of one signer (asn1crypto.cms.SignedData).
+        roots: Trust roots (asn1crypto.x509.Certificate); None if the user gave none.
+        stated_time: Time of the signature that the document states outside the signature itself.
     """
     now = datetime.now(UTC)
     try:

@@ -31,10 +31,8 @@ class Signer:
 def check_role(role: str) -> str:
     """Role of a signer without surrounding blanks.
 
-    Raises
-    ------
-    InputError
-        It is empty, too long, or has characters that cannot be printed.
+    Raises:
+        InputError: It is empty, too long, or has characters that cannot be printed.
     """
     text = role.strip()
     if not (text and text.isprintable() and len(text) <= LONGEST_ROLE):
@@ -76,26 +74,17 @@ def select_digest(key: SigningKey) -> str:
 def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: str) -> bytes:
     """Detached signature of a file, added to earlier signatures of the same file.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file.
-    signer : Signer
-        The signer.
-    earlier : bytes or None
-        Content of a signature file, to which the signature is added; None for a new one.
-    where : str
-        Name of the signature file in messages.
+    Args:
+        content: Content of the file.
+        signer: The signer.
+        earlier: Content of a signature file, to which the signature is added; None for a new one.
+        where: Name of the signature file in messages.
 
-    Returns
-    -------
-    bytes
+    Returns:
         Signature file in DER.
 
-    Raises
-    ------
-    InputError
-        The earlier signature file is damaged, or the time-stamp server gave no time stamp.
+    Raises:
+        InputError: The earlier signature file is damaged, or the time-stamp server gave no time stamp.
     """
     from pyhanko.sign.signers.pdf_cms import PdfCMSSignedAttributes
 
@@ -122,10 +111,8 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
 def join_signatures(parts: Iterable[Any]) -> bytes:
     """One signature file in DER from several signatures of the same content.
 
-    Parameters
-    ----------
-    parts : iterable of asn1crypto.cms.SignedData
-        The signatures.
+    Args:
+        parts: The signatures (asn1crypto.cms.SignedData).
     """
     from asn1crypto import cms
 

@@ -25,22 +25,15 @@ def find_signature_file(path: Path) -> Path:
 def parse_signatures(content: bytes, where: str) -> list[Any]:
     """Signatures of a signature file, each as signed data with one signer.
 
-    Parameters
-    ----------
-    content : bytes
-        Content of the file in DER or PEM.
-    where : str
-        Name of the file in messages.
+    Args:
+        content: Content of the file in DER or PEM.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    list of asn1crypto.cms.SignedData
-        At least one.
+    Returns:
+        At least one (asn1crypto.cms.SignedData).
 
-    Raises
-    ------
-    InputError
-        The file is not a detached CMS signature, is damaged, or has too many signatures.
+    Raises:
+        InputError: The file is not a detached CMS signature, is damaged, or has too many signatures.
     """
     from asn1crypto import cms, pem
 

@@ -45,20 +45,14 @@ class SigningKey:
 def read_signing_key(path: Path, certificate: Path | None, ask: AskPassphrase) -> SigningKey:
     """Read a private key and its certificate.
 
-    Parameters
-    ----------
-    path : Path
-        PKCS#12 file with key and certificates, or PEM file with the key.
-    certificate : Path or None
-        File of the certificate and of its authorities; None if the key file holds them.
-    ask : callable
-        Source of the passphrase.
+    Args:
+        path: PKCS#12 file with key and certificates, or PEM file with the key.
+        certificate: File of the certificate and of its authorities; None if the key file holds them.
+        ask: Source of the passphrase.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read, the passphrase is wrong, the certificate belongs to another key, is not valid now, or
-        must not sign documents, or the key cannot be used.
+    Raises:
+        InputError: A file cannot be read, the passphrase is wrong, the certificate belongs to another key, is not valid
+            now, or must not sign documents, or the key cannot be used.
     """
     where = f"key '{path.name}'"
     content = read_bytes(path, where, MAX_KEY_FILE_BYTES)

@@ -28,10 +28,8 @@ CHANGED_KEYS = {
 def find_changes(reader: Any) -> Iterator[str]:
     """Changes other than signatures, one line each.
 
-    Parameters
-    ----------
-    reader : pyhanko.pdf_utils.reader.PdfFileReader
-        The PDF.
+    Args:
+        reader: The PDF (pyhanko.pdf_utils.reader.PdfFileReader).
     """
     for number in range(1, reader.xrefs.total_revisions):
         old, new = (reader.get_historical_resolver(revision) for revision in (number - 1, number))

@@ -17,16 +17,11 @@ SIGNATURE_KEY = b"/ByteRange"
 def check_pdf(content: bytes, roots: list[Any] | None) -> tuple[tuple[SignatureFacts, ...], tuple[str, ...]]:
     """Check the signatures of a PDF, and that nothing but signatures was added to it.
 
-    Parameters
-    ----------
-    content : bytes
-        A PDF that contains `SIGNATURE_KEY`.
-    roots : list of asn1crypto.x509.Certificate, or None
-        Trust roots; None if the user gave none.
+    Args:
+        content: A PDF that contains `SIGNATURE_KEY`.
+        roots: Trust roots (asn1crypto.x509.Certificate); None if the user gave none.
 
-    Returns
-    -------
-    tuple of SignatureFacts, tuple of str
+    Returns:
         Signatures in the order of signing, and changes of the document.
     """
     from pyhanko.pdf_utils.reader import PdfFileReader

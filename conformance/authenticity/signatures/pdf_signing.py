@@ -22,26 +22,17 @@ from pantocheck.conformance.reports.formats.signature_box_page import render_sig
 def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> bytes:
     """Add a signature to a PDF.
 
-    Parameters
-    ----------
-    content : bytes
-        The PDF.
-    signer : Signer
-        The signer.
-    place : str or None
-        Place of a visible signature on page 1, one of `BOXES`; None for an invisible one.
-    where : str
-        Name of the file in messages.
+    Args:
+        content: The PDF.
+        signer: The signer.
+        place: Place of a visible signature on page 1, one of `BOXES`; None for an invisible one.
+        where: Name of the file in messages.
 
-    Returns
-    -------
-    bytes
+    Returns:
         The PDF, unchanged at its beginning, with the signature as an incremental update.
 
-    Raises
-    ------
-    InputError
-        The PDF is damaged or encrypted, the place is occupied, or the time-stamp server gave no time stamp.
+    Raises:
+        InputError: The PDF is damaged or encrypted, the place is occupied, or the time-stamp server gave no time stamp.
     """
     from pyhanko.sign.fields import SigFieldSpec, SigSeedSubFilter, enumerate_sig_fields
     from pyhanko.sign.signers import PdfSignatureMetadata, PdfSigner

@@ -16,14 +16,10 @@ INVISIBLE = "invisible"
 def find_place(field: Any) -> str:
     """Place of the box of a signature field of a PDF; empty for any other place.
 
-    Parameters
-    ----------
-    field : reference to a dictionary of pyHanko
-        Field and widget in one.
+    Args:
+        field: Field and widget in one (reference to a dictionary of pyHanko).
 
-    Returns
-    -------
-    str
+    Returns:
         A key of `BOXES`, `INVISIBLE` for a box without an area, or nothing.
     """
     rectangle = [float(edge) for edge in field.get_object()["/Rect"]]

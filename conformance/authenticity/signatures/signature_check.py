@@ -19,17 +19,13 @@ from pantocheck.conformance.input_files.extras import MissingPackage
 def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
     """Check the signatures of a document.
 
-    Parameters
-    ----------
-    path : Path
-        PDF, or any other file with a signature file beside it (`results.json.p7s`).
-    trust_roots : Path or None
-        PEM file of trust roots.
+    Args:
+        path: PDF, or any other file with a signature file beside it (`results.json.p7s`).
+        trust_roots: PEM file of trust roots.
 
-    Raises
-    ------
-    InputError
-        A file cannot be read or is damaged, or trust roots are given and the package for signatures is missing.
+    Raises:
+        InputError: A file cannot be read or is damaged, or trust roots are given and the package for signatures is
+            missing.
     """
     content = read_bytes(path, str(path), MAX_DOCUMENT_BYTES)
     detached = find_signature_file(path)

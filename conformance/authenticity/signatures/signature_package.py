@@ -21,10 +21,8 @@ def run_apart(function: Callable[[], Result]) -> Result:
 def use_signature_package() -> Iterator[None]:
     """Import and use pyHanko inside a block, without its log, which repeats failures with tracebacks.
 
-    Raises
-    ------
-    InputError
-        The package is not installed.
+    Raises:
+        InputError: The package is not installed.
     """
     log = logging.getLogger("pyhanko")
     level = log.level

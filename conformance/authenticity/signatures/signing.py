@@ -54,24 +54,16 @@ def sign_document(
 ) -> SignedDocument:
     """Sign a document; nothing is written unless the signature holds.
 
-    Parameters
-    ----------
-    document : Path
-        PDF, or any other file.
-    key : Path
-        Private key in PKCS#12 or PEM.
-    certificate : Path or None
-        Certificate of the key; None if the key file holds it.
-    ask : callable
-        Source of the passphrase of an encrypted key.
-    options : SigningOptions
-        Further choices.
+    Args:
+        document: PDF, or any other file.
+        key: Private key in PKCS#12 or PEM.
+        certificate: Certificate of the key; None if the key file holds it.
+        ask: Source of the passphrase of an encrypted key.
+        options: Further choices.
 
-    Raises
-    ------
-    InputError
-        A file or an option cannot be used, the time-stamp server gave no time stamp, or the package for signatures is
-        not installed.
+    Raises:
+        InputError: A file or an option cannot be used, the time-stamp server gave no time stamp, or the package for
+            signatures is not installed.
     """
     content = read_bytes(document, f"document '{document.name}'", MAX_DOCUMENT_BYTES)
     pdf = content.startswith(b"%PDF-")

@@ -19,20 +19,14 @@ MAX_ANSWER_BYTES = 2**20
 def build_timestamp_client(url: str) -> Any:
     """Client of the time-stamp server at an address.
 
-    Parameters
-    ----------
-    url : str
-        Address of the server, http or https.
+    Args:
+        url: Address of the server, http or https.
 
-    Returns
-    -------
-    pyhanko.sign.timestamps.TimeStamper
-        Client whose requests fail with `InputError`.
+    Returns:
+        Client whose requests fail with `InputError` (pyhanko.sign.timestamps.TimeStamper).
 
-    Raises
-    ------
-    InputError
-        The address is not one of http or https.
+    Raises:
+        InputError: The address is not one of http or https.
     """
     from asn1crypto import tsp
     from pyhanko.sign.timestamps import TimeStamper

@@ -27,19 +27,13 @@ MOST_EVALUATED = 12
 
 @dataclass(frozen=True)
 class EvaluatedValue:
-    """Value of every run that is evaluated.
-
-    Parameters
-    ----------
-    column : str
-        Name of its column, such as `1.std_force_N`.
-    lower, upper : float or None
-        Bounds of its limit.
-    """
+    """Value of every run that is evaluated."""
 
     column: str
+    """Name of its column, such as `1.std_force_N`."""
     lower: float | None = None
     upper: float | None = None
+    """Bounds of its limit."""
 
     @property
     def quantity(self) -> str:
@@ -72,28 +66,19 @@ class EvaluatedValue:
 
 @dataclass(frozen=True)
 class CampaignColumns:
-    """Runs with a result, by columns.
-
-    Parameters
-    ----------
-    cases, systems : tuple of str
-        Case and system of every run.
-    inputs : dict
-        Values of every varied input.
-    values : dict
-        Numbers of every evaluated value by its column; NaN: not in the result.
-    designs : (n,) ndarray
-        Number of the design of every run, from 1.
-    widths : dict
-        Half-widths of the 95 % intervals of the values by column; NaN: not known.
-    """
+    """Runs with a result, by columns."""
 
     cases: tuple[str, ...]
     systems: tuple[str, ...]
+    """Case and system of every run."""
     inputs: dict[str, tuple[Any, ...]]
+    """Values of every varied input."""
     values: dict[str, RealArray]
+    """Numbers of every evaluated value by its column; NaN: not in the result."""
     designs: IntegerArray
+    """Number of the design of every run, from 1, (n,)."""
     widths: dict[str, RealArray] = field(default_factory=dict)
+    """Half-widths of the 95 % intervals of the values by column; NaN: not known."""
 
     def is_numeric(self, key: str) -> bool:
         """Whether an input is a number in all runs."""
@@ -129,12 +114,9 @@ class CampaignColumns:
 def choose_values(store: CampaignStore, limits: dict[str, tuple[float | None, float | None]]) -> list[EvaluatedValue]:
     """Choose the evaluated values: those with a limit, or else the usual quantities of all pantographs and the line.
 
-    Parameters
-    ----------
-    store : CampaignStore
-        Finished runs.
-    limits : dict
-        Lower and upper bound by column.
+    Args:
+        store: Finished runs.
+        limits: Lower and upper bound by column.
     """
     delivered = {name for row in islice(store.rows(), SEARCHED_RUNS) for name in row.quantities}
     limited = [EvaluatedValue(name, *bounds) for name, bounds in limits.items() if name in delivered]

@@ -14,19 +14,13 @@ from pantocheck.conformance.results.campaign_format import ValueComparison
 
 @dataclass(frozen=True)
 class RunPair:
-    """Values of two runs with equal inputs.
-
-    Parameters
-    ----------
-    place : str
-        Case and inputs in words.
-    here, there : dict
-        Quantities of this campaign and of the other one, by column.
-    """
+    """Values of two runs with equal inputs."""
 
     place: str
+    """Case and inputs in words."""
     here: dict[str, float]
     there: dict[str, float]
+    """Quantities of this campaign and of the other one, by column."""
 
 
 def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[EvaluatedValue]) -> list[RunPair]:
@@ -34,17 +28,12 @@ def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[Evalu
 
     The system does not count if the campaigns have no system in common: then their systems are compared.
 
-    Parameters
-    ----------
-    store, other : CampaignStore
-        Finished runs of both campaigns.
-    values : sequence of EvaluatedValue
-        Values that are kept.
+    Args:
+        store, other: Finished runs of both campaigns.
+        values: Values that are kept.
 
-    Raises
-    ------
-    InputError
-        No run of one campaign has the inputs of a run of the other.
+    Raises:
+        InputError: No run of one campaign has the inputs of a run of the other.
     """
     systems = [{row.run.system for row in each.rows()} for each in (store, other)]
     with_system = bool(systems[0] & systems[1])

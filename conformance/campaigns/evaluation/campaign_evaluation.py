@@ -30,16 +30,11 @@ def evaluate_campaign(
 ) -> CampaignResults:
     """Evaluate the finished runs of a campaign.
 
-    Parameters
-    ----------
-    prepared : PreparedCampaign
-        The campaign.
-    store : CampaignStore
-        Its finished runs.
-    ending : str
-        Reason of its end.
-    pairs : sequence of RunPair
-        Runs beside those of another campaign.
+    Args:
+        prepared: The campaign.
+        store: Its finished runs.
+        ending: Reason of its end.
+        pairs: Runs beside those of another campaign.
     """
     design = prepared.design
     varied = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]

@@ -40,18 +40,12 @@ def build_input_charts(
 ) -> Iterator[Chart]:
     """Charts of each quantity against each numeric input of the grid.
 
-    Parameters
-    ----------
-    columns : CampaignColumns
-        Runs with a result.
-    values : sequence of EvaluatedValue
-        Evaluated values; those of one quantity share a chart.
-    grid_keys : sequence of str
-        Inputs of the grid. Several runs at one value of the input give their mean and their range.
+    Args:
+        columns: Runs with a result.
+        values: Evaluated values; those of one quantity share a chart.
+        grid_keys: Inputs of the grid. Several runs at one value of the input give their mean and their range.
 
-    Yields
-    ------
-    Chart
+    Yields:
         Chart with the limits of the quantity.
     """
     for key in _list_curve_keys(columns, grid_keys):

@@ -12,16 +12,11 @@ CONFIDENCE = 0.95
 def wilson_interval(count: int, runs: int) -> tuple[float, float]:
     """Confidence interval of a probability (Wilson 1927).
 
-    Parameters
-    ----------
-    count : int
-        Number of runs with the event.
-    runs : int
-        Number of all runs.
+    Args:
+        count: Number of runs with the event.
+        runs: Number of all runs.
 
-    Returns
-    -------
-    tuple of float
+    Returns:
         Ends of the 95 % interval. For stratified samples it is too wide rather than too narrow.
     """
     z = float(ndtri((1 + CONFIDENCE) / 2))
@@ -40,19 +35,14 @@ def mean_interval(values: RealArray) -> tuple[float, float]:
 def linear_influences(inputs: RealArray, values: RealArray) -> tuple[RealArray, float]:
     """Change of a value by one standard deviation of each input, from linear regression.
 
-    Parameters
-    ----------
-    inputs : (n, k) ndarray
-        Random inputs of the runs.
-    values : (n,) ndarray
-        Value of the runs.
+    Args:
+        inputs: Random inputs of the runs, (n, k).
+        values: Value of the runs, (n,).
 
-    Returns
-    -------
-    influences : (k,) ndarray
-        Regression coefficients times the standard deviations of the inputs, in the unit of the value.
-    determination : float
-        Share of the variance that the regression explains; far below 1, the influences do not describe the value.
+    Returns:
+        influences: Regression coefficients times the standard deviations of the inputs, in the unit of the value, (k,).
+        determination: Share of the variance that the regression explains; far below 1, the influences do not describe
+            the value.
     """
     deviation = inputs - inputs.mean(axis=0)
     scale = deviation.std(axis=0)

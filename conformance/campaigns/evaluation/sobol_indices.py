@@ -16,33 +16,22 @@ BOOTSTRAP_SEED = 1
 
 @dataclass(frozen=True)
 class VarianceShares:
-    """Sobol indices of k inputs with their 95 % intervals.
-
-    Parameters
-    ----------
-    first : (3, k) ndarray
-        Index of first order, lower and upper end: share of the variance that the input causes alone.
-    total : (3, k) ndarray
-        Total index, lower and upper end: share that vanishes if the input is fixed, interactions included.
-    """
+    """Sobol indices of k inputs with their 95 % intervals."""
 
     first: RealArray
+    """Index of first order, lower and upper end, (3, k): share of the variance that the input causes alone."""
     total: RealArray
+    """Total index, lower and upper end, (3, k): share that vanishes if the input is fixed, interactions included."""
 
 
 def estimate_sobol_indices(base: RealArray, other: RealArray, exchanged: RealArray) -> VarianceShares:
     """Estimate Sobol indices of the designs of Saltelli (2010).
 
-    Parameters
-    ----------
-    base, other : (n,) ndarray
-        Values of two independent sets of designs, A and B.
-    exchanged : (n, k) ndarray
-        Values of the designs A whose input i is that of B.
+    Args:
+        base, other: Values of two independent sets of designs, A and B, (n,).
+        exchanged: Values of the designs A whose input i is that of B, (n, k).
 
-    Returns
-    -------
-    VarianceShares
+    Returns:
         First order by Saltelli et al. (2010), total by Jansen (1999), intervals by the bootstrap.
     """
     generator, n = np.random.default_rng(BOOTSTRAP_SEED), base.size

@@ -10,47 +10,55 @@ from pantocheck.conformance.identification.rounded_model import Rounded, Rounded
 class Coefficient(RoundedModel):
     """Fitted coefficient of Rayleigh damping, in [s] for the stiffness matrix, in [1/s] for the mass matrix."""
 
-    kind: Annotated[str, Field(description="kind of component")]
-    matrix: Annotated[str, Field(description="matrix of the coefficient: stiffness or mass")]
+    kind: str
+    """Kind of component."""
+    matrix: str
+    """Matrix of the coefficient: stiffness or mass."""
     value: Rounded
-    low_95: Annotated[Rounded, Field(description="lower bound of the 95 % confidence interval")]
-    high_95: Annotated[Rounded, Field(description="upper bound of the 95 % confidence interval")]
-    determined: Annotated[bool, Field(description="false: below a threshold; do not use it in a simulation")] = False
-    reason: Annotated[str, Field(description="thresholds that are not reached; empty: all are reached")] = ""
+    low_95: Rounded
+    """Lower bound of the 95 % confidence interval."""
+    high_95: Rounded
+    """Upper bound of the 95 % confidence interval."""
+    determined: bool = False
+    """false: below a threshold; do not use it in a simulation."""
+    reason: str = ""
+    """Thresholds that are not reached; empty: all are reached."""
 
 
 class LineDifference(RoundedModel):
     """Difference between the line of the record and the line of the fit."""
 
-    fact: Annotated[str, Field(description="compared property: span, tension or sensor")]
-    record: Annotated[str, Field(description="value for the line of the record, with unit")]
-    line: Annotated[str, Field(description="value for the line of the fit, with unit")]
+    fact: str
+    """Compared property: span, tension or sensor."""
+    record: str
+    """Value for the line of the record, with unit."""
+    line: str
+    """Value for the line of the fit, with unit."""
 
 
 class LineComparison(RoundedModel):
     """Comparison of the line of the record with the line of the fit."""
 
-    state: Annotated[
-        Literal["verified", "unverified", "contradicted"],
-        Field(description="verified: all properties agree; unverified: some are missing; contradicted: some differ"),
-    ]
+    state: Literal["verified", "unverified", "contradicted"]
+    """verified: all properties agree; unverified: some are missing; contradicted: some differ."""
     differences: tuple[LineDifference, ...]
-    missing: Annotated[tuple[str, ...], Field(description="properties of the line that the modes do not state")]
+    missing: tuple[str, ...]
+    """Properties of the line that the modes do not state."""
 
 
 class Matching(RoundedModel):
     """Numbers of usable and of matched modes, and the agreement of their shapes."""
 
-    modes: Annotated[int, Field(description="number of usable modes: certain, vertical and in a group")]
-    matched: Annotated[int, Field(description="number of usable modes with a computed counterpart")]
-    matched_share: Annotated[Rounded, Field(description="matched modes over usable modes [-]")]
-    median_mac: Annotated[
-        Rounded | None,
-        Field(description="median MAC of the matched modes with at least two sensors [-]; null: no such mode"),
-    ]
-    lowest_mac: Annotated[
-        Rounded | None, Field(description="lowest MAC of the matched modes with at least two sensors [-]")
-    ]
+    modes: int
+    """Number of usable modes: certain, vertical and in a group."""
+    matched: int
+    """Number of usable modes with a computed counterpart."""
+    matched_share: Rounded
+    """Matched modes over usable modes [-]."""
+    median_mac: Rounded | None
+    """Median MAC of the matched modes with at least two sensors [-]; null: no such mode."""
+    lowest_mac: Rounded | None
+    """Lowest MAC of the matched modes with at least two sensors [-]."""
 
 
 class MeasuredBand(RoundedModel):
@@ -64,26 +72,22 @@ class MeasuredBand(RoundedModel):
 class Observability(RoundedModel):
     """Observability of one coefficient in the measured modes."""
 
-    kind: Annotated[str, Field(description="kind of component")]
-    matrix: Annotated[str, Field(description="matrix of the coefficient: stiffness or mass")]
-    largest_share: Annotated[
-        Rounded,
-        Field(description="damping ratio due to the plausible value over measured ratio [-]; largest of all modes"),
-    ]
-    variance_inflation: Annotated[
-        Rounded | None,
-        Field(description="variance inflation factor 1 / (1 - R^2) with the fitted coefficients [-]; null: infinite"),
-    ]
-    std: Annotated[
-        Rounded | None,
-        Field(description="lowest possible standard deviation, in the unit of the coefficient; null: infinite"),
-    ]
-    plausible: Annotated[float, Field(description="plausible value, in the unit of the coefficient")]
-    plausible_over_std: Annotated[Rounded, Field(description="plausible value over standard deviation [-]")]
-    residual_without: Annotated[
-        Rounded,
-        Field(description="residual of a fit without the coefficient over that with it [-]; 1: not fitted"),
-    ]
+    kind: str
+    """Kind of component."""
+    matrix: str
+    """Matrix of the coefficient: stiffness or mass."""
+    largest_share: Rounded
+    """Damping ratio due to the plausible value over measured ratio [-]; largest of all modes."""
+    variance_inflation: Rounded | None
+    """Variance inflation factor 1 / (1 - R^2) with the fitted coefficients [-]; null: infinite."""
+    std: Rounded | None
+    """Lowest possible standard deviation, in the unit of the coefficient; null: infinite."""
+    plausible: float
+    """Plausible value, in the unit of the coefficient."""
+    plausible_over_std: Rounded
+    """Plausible value over standard deviation [-]."""
+    residual_without: Rounded
+    """Residual of a fit without the coefficient over that with it [-]; 1: not fitted."""
     observable: bool
 
 
@@ -104,20 +108,27 @@ class PairedMode(RoundedModel):
 
     measured_Hz: Rounded
     computed_Hz: Rounded
-    mac: Annotated[Rounded, Field(description="modal assurance criterion of the shapes at the sensors [-]")]
+    mac: Rounded
+    """Modal assurance criterion of the shapes at the sensors [-]."""
     group: int | None
-    measured: Annotated[Rounded, Field(description="measured damping ratio [-]")]
-    fitted: Annotated[Rounded, Field(description="damping ratio of the fitted model [-]")]
-    used: Annotated[bool, Field(description="false: outlier of its group or overlapping, left out of the fit")]
-    overlapping: Annotated[bool, Field(description="true: another mode lies within the half-power bandwidth")]
+    measured: Rounded
+    """Measured damping ratio [-]."""
+    fitted: Rounded
+    """Damping ratio of the fitted model [-]."""
+    used: bool
+    """false: outlier of its group or overlapping, left out of the fit."""
+    overlapping: bool
+    """true: another mode lies within the half-power bandwidth."""
 
 
 class WireShape(RoundedModel):
     """Computed shape of one wire."""
 
-    wire: Annotated[str, Field(description="CW (contact wire) or MW (messenger wire)")]
+    wire: str
+    """CW (contact wire) or MW (messenger wire)."""
     position_m: tuple[float, ...]
-    value: Annotated[tuple[float, ...], Field(description="deflection over the largest deflection of the mode [-]")]
+    value: tuple[float, ...]
+    """Deflection over the largest deflection of the mode [-]."""
 
 
 class MeasuredDeflection(RoundedModel):
@@ -125,7 +136,8 @@ class MeasuredDeflection(RoundedModel):
 
     wire: str
     position_m: float
-    value: Annotated[Rounded, Field(description="real part in the scale of the computed shape [-]")]
+    value: Rounded
+    """Real part in the scale of the computed shape [-]."""
 
 
 class PairedShape(RoundedModel):
@@ -133,7 +145,8 @@ class PairedShape(RoundedModel):
 
     measured_Hz: Rounded
     group: int
-    mac: Annotated[Rounded, Field(description="modal assurance criterion of the shapes at the sensors [-]")]
+    mac: Rounded
+    """Modal assurance criterion of the shapes at the sensors [-]."""
     sensors: tuple[MeasuredDeflection, ...]
     curves: tuple[WireShape, ...]
 
@@ -141,7 +154,8 @@ class PairedShape(RoundedModel):
 class PairedShapes(RoundedModel):
     """Shapes of the pairs of the first groups of span modes."""
 
-    supports_m: Annotated[tuple[float, ...], Field(description="positions of the supports [m]")] = ()
+    supports_m: tuple[float, ...] = ()
+    """Positions of the supports [m]."""
     modes: tuple[PairedShape, ...] = ()
 
 
@@ -157,8 +171,10 @@ class ModelComparison(RoundedModel):
     """Measured damping ratios, and those of several damping models at the computed modes."""
 
     measured: MeasuredRatios
-    frequency_Hz: Annotated[tuple[Rounded, ...], Field(description="frequencies of the computed modes [Hz]")]
-    models: Annotated[dict[str, tuple[Rounded, ...]], Field(description="damping ratios by name of the model")]
+    frequency_Hz: tuple[Rounded, ...]
+    """Frequencies of the computed modes [Hz]."""
+    models: dict[str, tuple[Rounded, ...]]
+    """Damping ratios by name of the model."""
 
 
 class StatedDamping(RoundedModel):
@@ -175,22 +191,24 @@ class DampingResults(RoundedModel):
     model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.damping/1"], Field(alias="schema")] = "pantocheck.damping/1"
-    modes_file: Annotated[str, Field(description="file of the identified modes")]
-    warnings: Annotated[tuple[str, ...], Field(description="caveats for the use of the coefficients")]
-    line: Annotated[LineComparison, Field(description="comparison of the lines of record and fit")]
+    modes_file: str
+    """File of the identified modes."""
+    warnings: tuple[str, ...]
+    """Caveats for the use of the coefficients."""
+    line: LineComparison
+    """Comparison of the lines of record and fit."""
     matching: Matching
-    residual: Annotated[Rounded, Field(description="RMS of (measured - fitted) / measured, all modes of the fit [-]")]
+    residual: Rounded
+    """RMS of (measured - fitted) / measured, all modes of the fit [-]."""
     coefficients: tuple[Coefficient, ...]
-    stated: Annotated[
-        tuple[StatedDamping, ...],
-        Field(description="damping of other components, as the line of the fit states it"),
-    ] = ()
-    modal: Annotated[tuple[MeasuredBand, ...], Field(description="frequency bands of the first groups of span modes")]
+    stated: tuple[StatedDamping, ...] = ()
+    """Damping of other components, as the line of the fit states it."""
+    modal: tuple[MeasuredBand, ...]
+    """Frequency bands of the first groups of span modes."""
     observability: tuple[Observability, ...]
     thresholds: Thresholds
     pairs: tuple[PairedMode, ...]
     shapes: PairedShapes = PairedShapes()
     comparison: ModelComparison
-    unpaired: Annotated[
-        tuple[Rounded, ...], Field(description="frequencies of the measured modes without computed counterpart [Hz]")
-    ]
+    unpaired: tuple[Rounded, ...]
+    """Frequencies of the measured modes without computed counterpart [Hz]."""

@@ -4,10 +4,9 @@ The damping ratios are linear functions of the coefficients (see `damping_terms`
 The damping of all components but the wires is that of the line; its share of the measured ratios is subtracted.
 The fit is a non-negative least-squares problem.
 
-References
-----------
-.. [1] O. Vo Van, E. Balmes, X. Lorang, Damping characterization of a high speed train catenary, IAVSD 2015.
-   hdl:10985/10918
+References:
+    [1] O. Vo Van, E. Balmes, X. Lorang, Damping characterization of a high speed train catenary, IAVSD 2015.
+        hdl:10985/10918
 """
 
 from dataclasses import dataclass
@@ -35,22 +34,15 @@ MODAL_GROUPS = 2
 
 @dataclass(frozen=True)
 class MeasuredModes:
-    """The m measured modes with a computed counterpart.
-
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        Frequency [Hz].
-    damping_ratio, std : (m,) ndarray
-        Damping ratio and its standard deviation [-].
-    group : (m,) int ndarray
-        Number of the group of span modes; 0: none.
-    """
+    """The m measured modes with a computed counterpart."""
 
     frequency: RealArray
+    """Frequency, (m,) [Hz]."""
     damping_ratio: RealArray
     std: RealArray
+    """Damping ratio and its standard deviation, (m,) [-]."""
     group: IntegerArray
+    """Number of the group of span modes, (m,); 0: none."""
 
     def select(self, modes: IntegerArray) -> "MeasuredModes":
         """Selected modes, by index."""
@@ -59,24 +51,16 @@ class MeasuredModes:
 
 @dataclass(frozen=True)
 class DampingFit:
-    """Fitted piecewise Rayleigh damping.
-
-    Parameters
-    ----------
-    coefficients : tuple of Coefficient
-        Fitted coefficients.
-    predicted : (m,) ndarray
-        Damping ratios of the fit at the measured modes [-].
-    used : (m,) bool ndarray
-        Mask of the modes in the fit; outliers of their group are left out.
-    residual : float
-        Root mean square of (measured - predicted) / measured over the modes in the fit [-].
-    """
+    """Fitted piecewise Rayleigh damping."""
 
     coefficients: tuple[Coefficient, ...]
+    """Fitted coefficients."""
     predicted: RealArray
+    """Damping ratios of the fit at the measured modes, (m,) [-]."""
     used: NDArray[np.bool_]
+    """Mask of the modes in the fit, (m,); outliers of their group are left out."""
     residual: float
+    """Root mean square of (measured - predicted) / measured over the modes in the fit [-]."""
 
     @property
     def values(self) -> dict[Term, float]:
@@ -92,22 +76,12 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     follows from its uncertainty and that of the line model. Modes with a residual far from the median of their group
     are left out.
 
-    Parameters
-    ----------
-    basis : DampingBasis
-        Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
-    measured : MeasuredModes
-        The measured modes.
+    Args:
+        basis: Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
+        measured: The measured modes.
 
-    Returns
-    -------
-    DampingFit
-        Coefficients and residual.
-
-    Raises
-    ------
-    InputError
-        There are not more modes than coefficients.
+    Raises:
+        InputError: There are not more modes than coefficients.
     """
     terms = [term for term in basis.terms if term[0] in (*WIRES, JOINED_WIRES)]
     if measured.frequency.size <= len(terms):
@@ -186,16 +160,11 @@ def _confidence_intervals(
 def fit_modal_bands(measured: MeasuredModes, groups: int = MODAL_GROUPS) -> tuple[ModalBand, ...]:
     """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group.
 
-    Parameters
-    ----------
-    measured : MeasuredModes
-        The measured modes.
-    groups : int
-        Number of groups with a band, from the first; a group without modes has none.
+    Args:
+        measured: The measured modes.
+        groups: Number of groups with a band, from the first; a group without modes has none.
 
-    Returns
-    -------
-    tuple of ModalBand
+    Returns:
         Bands in ascending order.
     """
     present = [number for number in range(1, groups + 2) if np.any(measured.group == number)]

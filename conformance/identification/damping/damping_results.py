@@ -60,18 +60,12 @@ It is the error of the line model.
 
 @dataclass(frozen=True)
 class FitOptions:
-    """Choices for the fit of a damping model.
-
-    Parameters
-    ----------
-    wires : {"separate", "common"}
-        Whether contact and messenger wire have their own coefficients, or the same.
-    modal_groups : int
-        Number of groups of span modes with a band of modal damping, from the first.
-    """
+    """Choices for the fit of a damping model."""
 
     wires: WireCoefficients = "separate"
+    """Whether contact and messenger wire have their own coefficients, or the same."""
     modal_groups: int = MODAL_GROUPS
+    """Number of groups of span modes with a band of modal damping, from the first."""
 
 
 def build_damping_results(
@@ -79,28 +73,18 @@ def build_damping_results(
 ) -> DampingResults:
     """Fit a damping model to identified modes.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes; lateral, uncertain and ungrouped ones are left out.
-    line : Catenary
-        Line of the record; its present damping is the reference of the comparison.
-    element : float
-        Element length [m].
-    source : str
-        Name of the file of the modes, for messages.
-    options : FitOptions
-        Coefficients of the wires, and bands of modal damping.
+    Args:
+        modes: Identified modes; lateral, uncertain and ungrouped ones are left out.
+        line: Line of the record; its present damping is the reference of the comparison.
+        element: Element length [m].
+        source: Name of the file of the modes, for messages.
+        options: Coefficients of the wires, and bands of modal damping.
 
-    Returns
-    -------
-    DampingResults
+    Returns:
         Content of damping.json.
 
-    Raises
-    ------
-    InputError
-        There are too few modes, or too few of them have a computed counterpart.
+    Raises:
+        InputError: There are too few modes, or too few of them have a computed counterpart.
     """
     usable = select_usable(modes, source)
     comparison = compare_line(usable, line)

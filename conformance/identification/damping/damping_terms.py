@@ -58,21 +58,14 @@ def list_other_damping(line: Catenary) -> dict[Kind, Rayleigh]:
 
 @dataclass(frozen=True)
 class DampingBasis:
-    """Damping ratios of the modes per unit of each coefficient.
-
-    Parameters
-    ----------
-    terms : tuple of Term
-        Kind and matrix of each of the t coefficients.
-    ratios : (m, t) ndarray
-        Damping ratio per unit of the coefficient [1/s] for stiffness, [s] for mass.
-    stated : (m,) ndarray
-        Damping ratio by the components that are not fitted, whose damping the line states [-].
-    """
+    """Damping ratios of the modes per unit of each coefficient."""
 
     terms: tuple[Term, ...]
+    """Kind and matrix of each of the t coefficients."""
     ratios: RealArray
+    """Damping ratio per unit of the coefficient [1/s] for stiffness, [s] for mass, (m, t)."""
     stated: RealArray
+    """Damping ratio by the components that are not fitted, whose damping the line states, (m,) [-]."""
 
     def select_modes(self, modes: IntegerArray) -> "DampingBasis":
         """Basis of selected modes, by index."""

@@ -18,16 +18,11 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
 
     A coefficient that is not determined is also a comment, so that no simulation uses it.
 
-    Parameters
-    ----------
-    results : DampingResults
-        The fit.
-    modal : sequence of MeasuredBand
-        Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
+    Args:
+        results: The fit.
+        modal: Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
 
-    Returns
-    -------
-    str
+    Returns:
         Content of damping.toml.
     """
     tables: dict[str, Any] = {

@@ -48,10 +48,8 @@ def compare_record_line(measured: MeasuredLine, sensors: Sequence[SensorFacts], 
 def refuse_other_line(comparison: LineComparison, source: str) -> None:
     """Refuse a line that is not the line of the record; `source` is the name of the file of the modes.
 
-    Raises
-    ------
-    InputError
-        The comparison has differences; the message names all of them.
+    Raises:
+        InputError: The comparison has differences; the message names all of them.
     """
     if comparison.differences:
         raise InputError(

@@ -31,27 +31,18 @@ MIN_PAIRS = 6
 
 @dataclass(frozen=True)
 class MatchedModes:
-    """Usable identified modes, the computed modes of the line, and their pairs.
-
-    Parameters
-    ----------
-    usable : list of Mode
-        Usable identified modes.
-    mesh : DiscretisedLine
-        The line, with a station at each sensor.
-    shapes : Modes
-        Computed modes of the line.
-    pairs : tuple of ModePair
-        Pairs, in the order of the usable modes.
-    matching : Matching
-        Numbers of modes and pairs, and the agreement of their shapes.
-    """
+    """Usable identified modes, the computed modes of the line, and their pairs."""
 
     usable: list[Mode]
+    """Usable identified modes."""
     mesh: DiscretisedLine
+    """The line, with a station at each sensor."""
     shapes: Modes
+    """Computed modes of the line."""
     pairs: tuple[ModePair, ...]
+    """Pairs, in the order of the usable modes."""
     matching: Matching
+    """Numbers of modes and pairs, and the agreement of their shapes."""
 
     @property
     def paired(self) -> list[Mode]:
@@ -85,22 +76,15 @@ class MatchedModes:
 def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
     """Select the modes for a fit: certain, vertical and in a group.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes.
-    source : str
-        Name of their file, for messages.
+    Args:
+        modes: Identified modes.
+        source: Name of their file, for messages.
 
-    Returns
-    -------
-    list of Mode
+    Returns:
         Usable modes.
 
-    Raises
-    ------
-    InputError
-        None of the modes is usable.
+    Raises:
+        InputError: None of the modes is usable.
     """
     usable = [mode.rounded() for mode in modes if mode.certain and not mode.lateral and mode.group is not None]
     if not usable:
@@ -112,26 +96,14 @@ def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
 def match_modes(usable: list[Mode], line: Catenary, element: float, source: str) -> MatchedModes:
     """Compute the modes of a line and pair them with identified modes.
 
-    Parameters
-    ----------
-    usable : list of Mode
-        Usable identified modes.
-    line : Catenary
-        Line of the fit.
-    element : float
-        Element length [m].
-    source : str
-        Name of the file of the modes, for messages.
+    Args:
+        usable: Usable identified modes.
+        line: Line of the fit.
+        element: Element length [m].
+        source: Name of the file of the modes, for messages.
 
-    Returns
-    -------
-    MatchedModes
-        Modes and their pairs.
-
-    Raises
-    ------
-    InputError
-        A sensor is not on the line, or too few modes have a computed counterpart.
+    Raises:
+        InputError: A sensor is not on the line, or too few modes have a computed counterpart.
     """
     positions = find_sensor_positions(usable, line, source)
     mesh = discretise(line, element, tuple(sorted(x for _, x in positions)))

@@ -53,20 +53,13 @@ def pair_modes(
 
     The main error of a line model is a common factor on its frequencies; this factor is removed first.
 
-    Parameters
-    ----------
-    measured_frequency : (m,) ndarray
-        Frequencies of the measured modes [Hz].
-    measured_shapes : list of (s,) complex ndarray
-        Shape of each measured mode at its sensors.
-    computed_frequency : (n,) ndarray
-        Frequencies of the computed modes [Hz].
-    computed_shapes : list of (n, s) ndarray
-        Computed shapes at the sensors of each measured mode.
+    Args:
+        measured_frequency: Frequencies of the measured modes, (m,) [Hz].
+        measured_shapes: Shape of each measured mode at its sensors, each (s,).
+        computed_frequency: Frequencies of the computed modes, (n,) [Hz].
+        computed_shapes: Computed shapes at the sensors of each measured mode, each (n, s).
 
-    Returns
-    -------
-    tuple of ModePair
+    Returns:
         Pairs, in the order of the measured modes.
     """
     m, n = measured_frequency.size, computed_frequency.size
@@ -108,21 +101,14 @@ def find_overlapping_modes(
     Computed modes that overlap cannot be told apart by a few sensors: the measured mode can be a mixture of them, whose
     damping ratio belongs to none. Measured modes that overlap share their decay.
 
-    Parameters
-    ----------
-    measured : (m,) ndarray
-        Frequencies of the measured modes [Hz].
-    bandwidth : (m,) ndarray
-        Half-power bandwidths of the measured modes [Hz].
-    computed : (n,) ndarray
-        Frequencies of the computed modes [Hz].
-    pairs : sequence of ModePair
-        The p pairs.
+    Args:
+        measured: Frequencies of the measured modes, (m,) [Hz].
+        bandwidth: Half-power bandwidths of the measured modes, (m,) [Hz].
+        computed: Frequencies of the computed modes, (n,) [Hz].
+        pairs: The p pairs.
 
-    Returns
-    -------
-    (p,) bool ndarray
-        True: another measured or computed mode lies within `OVERLAP` bandwidths.
+    Returns:
+        True, (p,): another measured or computed mode lies within `OVERLAP` bandwidths.
     """
     return np.array(
         [
@@ -136,24 +122,16 @@ def find_overlapping_modes(
 def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) -> Positions:
     """Find the wires of the line under the sensors.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes.
-    line : Catenary
-        Line of the fit.
-    source : str
-        Name of the file of the modes, for messages.
+    Args:
+        modes: Identified modes.
+        line: Line of the fit.
+        source: Name of the file of the modes, for messages.
 
-    Returns
-    -------
-    dict of tuple of (str, float) to str
+    Returns:
         Wire of the line, by wire in the record and position of the sensor [m].
 
-    Raises
-    ------
-    InputError
-        The line has no wire of this kind at the position of a sensor.
+    Raises:
+        InputError: The line has no wire of this kind at the position of a sensor.
     """
     positions = {}
     for name, x in {(sensor.wire, sensor.position_m) for mode in modes for sensor in mode.sensor_shape}:
@@ -176,23 +154,15 @@ def compute_sensor_shapes(
 ) -> tuple[list[ComplexArray], list[RealArray]]:
     """Compute the shapes at the sensors of each identified mode.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes.
-    mesh : DiscretisedLine
-        The line, with a station at each sensor.
-    shapes : Modes
-        The n computed modes of the line.
-    positions : dict of tuple of (str, float) to str
-        Result of `find_sensor_positions`.
+    Args:
+        modes: Identified modes.
+        mesh: The line, with a station at each sensor.
+        shapes: The n computed modes of the line.
+        positions: Result of `find_sensor_positions`.
 
-    Returns
-    -------
-    measured : list of (s,) complex ndarray
-        Shape of each identified mode at its s sensors.
-    computed : list of (n, s) ndarray
-        Shapes of the computed modes at the same sensors.
+    Returns:
+        measured: Shape of each identified mode at its s sensors, each (s,).
+        computed: Shapes of the computed modes at the same sensors, each (n, s).
     """
     deflections = {
         (name, x): deflection_at(mesh, shapes, mesh.mesh.row_of[wire, "z"], x) for (name, x), wire in positions.items()

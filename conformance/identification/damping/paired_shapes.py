@@ -34,16 +34,11 @@ def list_paired_shapes(matched: MatchedModes, line: Catenary) -> PairedShapes:
     A computed shape is scaled to its largest deflection. The measured values are multiplied by the complex factor that
     fits them best to it; their real part is listed.
 
-    Parameters
-    ----------
-    matched : MatchedModes
-        Identified and computed modes of the line.
-    line : Catenary
-        The line.
+    Args:
+        matched: Identified and computed modes of the line.
+        line: The line.
 
-    Returns
-    -------
-    PairedShapes
+    Returns:
         Shapes in the order of frequency.
     """
     positions = find_sensor_positions(matched.paired, line, "the modes")

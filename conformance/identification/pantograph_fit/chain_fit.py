@@ -22,25 +22,17 @@ SAME_COST = 1.01
 
 @dataclass(frozen=True)
 class ChainFit:
-    """Fitted chain of n masses.
-
-    Parameters
-    ----------
-    problem : ChainProblem
-        Measured responses and fixed values.
-    values : (3, n) ndarray
-        Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head.
-    sum_of_squares : float
-        Sum of the squared weighted residuals.
-    starts, best_starts : int
-        Number of starts, and of those that end in the best minimum.
-    """
+    """Fitted chain of n masses."""
 
     problem: ChainProblem
+    """Measured responses and fixed values."""
     values: RealArray
+    """Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head, (3, n)."""
     sum_of_squares: float
+    """Sum of the squared weighted residuals."""
     starts: int
     best_starts: int
+    """Number of starts, and of those that end in the best minimum."""
 
     @property
     def size(self) -> int:
@@ -61,16 +53,11 @@ class ChainFit:
 def fit_chain(data: MeasuredStiffness, fixed: RealArray) -> ChainFit:
     """Fit a chain.
 
-    Parameters
-    ----------
-    data : MeasuredStiffness
-        Measured responses.
-    fixed : (3, n) ndarray
-        Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m]; NaN: free.
+    Args:
+        data: Measured responses.
+        fixed: Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); NaN: free.
 
-    Returns
-    -------
-    ChainFit
+    Returns:
         Best fit of all starts.
     """
     coarse = ChainProblem(data.select_rows(_thin_rows(data.frequency)), fixed)

@@ -21,21 +21,14 @@ LARGEST_VALUES = (1e3, 1e8, 1e6)
 
 @dataclass(frozen=True)
 class MeasuredStiffness:
-    """Measured dynamic stiffness, of one or several responses one behind the other.
-
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        Frequencies [Hz].
-    stiffness : (m,) ndarray
-        Dynamic stiffness [N/m].
-    weight : (2, m) ndarray
-        Inverse standard deviations of the logarithm of the modulus and of the phase [1/rad].
-    """
+    """Measured dynamic stiffness, of one or several responses one behind the other."""
 
     frequency: RealArray
+    """Frequencies, (m,) [Hz]."""
     stiffness: ComplexArray
+    """Dynamic stiffness, (m,) [N/m]."""
     weight: RealArray
+    """Inverse standard deviations of the logarithm of the modulus and of the phase, (2, m) [1/rad]."""
 
     @property
     def s(self) -> ComplexArray:
@@ -49,18 +42,12 @@ class MeasuredStiffness:
 
 @dataclass(frozen=True)
 class ChainProblem:
-    """Fit of a chain of n masses with some parameters fixed.
-
-    Parameters
-    ----------
-    data : MeasuredStiffness
-        Measured responses.
-    fixed : (3, n) ndarray
-        Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m]; NaN: free.
-    """
+    """Fit of a chain of n masses with some parameters fixed."""
 
     data: MeasuredStiffness
+    """Measured responses."""
     fixed: RealArray
+    """Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); NaN: free."""
 
     @property
     def free(self) -> NDArray[np.bool_]:

@@ -25,35 +25,24 @@ NORMAL_95 = 1.959964
 
 @dataclass(frozen=True)
 class FitTask:
-    """Choices for the fit of a chain.
-
-    Parameters
-    ----------
-    band : tuple of float
-        Lowest and highest frequency of the rows in the fit [Hz].
-    fixed : (3, n) ndarray or None
-        Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m] of a chain of n masses, NaN: free; None: no value is
-        fixed, and every number of masses is tried.
-    """
+    """Choices for the fit of a chain."""
 
     band: tuple[float, float]
+    """Lowest and highest frequency of the rows in the fit [Hz]."""
     fixed: RealArray | None
+    """Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m] of a chain of n masses, NaN, (3, n): free; None: no
+    value is fixed, and every number of masses is tried.
+    """
 
 
 @dataclass(frozen=True)
 class ChainSelection:
-    """Fitted chains.
-
-    Parameters
-    ----------
-    fits : dict of int to ChainFit
-        Fit by number of masses.
-    is_noise_stated : bool
-        Whether every record states its uncertainty.
-    """
+    """Fitted chains."""
 
     fits: dict[int, ChainFit]
+    """Fit by number of masses."""
     is_noise_stated: bool
+    """Whether every record states its uncertainty."""
 
     @property
     def best(self) -> int:
@@ -76,22 +65,15 @@ def information_criterion(fit: ChainFit) -> float:
 def fit_chains(records: Sequence[ResponseRecord], task: FitTask) -> ChainSelection:
     """Fit chains to all responses together.
 
-    Parameters
-    ----------
-    records : sequence of ResponseRecord
-        Measured responses at the centre of the head.
-    task : FitTask
-        Choices.
+    Args:
+        records: Measured responses at the centre of the head.
+        task: Choices.
 
-    Returns
-    -------
-    ChainSelection
+    Returns:
         Fitted chains.
 
-    Raises
-    ------
-    InputError
-        A response is not that of the centre of the head, or the band has too few rows.
+    Raises:
+        InputError: A response is not that of the centre of the head, or the band has too few rows.
     """
     data = join_responses(records, task.band)
     counts = MASS_COUNTS if task.fixed is None else (task.fixed.shape[1],)

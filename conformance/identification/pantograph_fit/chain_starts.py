@@ -49,17 +49,12 @@ DAMPING_RANGE = (0.005, 1.0)
 def choose_starts(problem: ChainProblem, smaller: Sequence[RealArray]) -> list[RealArray]:
     """Choose starts of a fit.
 
-    Parameters
-    ----------
-    problem : ChainProblem
-        Fit of a chain; its frequencies ascend.
-    smaller : sequence of (3, n - 1) ndarray
-        Fitted chains with one mass less.
+    Args:
+        problem: Fit of a chain; its frequencies ascend.
+        smaller: Fitted chains with one mass less, each (3, n - 1).
 
-    Returns
-    -------
-    list of (p,) ndarray
-        Free parameters of each start.
+    Returns:
+        Free parameters of each start, each (p,).
     """
     lower, upper = problem.bounds
     split = _select_best(problem, [chain for each in smaller for chain in _split_masses(each, problem)], SPLIT_STARTS)

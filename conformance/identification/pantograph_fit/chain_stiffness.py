@@ -21,33 +21,22 @@ from pantocheck.conformance.array_types import ComplexArray, RealArray
 
 @dataclass(frozen=True)
 class ChainResponse:
-    """Response of a chain at m frequencies.
-
-    Parameters
-    ----------
-    stiffness : (m,) ndarray
-        Dynamic stiffness at the head [N/m].
-    motion : (n, m) ndarray
-        Motion of each mass under a unit motion of the head [-].
-    """
+    """Response of a chain at m frequencies."""
 
     stiffness: ComplexArray
+    """Dynamic stiffness at the head, (m,) [N/m]."""
     motion: ComplexArray
+    """Motion of each mass under a unit motion of the head, (n, m) [-]."""
 
 
 def chain_response(values: RealArray, s: ComplexArray) -> ChainResponse:
     """Response of a chain.
 
-    Parameters
-    ----------
-    values : (3, n) ndarray
-        Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head.
-    s : (m,) ndarray
-        Frequencies i omega [rad/s].
+    Args:
+        values: Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head, (3, n).
+        s: Frequencies i omega, (m,) [rad/s].
 
-    Returns
-    -------
-    ChainResponse
+    Returns:
         Dynamic stiffness and motions.
     """
     n = values.shape[1]
@@ -68,17 +57,12 @@ def chain_response(values: RealArray, s: ComplexArray) -> ChainResponse:
 def logarithmic_derivatives(response: ChainResponse, s: ComplexArray) -> ComplexArray:
     """Derivatives of ln D by the masses, stiffnesses and dampings.
 
-    Parameters
-    ----------
-    response : ChainResponse
-        Response of the chain.
-    s : (m,) ndarray
-        Frequencies i omega [rad/s].
+    Args:
+        response: Response of the chain.
+        s: Frequencies i omega, (m,) [rad/s].
 
-    Returns
-    -------
-    (3, n, m) ndarray
-        Derivatives, in the order of `values` of `chain_response`.
+    Returns:
+        Derivatives, in the order of `values` of `chain_response`, (3, n, m).
     """
     stretch = np.diff(response.motion, axis=0, prepend=0.0)
     by_stiffness = stretch**2 / response.stiffness

@@ -16,20 +16,14 @@ from pantocheck.conformance.array_types import RealArray
 def expand_chain(head_mass: float, free_head: RealArray, fixed_head: RealArray) -> tuple[RealArray, RealArray]:
     """Masses and stiffnesses of an undamped chain.
 
-    Parameters
-    ----------
-    head_mass : float
-        Mass of the head [kg].
-    free_head : (n,) ndarray
-        Squared angular frequencies with a free head [rad2/s2].
-    fixed_head : (n - 1,) ndarray
-        Squared angular frequencies with a fixed head [rad2/s2].
+    Args:
+        head_mass: Mass of the head [kg].
+        free_head: Squared angular frequencies with a free head, (n,) [rad2/s2].
+        fixed_head: Squared angular frequencies with a fixed head, (n - 1,) [rad2/s2].
 
-    Returns
-    -------
-    tuple of (n,) ndarray
-        Masses [kg] and stiffnesses [N/m], base to head. They are positive if the frequencies alternate,
-        and NaN if a frequency of one list is in the other.
+    Returns:
+        Masses [kg] and stiffnesses [N/m], base to head, each (n,). They are positive if the frequencies alternate, and
+        NaN if a frequency of one list is in the other.
     """
     numerator = head_mass * polynomial.polyfromroots(-free_head)
     denominator = polynomial.polyfromroots(-fixed_head)

@@ -36,18 +36,12 @@ FILE_DIGITS = 6
 
 @dataclass(frozen=True)
 class FileTexts:
-    """Texts of the pantograph file.
-
-    Parameters
-    ----------
-    title : str
-        Title of the pantograph.
-    source : str
-        Origin of the measured responses.
-    """
+    """Texts of the pantograph file."""
 
     title: str
+    """Title of the pantograph."""
     source: str
+    """Origin of the measured responses."""
 
 
 def describe_pantograph(
@@ -55,20 +49,13 @@ def describe_pantograph(
 ) -> dict[str, Any]:
     """Content of the pantograph file.
 
-    Parameters
-    ----------
-    fit : ChainFit
-        Fitted chain.
-    intervals : FitIntervals
-        Its intervals.
-    texts : FileTexts
-        Title and source.
-    contact_stiffness : float
-        Stiffness of the contact, which the response does not contain [N/m].
+    Args:
+        fit: Fitted chain.
+        intervals: Its intervals.
+        texts: Title and source.
+        contact_stiffness: Stiffness of the contact, which the response does not contain [N/m].
 
-    Returns
-    -------
-    dict
+    Returns:
         Tables of the file. It states no trust: these are data of the user.
     """
     values = {key: [_round(v) for v in row] for key, row in zip(CHAIN_KEYS, fit.values, strict=True)}
@@ -95,20 +82,13 @@ def build_pantograph_fit(
 ) -> PantographFit:
     """Report on a fit.
 
-    Parameters
-    ----------
-    selection : ChainSelection
-        Fitted chains.
-    masses : int
-        Number of masses of the chosen one.
-    title : str
-        Title of the pantograph.
-    comparison : ResponseComparison
-        Comparison of the chosen pantograph with the responses.
+    Args:
+        selection: Fitted chains.
+        masses: Number of masses of the chosen one.
+        title: Title of the pantograph.
+        comparison: Comparison of the chosen pantograph with the responses.
 
-    Returns
-    -------
-    PantographFit
+    Returns:
         Content of the JSON report.
     """
     fit, intervals = selection.fits[masses], selection.intervals(masses)

@@ -1,13 +1,16 @@
 """Intervals of the parameters of a fitted chain, from the curvature of the sum of squares at its minimum."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy.stats import t
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.identification.pantograph_fit.chain_fit import ChainFit
-from pantocheck.conformance.results.pantograph_fit_format import Determination
+
+Determination = Literal["fixed", "determined", "weakly_determined", "not_distinguished_from_zero"]
+"""How well the measured band determines a parameter."""
 
 INTERVAL_CONFIDENCE = 0.95
 """Confidence of an interval."""
@@ -19,18 +22,12 @@ changes of five percent and more."""
 
 @dataclass(frozen=True)
 class FitIntervals:
-    """Intervals of the parameters.
-
-    Parameters
-    ----------
-    half_width : (3, n) ndarray
-        Half-widths of the 95 % intervals of masses [kg], stiffnesses [N/m] and dampings [N s/m]; 0: fixed.
-    correlation : (p, p) ndarray
-        Correlations of the free parameters, in the order of their mask.
-    """
+    """Intervals of the parameters."""
 
     half_width: RealArray
+    """Half-widths of the 95 % intervals of masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); 0: fixed."""
     correlation: RealArray
+    """Correlations of the free parameters, in the order of their mask, (p, p)."""
 
 
 def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
@@ -39,17 +36,12 @@ def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
     The deviations of the rows are taken as independent. If they are larger than the stated noise, they count with their
     own size, because the chain is then no exact model.
 
-    Parameters
-    ----------
-    fit : ChainFit
-        Fitted chain.
-    is_noise_stated : bool
-        Whether the weights are the inverse standard deviations of the measurement; otherwise, the size of the noise
-        follows from the residuals.
+    Args:
+        fit: Fitted chain.
+        is_noise_stated: Whether the weights are the inverse standard deviations of the measurement; otherwise, the size
+            of the noise follows from the residuals.
 
-    Returns
-    -------
-    FitIntervals
+    Returns:
         Half-widths and correlations.
     """
     jacobian = fit.problem.value_jacobian(fit.values)

@@ -19,21 +19,14 @@ RATIONAL_ITERATIONS = 30
 
 @dataclass(frozen=True)
 class RationalResponse:
-    """Rational dynamic stiffness Q(s) / P(s) in s over a reference frequency.
-
-    Parameters
-    ----------
-    numerator : (2 n + 1,) ndarray
-        Coefficients of Q, ascending.
-    denominator : (2 n - 1,) ndarray
-        Coefficients of P, ascending; the last one is 1.
-    reference : float
-        Reference angular frequency [rad/s].
-    """
+    """Rational dynamic stiffness Q(s) / P(s) in s over a reference frequency."""
 
     numerator: RealArray
+    """Coefficients of Q, ascending, (2 n + 1,)."""
     denominator: RealArray
+    """Coefficients of P, ascending, (2 n - 1,); the last one is 1."""
     reference: float
+    """Reference angular frequency [rad/s]."""
 
     @property
     def free_head(self) -> RealArray:
@@ -49,19 +42,10 @@ class RationalResponse:
 def fit_rational_response(frequency: RealArray, stiffness: ComplexArray, n: int) -> RationalResponse:
     """Fit the rational function of a chain of n masses.
 
-    Parameters
-    ----------
-    frequency : (m,) ndarray
-        Frequencies [Hz].
-    stiffness : (m,) ndarray
-        Measured dynamic stiffness [N/m].
-    n : int
-        Number of masses.
-
-    Returns
-    -------
-    RationalResponse
-        Rational function.
+    Args:
+        frequency: Frequencies, (m,) [Hz].
+        stiffness: Measured dynamic stiffness, (m,) [N/m].
+        n: Number of masses.
     """
     reference = 2 * np.pi * float(np.sqrt(frequency.min() * frequency.max()))
     powers = (2j * np.pi * frequency / reference)[:, None] ** np.arange(2 * n + 1)

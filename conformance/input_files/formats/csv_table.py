@@ -48,26 +48,17 @@ def read_csv_table(
 
     Columns of text become columns of missing values. Blank lines are skipped, and an empty cell is a missing value.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    names : tuple of str or EveryChannel
-        Names of the channels in its sidecar; a text table is read the same way with and without them.
-    largest : int
-        Largest accepted number of values.
-    settings : TextSettings
-        Stated keys of the layout.
+    Args:
+        path: The file.
+        names: Names of the channels in its sidecar; a text table is read the same way with and without them.
+        largest: Largest accepted number of values.
+        settings: Stated keys of the layout.
 
-    Returns
-    -------
-    list of MeasuredTable
+    Returns:
         The only run.
 
-    Raises
-    ------
-    InputError
-        The file is damaged or too large, or several layouts are valid.
+    Raises:
+        InputError: The file is damaged or too large, or several layouts are valid.
     """
     del names
     where = f"record '{path.name}'"
@@ -101,24 +92,16 @@ def read_csv_table(
 def open_text_table(path: Path, where: str, settings: TextSettings) -> Iterator[tuple[TextLayout, Lines]]:
     """Open a text table and find its layout.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    where : str
-        Name of the file in messages.
-    settings : TextSettings
-        Stated keys of the layout.
+    Args:
+        path: The file.
+        where: Name of the file in messages.
+        settings: Stated keys of the layout.
 
-    Yields
-    ------
-    tuple of (TextLayout, iterator of (int, str))
+    Yields:
         Layout, and the numbered lines of numbers that are not blank.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is not text, or several layouts are valid.
+    Raises:
+        InputError: The file cannot be read, is not text, or several layouts are valid.
     """
     with open_text(path, where, settings) as file:
         lines = _number_lines(file, where)
@@ -151,16 +134,11 @@ def open_text(path: Path, where: str, settings: TextSettings) -> Iterator[TextIO
 def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int) -> None:
     """Write a CSV table (decimal point, commas).
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    names : list of str
-        Names of the columns.
-    values : (n, c) ndarray
-        Samples.
-    digits : int
-        Significant digits.
+    Args:
+        path: The file.
+        names: Names of the columns.
+        values: Samples, (n, c).
+        digits: Significant digits.
     """
     head = ",".join(names)
     np.savetxt(path, values, f"%.{digits}g", ",", header=head, comments="", encoding="utf-8")

@@ -51,22 +51,12 @@ def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[Measu
 def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
     """Open an HDF5 file for reading, and convert errors of the library inside the block into `InputError`.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    largest : int
-        Largest accepted number of values in its data sets.
+    Args:
+        path: The file.
+        largest: Largest accepted number of values in its data sets.
 
-    Yields
-    ------
-    h5py.File
-        Open file.
-
-    Raises
-    ------
-    InputError
-        The file is damaged, refers to data in another place or file, or its data sets are too large.
+    Raises:
+        InputError: The file is damaged, refers to data in another place or file, or its data sets are too large.
     """
     where = f"record '{path.name}'"
     # The library reads from the open file, so that no other file can take its name after the check of its kind.
@@ -84,10 +74,8 @@ def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
 def read_numbers(item: object, where: str) -> RealArray:
     """Read a data set of numbers of a file from `open_hdf5`, which has checked its size.
 
-    Raises
-    ------
-    InputError
-        The item is not a data set of numbers; `where` is its place in the message.
+    Raises:
+        InputError: The item is not a data set of numbers; `where` is its place in the message.
     """
     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu" or item.shape is None:
         raise InputError(where, "holds no table of samples", "Store an array of numbers.")
@@ -98,14 +86,10 @@ def read_numbers(item: object, where: str) -> RealArray:
 def write_hdf5_table(path: Path, attributes: Mapping[str, Any], datasets: Mapping[str, ArrayLike | list[str]]) -> None:
     """Write an HDF5 file; the same content gives the same bytes.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    attributes : mapping
-        Attributes of the root.
-    datasets : mapping
-        Arrays, or lists of texts, by path inside the file.
+    Args:
+        path: The file.
+        attributes: Attributes of the root.
+        datasets: Arrays, or lists of texts, by path inside the file.
     """
     with h5py.File(path, "w", track_order=True) as file:
         for name, value in attributes.items():

@@ -15,10 +15,8 @@ LINE_LENGTH = 80
 def write_data_sets(path: Path, data_sets: list[dict[str, Any]]) -> None:
     """Write data sets as pyuff prepares them.
 
-    Raises
-    ------
-    InputError
-        The file cannot be written.
+    Raises:
+        InputError: The file cannot be written.
     """
 
     def produce(temporary: Path) -> None:

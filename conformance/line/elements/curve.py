@@ -31,17 +31,16 @@ SMALLEST_RADIUS_M = 50.0
 class CurveTable(InputTable):
     """Curve of the track; curvature and cant rise over its transitions and are constant between them."""
 
-    from_m: Annotated[NonNegative, Field(description="start of the curve, with its transition [m]")]
-    to_m: Annotated[Positive, Field(description="end of the curve, with its transition [m]")]
-    radius_m: Annotated[
-        float, Field(ge=-1e5, le=1e5, description="radius; positive: its centre lies at positive y [m]")
-    ]
-    transition_m: Annotated[
-        NonNegative, Field(description="length of the transition at either end [m]"), Feature("curves")
-    ] = 0.0
-    cant_m: Annotated[
-        float, Field(ge=-0.3, le=0.3, description="height of the outer above the inner rail [m]"), Feature("cant")
-    ] = 0.0
+    from_m: NonNegative
+    """Start of the curve, with its transition [m]."""
+    to_m: Positive
+    """End of the curve, with its transition [m]."""
+    radius_m: Annotated[float, Field(ge=-1e5, le=1e5)]
+    """Radius; positive: its centre lies at positive y [m]."""
+    transition_m: Annotated[NonNegative, Feature("curves")] = 0.0
+    """Length of the transition at either end [m]."""
+    cant_m: Annotated[float, Field(ge=-0.3, le=0.3), Feature("cant")] = 0.0
+    """Height of the outer above the inner rail [m]."""
 
     @cross_check
     def _check_radius(self) -> Problems:
@@ -65,24 +64,25 @@ class CurveTable(InputTable):
 class TrackTable(SourcedTable):
     """Track below the line: straight except for its curves."""
 
-    contact_wire_height_m: Annotated[
-        float, Field(gt=3, le=10, description="height of the contact wire above the rails, for the effect of cant [m]")
-    ]
-    rail_distance_m: Annotated[
-        float, Field(gt=0.5, le=2, description="distance between the centre lines of both rails [m]")
-    ]
-    curve: Annotated[
-        tuple[CurveTable, ...], Field(strict=False, max_length=1000, description="curves in order"), Feature("curves")
-    ] = ()
+    contact_wire_height_m: Annotated[float, Field(gt=3, le=10)]
+    """Height of the contact wire above the rails, for the effect of cant [m]."""
+    rail_distance_m: Annotated[float, Field(gt=0.5, le=2)]
+    """Distance between the centre lines of both rails [m]."""
+    curve: Annotated[tuple[CurveTable, ...], Field(strict=False, max_length=1000), Feature("curves")] = ()
+    """Curves in order."""
 
 
 class DerivedCurve(InputTable):
     """Curve of the track: T times curvature loads every wire per length towards positive y, at rest."""
 
-    from_m: Annotated[float, Field(description="start, with its transition [m]")]
-    to_m: Annotated[float, Field(description="end, with its transition [m]")]
-    curvature_1_m: Annotated[float, Field(description="curvature between the transitions [1/m]")]
-    transition_m: Annotated[float, Field(description="length at either end over which the curvature rises [m]")]
+    from_m: float
+    """Start, with its transition [m]."""
+    to_m: float
+    """End, with its transition [m]."""
+    curvature_1_m: float
+    """Curvature between the transitions [1/m]."""
+    transition_m: float
+    """Length at either end over which the curvature rises [m]."""
 
 
 class TrackCurves(Element):
@@ -92,9 +92,10 @@ class TrackCurves(Element):
 
     track: Annotated[
         TrackTable | None,
-        Field(description="curves and cant of the track; default: straight", exclude_if=is_absent),
+        Field(exclude_if=is_absent),
         Feature("curves", lambda track: track is not None and bool(track.curve)),
     ] = None
+    """Curves and cant of the track; default: straight."""
 
     @property
     def curves(self) -> tuple[CurveTable, ...]:

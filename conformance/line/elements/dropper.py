@@ -45,24 +45,16 @@ DROPPER_MASS = Feature("dropper_mass", bool)
 class DropperSchedule(InputTable):
     """Droppers of one span."""
 
-    x_m: Annotated[PositiveList, Field(description="positions from the start of the span, increasing [m]")]
-    presag_m: Annotated[
-        NumberList | None,
-        Field(description="planned pre-sag of the contact wire at each dropper [m]; default: 0"),
-        Feature("presag", lambda heights: any(heights or ())),
-    ] = None
+    x_m: PositiveList
+    """Positions from the start of the span, increasing [m]."""
+    presag_m: Annotated[NumberList | None, Feature("presag", lambda heights: any(heights or ()))] = None
+    """Planned pre-sag of the contact wire at each dropper [m]; default: 0."""
     contact_wire_height_m: Annotated[
-        NumberList | None,
-        Field(
-            description="height of the contact wire at each dropper above the datum of the line, as surveyed, in place "
-            "of presag_m [m]",
-            exclude_if=is_absent,
-        ),
-        Feature("surveyed_wire_heights"),
+        NumberList | None, Field(exclude_if=is_absent), Feature("surveyed_wire_heights")
     ] = None
-    length_m: Annotated[
-        PositiveList | None, Field(description="published length of each dropper, for comparison [m]"), NO_FEATURE
-    ] = None
+    """Height of the contact wire at each dropper above the datum of the line, as surveyed, in place of presag_m [m]."""
+    length_m: Annotated[PositiveList | None, NO_FEATURE] = None
+    """Published length of each dropper, for comparison [m]."""
 
     @cross_check
     def _check_schedule(self) -> Problems:
@@ -89,10 +81,8 @@ class DropperSchedule(InputTable):
     def prescribed_heights(self, chord: RealArray) -> RealArray:
         """Heights of the contact wire at the droppers [m], above the datum.
 
-        Parameters
-        ----------
-        chord : (n,) ndarray
-            Heights of the straight line between the supports at the droppers [m].
+        Args:
+            chord: Heights of the straight line between the supports at the droppers, (n,) [m].
         """
         if self.contact_wire_height_m is not None:
             return np.array(self.contact_wire_height_m)
@@ -102,18 +92,14 @@ class DropperSchedule(InputTable):
 class DropperTable(DropperSchedule, SourcedTable):
     """Droppers: bars that carry tension, but no compression; their schedule holds for spans without another one."""
 
-    stiffness_N_m: Annotated[float | None, Field(gt=0, description="stiffness of a taut dropper [N/m]"), DROPPERS] = (
-        None
-    )
-    axial_stiffness_EA_N: Annotated[
-        float | None,
-        Field(gt=0, description="axial stiffness EA of a dropper, for a stiffness of EA / length [N]"),
-        DROPPERS,
-    ] = None
-    mass_kg: Annotated[float | None, Field(ge=0, le=20, description="mass of a dropper [kg]"), DROPPER_MASS] = None
-    mass_kg_m: Annotated[
-        float | None, Field(ge=0, le=20, description="mass per length of a dropper [kg/m]"), DROPPER_MASS
-    ] = None
+    stiffness_N_m: Annotated[float | None, Field(gt=0), DROPPERS] = None
+    """Stiffness of a taut dropper [N/m]."""
+    axial_stiffness_EA_N: Annotated[float | None, Field(gt=0), DROPPERS] = None
+    """Axial stiffness EA of a dropper, for a stiffness of EA / length [N]."""
+    mass_kg: Annotated[float | None, Field(ge=0, le=20), DROPPER_MASS] = None
+    """Mass of a dropper [kg]."""
+    mass_kg_m: Annotated[float | None, Field(ge=0, le=20), DROPPER_MASS] = None
+    """Mass per length of a dropper [kg/m]."""
     clamp_on_messenger_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
     clamp_on_contact_kg: Annotated[ClampMass, DROPPER_MASS] = 0.0
 
@@ -146,37 +132,32 @@ class DerivedDroppers(InputTable):
     without damping, taut or slack.
     """
 
-    position_m: Annotated[BySpan, Field(description="position [m]")]
-    contact_wire: Annotated[
-        tuple[Annotated[tuple[int, ...], Field(strict=False)], ...],
-        Field(strict=False, description="number of the contact wire, from 1"),
-    ]
-    on_stitch_wire: Annotated[
-        tuple[tuple[bool, ...], ...],
-        Field(strict=False, description="true: the upper end is on a stitch wire; false: on the messenger wire"),
-    ]
-    contact_wire_height_m: Annotated[
-        BySpan,
-        Field(
-            description="prescribed height of the contact wire at rest [m]: the straight line between supports, less "
-            "the pre-sag"
-        ),
-    ]
-    length_m: Annotated[BySpan, Field(description="length at rest, between the axes of the wires [m]")]
-    height_m: Annotated[BySpan, Field(description="vertical part of the length [m]")]
-    width_m: Annotated[BySpan, Field(description="lateral part of the length, upper minus lower end [m]")]
-    vertical_force_N: Annotated[
-        BySpan,
-        Field(description="vertical force at rest, at mid-length of the dropper; tension = force length / height [N]"),
-    ]
-    stiffness_N_m: Annotated[BySpan, Field(description="stiffness of a taut dropper [N/m]")]
-    transverse_stiffness_N_m: Annotated[
-        BySpan | None,
-        Field(description="stiffness across the dropper: tension / length [N/m]; null: vertical plane only"),
-    ]
-    mass_kg: Annotated[BySpan, Field(description="mass of a dropper without clamps, half of it at each end [kg]")]
-    upper_clamp_kg: Annotated[float, Field(description="mass of the clamp at the upper end [kg]")]
-    lower_clamp_kg: Annotated[float, Field(description="mass of the clamp at the lower end [kg]")]
+    position_m: BySpan
+    """Position [m]."""
+    contact_wire: Annotated[tuple[Annotated[tuple[int, ...], Field(strict=False)], ...], Field(strict=False)]
+    """Number of the contact wire, from 1."""
+    on_stitch_wire: Annotated[tuple[tuple[bool, ...], ...], Field(strict=False)]
+    """true: the upper end is on a stitch wire; false: on the messenger wire."""
+    contact_wire_height_m: BySpan
+    """Prescribed height of the contact wire at rest [m]: the straight line between supports, less the pre-sag."""
+    length_m: BySpan
+    """Length at rest, between the axes of the wires [m]."""
+    height_m: BySpan
+    """Vertical part of the length [m]."""
+    width_m: BySpan
+    """Lateral part of the length, upper minus lower end [m]."""
+    vertical_force_N: BySpan
+    """Vertical force at rest, at mid-length of the dropper; tension = force length / height [N]."""
+    stiffness_N_m: BySpan
+    """Stiffness of a taut dropper [N/m]."""
+    transverse_stiffness_N_m: BySpan | None
+    """Stiffness across the dropper: tension / length [N/m]; null: vertical plane only."""
+    mass_kg: BySpan
+    """Mass of a dropper without clamps, half of it at each end [kg]."""
+    upper_clamp_kg: float
+    """Mass of the clamp at the upper end [kg]."""
+    lower_clamp_kg: float
+    """Mass of the clamp at the lower end [kg]."""
     mass_coefficient_1_s: MassCoefficient
     stiffness_coefficient_s: StiffnessCoefficient
 

@@ -55,21 +55,22 @@ class MessengerSupportChanges(InputTable):
 class DerivedMessengerSupports(InputTable):
     """Supports of the messenger wires: springs and dampers to the ground, whose force is zero at rest."""
 
-    position_m: Annotated[Numbers, Field(description="position [m]")]
-    height_m: Annotated[BySupport, Field(description="height of the messenger wire at rest [m]")]
-    vertical_stiffness_N_m: Annotated[BySupport, Field(description="vertical spring [N/m]")]
-    lateral_stiffness_N_m: Annotated[
-        BySupport | None, Field(description="lateral spring [N/m]; null: vertical plane only")
-    ]
-    vertical_damper_N_s_m: Annotated[BySupport, Field(description="vertical damper [N s/m]")]
-    lateral_damper_N_s_m: Annotated[
-        BySupport | None, Field(description="lateral damper [N s/m]; null: vertical plane only")
-    ]
-    held_along_track: Annotated[
-        bool | tuple[bool, ...],
-        Field(description="whether a support holds the wire along the track, so that its tension is not constant"),
-    ]
-    mass_kg: Annotated[float, Field(description="moving mass of a support [kg]")] = 0.0
+    position_m: Numbers
+    """Position [m]."""
+    height_m: BySupport
+    """Height of the messenger wire at rest [m]."""
+    vertical_stiffness_N_m: BySupport
+    """Vertical spring [N/m]."""
+    lateral_stiffness_N_m: BySupport | None
+    """Lateral spring [N/m]; null: vertical plane only."""
+    vertical_damper_N_s_m: BySupport
+    """Vertical damper [N s/m]."""
+    lateral_damper_N_s_m: BySupport | None
+    """Lateral damper [N s/m]; null: vertical plane only."""
+    held_along_track: bool | tuple[bool, ...]
+    """Whether a support holds the wire along the track, so that its tension is not constant."""
+    mass_kg: float = 0.0
+    """Moving mass of a support [kg]."""
 
 
 class MessengerSupports(Element):

@@ -26,19 +26,27 @@ from pantocheck.model import Catenary, Kind, PointMass
 class PointMassTable(SourcedTable):
     """Mass on a wire, such as a section insulator or a clamp; on parallel wires, on each of them."""
 
-    x_m: Annotated[NonNegative, Field(description="position along the track [m]")]
-    wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="wire that carries the mass")]
-    mass_kg: Annotated[float, Field(gt=0, le=200, description="mass on one wire [kg]")]
-    name: Annotated[str | None, Field(description="name in reports", max_length=100), NO_FEATURE] = None
+    x_m: NonNegative
+    """Position along the track [m]."""
+    wire: Literal["contact_wire", "messenger_wire"]
+    """Wire that carries the mass."""
+    mass_kg: Annotated[float, Field(gt=0, le=200)]
+    """Mass on one wire [kg]."""
+    name: Annotated[str | None, Field(max_length=100), NO_FEATURE] = None
+    """Name in reports."""
 
 
 class DerivedPointMass(InputTable):
     """Mass on a wire; it hangs on the wire at rest, and moves with it in both directions."""
 
-    position_m: Annotated[float, Field(description="position [m]")]
-    wire: Annotated[Literal["contact_wire", "messenger_wire"], Field(description="kind of wire")]
-    number: Annotated[int, Field(description="number of the wire among the parallel ones, from 1")]
-    mass_kg: Annotated[float, Field(description="mass [kg]")]
+    position_m: float
+    """Position [m]."""
+    wire: Literal["contact_wire", "messenger_wire"]
+    """Kind of wire."""
+    number: int
+    """Number of the wire among the parallel ones, from 1."""
+    mass_kg: float
+    """Mass [kg]."""
     mass_coefficient_1_s: MassCoefficient
 
 
@@ -49,9 +57,10 @@ class PointMasses(Element):
 
     point_mass: Annotated[
         tuple[PointMassTable, ...],
-        Field(strict=False, max_length=MOST_LINE_PARTS, description="masses on the wires", exclude_if=is_absent),
+        Field(strict=False, max_length=MOST_LINE_PARTS, exclude_if=is_absent),
         Feature("point_masses"),
     ] = ()
+    """Masses on the wires."""
 
     @cross_check
     def _check_point_masses(self) -> Problems:

@@ -100,21 +100,20 @@ class DerivedSteadyArms(InputTable):
     across it acts the transverse stiffness. A pushing arm has a negative one.
     """
 
-    position_m: Annotated[Numbers, Field(description="position [m]")]
-    lateral_force_N: Annotated[Numbers, Field(description="lateral force on the contact wire at rest [N]")]
-    vertical_force_N: Annotated[Numbers, Field(description="vertical force on the contact wire at rest [N]")]
-    transverse_stiffness_N_m: Annotated[
-        Numbers | None,
-        Field(description="force / length, across the force [N/m]; null: vertical_stiffness_N_m acts"),
-    ]
-    vertical_stiffness_N_m: Annotated[
-        BySupport | None, Field(description="vertical spring to the ground [N/m]; null: transverse_stiffness_N_m acts")
-    ]
-    vertical_damper_N_s_m: Annotated[BySupport, Field(description="vertical damper to the ground [N s/m]")]
-    mass_kg: Annotated[
-        BySupport,
-        Field(description="mass on the contact wire, in both directions: a third of the bar, and the clamp [kg]"),
-    ]
+    position_m: Numbers
+    """Position [m]."""
+    lateral_force_N: Numbers
+    """Lateral force on the contact wire at rest [N]."""
+    vertical_force_N: Numbers
+    """Vertical force on the contact wire at rest [N]."""
+    transverse_stiffness_N_m: Numbers | None
+    """Force / length, across the force [N/m]; null: vertical_stiffness_N_m acts."""
+    vertical_stiffness_N_m: BySupport | None
+    """Vertical spring to the ground [N/m]; null: transverse_stiffness_N_m acts."""
+    vertical_damper_N_s_m: BySupport
+    """Vertical damper to the ground [N s/m]."""
+    mass_kg: BySupport
+    """Mass on the contact wire, in both directions: a third of the bar, and the clamp [kg]."""
     mass_coefficient_1_s: MassCoefficient
     stiffness_coefficient_s: StiffnessCoefficient
 

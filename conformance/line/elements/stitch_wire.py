@@ -3,8 +3,6 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Field
-
 from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
 from pantocheck.conformance.input_files.features import Feature
 from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
@@ -23,7 +21,8 @@ STITCH_WIRE = Feature("stitch_wire")
 class StitchWireTable(SourcedTable):
     """Stitch wire, clamped to the messenger wire on both sides of a support; it carries the nearest droppers."""
 
-    length_m: Annotated[Positive, Field(description="distance between its clamps, symmetric to the support [m]")]
+    length_m: Positive
+    """Distance between its clamps, symmetric to the support [m]."""
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
@@ -33,17 +32,18 @@ class StitchWireTable(SourcedTable):
 class DerivedStitchWires(InputTable):
     """Stitch wires, clamped to the messenger wires on both sides of every support."""
 
-    start_m: Annotated[Numbers, Field(description="position of the first clamp of every stitch wire [m]")]
-    end_m: Annotated[Numbers, Field(description="position of the second clamp of every stitch wire [m]")]
-    end_condition: Annotated[
-        Literal["joined_to_messenger_without_moment"],
-        Field(description="end of the wire: the displacements of the messenger wire, no bending moment"),
-    ] = "joined_to_messenger_without_moment"
-    wave_speed_m_s: Annotated[float, Field(description="as for the contact wire [m/s]")]
-    messenger_tension_N: Annotated[
-        float, Field(description="tension of a messenger wire between the clamps of a stitch wire [N]")
-    ]
-    clamp_mass_kg: Annotated[float, Field(description="mass of a clamp, on the messenger wire [kg]")]
+    start_m: Numbers
+    """Position of the first clamp of every stitch wire [m]."""
+    end_m: Numbers
+    """Position of the second clamp of every stitch wire [m]."""
+    end_condition: Literal["joined_to_messenger_without_moment"] = "joined_to_messenger_without_moment"
+    """End of the wire: the displacements of the messenger wire, no bending moment."""
+    wave_speed_m_s: float
+    """As for the contact wire [m/s]."""
+    messenger_tension_N: float
+    """Tension of a messenger wire between the clamps of a stitch wire [N]."""
+    clamp_mass_kg: float
+    """Mass of a clamp, on the messenger wire [kg]."""
     mass_coefficient_1_s: MassCoefficient
 
 

@@ -61,24 +61,21 @@ class SectionWire(InputTable):
 class SectionTable(InputTable):
     """Tension section of a line."""
 
-    spans: Annotated[int, Field(ge=2, le=MOST_SPANS, description="number of spans from anchor to anchor")]
+    spans: Annotated[int, Field(ge=2, le=MOST_SPANS)]
+    """Number of spans from anchor to anchor."""
     start: WireEnd = "weight"
     end: WireEnd = "weight"
-    midpoint_anchor: Annotated[
-        int | None,
-        Field(
-            ge=1,
-            le=MOST_SPANS,
-            description="number of the support, counted along the line, at which the messenger wire is held along the "
-            "track; default: none",
-        ),
-        Feature("messenger_wire_held_along_track"),
-    ] = None
-
-    contact_wire: Annotated[SectionWire | None, Field(description="own values of the contact wires"), SECTIONS] = None
-    messenger_wire: Annotated[SectionWire | None, Field(description="own values of the messenger wires"), SECTIONS] = (
+    midpoint_anchor: Annotated[int | None, Field(ge=1, le=MOST_SPANS), Feature("messenger_wire_held_along_track")] = (
         None
     )
+    """Number of the support, counted along the line, at which the messenger wire is held along the track; default:
+    none.
+    """
+
+    contact_wire: Annotated[SectionWire | None, SECTIONS] = None
+    """Own values of the contact wires."""
+    messenger_wire: Annotated[SectionWire | None, SECTIONS] = None
+    """Own values of the messenger wires."""
 
     @property
     def holding_points(self) -> int:
@@ -89,25 +86,16 @@ class SectionTable(InputTable):
 class OverlapTable(InputTable):
     """Overlap of neighbouring sections; its rises hold for the wires of both."""
 
-    spans: Annotated[int, Field(ge=1, le=MOST_OVERLAP_SPANS, description="number of spans of every overlap")]
-    anchor_rise_m: Annotated[
-        WireRise | None,
-        Field(
-            description="rise of the wires at their anchor, for a parabola that ends at the first support behind the "
-            "middle of the overlap [m]"
-        ),
-        SECTIONS,
-    ] = None
+    spans: Annotated[int, Field(ge=1, le=MOST_OVERLAP_SPANS)]
+    """Number of spans of every overlap."""
+    anchor_rise_m: Annotated[WireRise | None, SECTIONS] = None
+    """Rise of the wires at their anchor, for a parabola that ends at the first support behind the middle of the
+    overlap [m].
+    """
     support_rises_m: Annotated[
-        tuple[WireRise, ...] | None,
-        Field(
-            strict=False,
-            min_length=1,
-            max_length=MOST_OVERLAP_SPANS,
-            description="rises at the anchor and at the next supports, in place of a parabola; straight in between [m]",
-        ),
-        SECTIONS,
+        tuple[WireRise, ...] | None, Field(strict=False, min_length=1, max_length=MOST_OVERLAP_SPANS), SECTIONS
     ] = None
+    """Rises at the anchor and at the next supports, in place of a parabola; straight in between [m]."""
 
     @cross_check
     def _has_one_profile(self) -> Problems:
@@ -137,16 +125,11 @@ class OverlapTable(InputTable):
     def rise(self, distance: float, supports: Sequence[float]) -> float:
         """Rise of the wires of a section.
 
-        Parameters
-        ----------
-        distance : float
-            Distance from the anchor [m].
-        supports : sequence of float
-            Distances of the span limits of the overlap from the anchor, in increasing order from 0 [m].
+        Args:
+            distance: Distance from the anchor [m].
+            supports: Distances of the span limits of the overlap from the anchor, in increasing order from 0 [m].
 
-        Returns
-        -------
-        float
+        Returns:
             Rise above the height without overlap [m].
         """
         if self.support_rises_m is None:
@@ -159,19 +142,13 @@ class OverlapTable(InputTable):
 
 @dataclass(frozen=True)
 class SectionPlace:
-    """Place of a section along the line.
-
-    Parameters
-    ----------
-    number : int
-        Number of the section, from 1.
-    first, last : int
-        Numbers of the span limits at its anchors; 0 is the start of the line.
-    """
+    """Place of a section along the line."""
 
     number: int
+    """Number of the section, from 1."""
     first: int
     last: int
+    """Numbers of the span limits at its anchors; 0 is the start of the line."""
 
 
 class TensionSections(Element):
@@ -179,15 +156,10 @@ class TensionSections(Element):
 
     section: Annotated[
         tuple[SectionTable, ...] | None,
-        Field(
-            strict=False,
-            min_length=2,
-            max_length=MOST_SPANS,
-            description="tension sections in running order; default: one section from end to end",
-            exclude_if=is_absent,
-        ),
+        Field(strict=False, min_length=2, max_length=MOST_SPANS, exclude_if=is_absent),
         SECTIONS,
     ] = None
+    """Tension sections in running order; default: one section from end to end."""
     overlap: Annotated[OverlapTable | None, Field(exclude_if=is_absent), SECTIONS] = None
 
     @property

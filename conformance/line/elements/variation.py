@@ -32,25 +32,16 @@ LengthChange = Annotated[float, Field(ge=-0.2, le=0.2)]
 class WireVariation(InputTable):
     """Change of the tension of a wire after the line was built."""
 
-    ends: Annotated[
-        Literal["weight", "anchor"],
-        Field(
-            description="weight: the tension does not depend on the temperature; anchor: both ends are rigid anchors, "
-            "and the tension changes with the temperature"
-        ),
-        VARIATION,
-    ] = "weight"
-    axial_stiffness_EA_N: Annotated[
-        float | None, Field(gt=0, le=1e9, description="axial stiffness EA; needed with ends = 'anchor' [N]"), VARIATION
-    ] = None
-    expansion_coefficient_1_K: Annotated[
-        float | None,
-        Field(gt=0, le=1e-4, description="thermal expansion coefficient; needed with ends = 'anchor' [1/K]"),
-        VARIATION,
-    ] = None
-    tension_change_share: Annotated[
-        float, Field(ge=-0.5, le=0.5, description="tolerance of the tension: share of it that is added [-]"), VARIATION
-    ] = 0.0
+    ends: Annotated[Literal["weight", "anchor"], VARIATION] = "weight"
+    """weight: the tension does not depend on the temperature; anchor: both ends are rigid anchors, and the tension
+    changes with the temperature.
+    """
+    axial_stiffness_EA_N: Annotated[float | None, Field(gt=0, le=1e9), VARIATION] = None
+    """Axial stiffness EA; needed with ends = 'anchor' [N]."""
+    expansion_coefficient_1_K: Annotated[float | None, Field(gt=0, le=1e-4), VARIATION] = None
+    """Thermal expansion coefficient; needed with ends = 'anchor' [1/K]."""
+    tension_change_share: Annotated[float, Field(ge=-0.5, le=0.5), VARIATION] = 0.0
+    """Tolerance of the tension: share of it that is added [-]."""
 
     @cross_check
     def _check_anchors(self) -> Problems:
@@ -67,15 +58,18 @@ class ListedLengthChanges(InputTable):
 
     length_change_m: Annotated[
         tuple[Annotated[tuple[LengthChange, ...], Field(strict=False, max_length=100)], ...],
-        Field(strict=False, max_length=1000, description="added lengths, one list per span in the order of x_m [m]"),
+        Field(strict=False, max_length=1000),
     ]
+    """Added lengths, one list per span in the order of x_m [m]."""
 
 
 class RandomLengthChanges(InputTable):
     """Random changes of the lengths of the droppers, uniformly distributed within a tolerance."""
 
-    tolerance_m: Annotated[float, Field(ge=0, le=0.2, description="largest change of a length [m]")]
-    seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the changes")]
+    tolerance_m: Annotated[float, Field(ge=0, le=0.2)]
+    """Largest change of a length [m]."""
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)]
+    """Seed of the changes."""
 
 
 def _form_of_changes(table: Any) -> str:
@@ -94,40 +88,30 @@ DropperVariation = Annotated[
 class SupportVariation(InputTable):
     """Random changes of the stagger at the supports, uniformly distributed within a tolerance."""
 
-    stagger_tolerance_m: Annotated[
-        float, Field(ge=0, le=0.5, description="largest lateral change of the contact wire at a support [m]")
-    ]
-    seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the changes")]
+    stagger_tolerance_m: Annotated[float, Field(ge=0, le=0.5)]
+    """Largest lateral change of the contact wire at a support [m]."""
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)]
+    """Seed of the changes."""
 
 
 class Variation(SourcedTable):
     """Variation of a line after it was built with its nominal data; its droppers keep their lengths."""
 
-    temperature_change_K: Annotated[
-        float, Field(ge=-100, le=200, description="change of the temperature of the wires [K]"), VARIATION
-    ] = 0.0
+    temperature_change_K: Annotated[float, Field(ge=-100, le=200), VARIATION] = 0.0
+    """Change of the temperature of the wires [K]."""
     contact_wire: WireVariation = WireVariation()
     messenger_wire: WireVariation = WireVariation()
-    droppers: Annotated[
-        DropperVariation | None,
-        Field(description="changes of the lengths of the droppers", exclude_if=is_absent),
-        VARIATION,
-    ] = None
-    supports: Annotated[
-        SupportVariation | None,
-        Field(description="changes of the stagger of the contact wire", exclude_if=is_absent),
-        VARIATION,
-    ] = None
+    droppers: Annotated[DropperVariation | None, Field(exclude_if=is_absent), VARIATION] = None
+    """Changes of the lengths of the droppers."""
+    supports: Annotated[SupportVariation | None, Field(exclude_if=is_absent), VARIATION] = None
+    """Changes of the stagger of the contact wire."""
 
 
 class Variations(Element):
     """Variation of the line after it was built; droppers keep their lengths or change them by a tolerance."""
 
-    variation: Annotated[
-        Variation | None,
-        Field(description="variation of the line after it was built", exclude_if=is_absent),
-        VARIATION,
-    ] = None
+    variation: Annotated[Variation | None, Field(exclude_if=is_absent), VARIATION] = None
+    """Variation of the line after it was built."""
 
     @property
     def has_varied_droppers(self) -> bool:

@@ -56,8 +56,10 @@ Area = Annotated[float | None, Field(gt=0, le=1000, description="cross-section [
 class WireChange(InputTable):
     """Stretch of a wire with other properties; those that are not given stay as they are."""
 
-    from_m: Annotated[NonNegative, Field(description="start of the stretch [m]")]
-    to_m: Annotated[Positive, Field(description="end of the stretch [m]")]
+    from_m: NonNegative
+    """Start of the stretch [m]."""
+    to_m: Positive
+    """End of the stretch [m]."""
     tension_N: Annotated[Tension | None, WIRE_CHANGES] = None
     mass_kg_m: Annotated[MassPerLength | None, WIRE_CHANGES] = None
     bending_stiffness_N_m2: Annotated[BendingStiffness | None, WIRE_CHANGES] = None
@@ -73,16 +75,10 @@ class WireChange(InputTable):
 class ContactWireChange(WireChange):
     """Stretch of a contact wire with other properties; wear reduces mass and bending stiffness."""
 
-    wear_share: Annotated[
-        float | None,
-        Field(
-            ge=0,
-            le=0.5,
-            description="worn share of the cross-section [-]; mass and bending stiffness follow from it, unless given: "
-            "the stiffness as that of a round bar worn flat from below",
-        ),
-        WIRE_CHANGES,
-    ] = None
+    wear_share: Annotated[float | None, Field(ge=0, le=0.5), WIRE_CHANGES] = None
+    """Worn share of the cross-section [-]; mass and bending stiffness follow from it, unless given: the stiffness as
+    that of a round bar worn flat from below.
+    """
 
     @cross_check
     def _check_wear(self) -> Problems:
@@ -95,12 +91,10 @@ class ContactWireChange(WireChange):
 class WireTable(SourcedTable):
     """Contact wire or messenger wire; the values are those of one wire, also of two parallel wires."""
 
-    number: Annotated[Literal[1, 2], Field(description="number of parallel wires"), Feature("twin_wires")] = 1
-    spacing_m: Annotated[
-        float | None,
-        Field(gt=0, le=1, description="lateral distance between parallel wires [m]"),
-        Feature("twin_wires"),
-    ] = None
+    number: Annotated[Literal[1, 2], Feature("twin_wires")] = 1
+    """Number of parallel wires."""
+    spacing_m: Annotated[float | None, Field(gt=0, le=1), Feature("twin_wires")] = None
+    """Lateral distance between parallel wires [m]."""
     tension_N: Tension
     mass_kg_m: MassPerLength
     bending_stiffness_N_m2: BendingStiffness = 0.0
@@ -112,9 +106,10 @@ class ContactWireTable(IrregularWire, WireTable):
 
     change: Annotated[
         tuple[ContactWireChange, ...],
-        Field(strict=False, max_length=MOST_LINE_PARTS, description="worn or other stretches", exclude_if=is_absent),
+        Field(strict=False, max_length=MOST_LINE_PARTS, exclude_if=is_absent),
         WIRE_CHANGES,
     ] = ()
+    """Worn or other stretches."""
 
 
 class MessengerWireTable(WireTable):
@@ -126,54 +121,45 @@ class MessengerWireTable(WireTable):
         NO_FEATURE,  # it acts with messenger_wire_held_along_track only
     ] = None
     change: Annotated[
-        tuple[WireChange, ...],
-        Field(strict=False, max_length=MOST_LINE_PARTS, description="other stretches", exclude_if=is_absent),
-        WIRE_CHANGES,
+        tuple[WireChange, ...], Field(strict=False, max_length=MOST_LINE_PARTS, exclude_if=is_absent), WIRE_CHANGES
     ] = ()
+    """Other stretches."""
 
 
 class DerivedStretch(InputTable):
     """Stretch of a wire with constant properties."""
 
-    from_m: Annotated[float, Field(description="start [m]")]
-    to_m: Annotated[float, Field(description="end [m]")]
-    tension_N: Annotated[float, Field(description="tension [N]")]
-    mass_kg_m: Annotated[float, Field(description="mass per length [kg/m]")]
-    bending_stiffness_N_m2: Annotated[float, Field(description="bending stiffness EI [N m2]")]
+    from_m: float
+    """Start [m]."""
+    to_m: float
+    """End [m]."""
+    tension_N: float
+    """Tension [N]."""
+    mass_kg_m: float
+    """Mass per length [kg/m]."""
+    bending_stiffness_N_m2: float
+    """Bending stiffness EI [N m2]."""
 
 
 class DerivedWire(InputTable):
     """Contact wire or messenger wire; parallel wires differ in their lateral positions only."""
 
-    start_m: Annotated[float, Field(description="position of the first anchor [m]")]
-    end_m: Annotated[float, Field(description="position of the last anchor [m]")]
-    end_condition: Annotated[
-        Literal["fixed_without_moment"],
-        Field(description="end of the wire at an anchor: no displacement from the state of rest, no bending moment"),
-    ] = "fixed_without_moment"
-    wave_speed_m_s: Annotated[
-        float, Field(description="speed of transverse waves of low frequency, sqrt(tension / mass per length) [m/s]")
-    ]
-    height_m: Annotated[
-        Numbers,
-        Field(description="height at rest at every position of span_limits_m, first wire [m]"),
-    ]
-    lateral_position_m: Annotated[
-        tuple[Numbers, ...] | None,
-        Field(
-            strict=False,
-            description="prescribed lateral position of every parallel wire at every position of span_limits_m [m]; "
-            "null: motion in the vertical plane only",
-        ),
-    ]
-    stretches: Annotated[
-        tuple[DerivedStretch, ...],
-        Field(
-            strict=False,
-            exclude_if=is_absent,
-            description="properties from end to end, in place of those of the line; absent: those of the line",
-        ),
-    ] = ()
+    start_m: float
+    """Position of the first anchor [m]."""
+    end_m: float
+    """Position of the last anchor [m]."""
+    end_condition: Literal["fixed_without_moment"] = "fixed_without_moment"
+    """End of the wire at an anchor: no displacement from the state of rest, no bending moment."""
+    wave_speed_m_s: float
+    """Speed of transverse waves of low frequency, sqrt(tension / mass per length) [m/s]."""
+    height_m: Numbers
+    """Height at rest at every position of span_limits_m, first wire [m]."""
+    lateral_position_m: Annotated[tuple[Numbers, ...] | None, Field(strict=False)]
+    """Prescribed lateral position of every parallel wire at every position of span_limits_m [m]; null: motion in the
+    vertical plane only.
+    """
+    stretches: Annotated[tuple[DerivedStretch, ...], Field(strict=False, exclude_if=is_absent)] = ()
+    """Properties from end to end, in place of those of the line; absent: those of the line."""
 
 
 class DerivedContactWire(DerivedIrregularWire, DerivedWire):

@@ -38,11 +38,8 @@ SpectralValues = Annotated[tuple[Positive, ...], Field(strict=False, min_length=
 class ScaledIrregularity(SourcedTable):
     """Irregularity with a common factor of its heights, which a campaign can vary."""
 
-    height_factor: Annotated[
-        float | None,
-        Field(ge=0, le=100, description="factor of all heights; default: 1 [-]", exclude_if=is_absent),
-        Feature("irregularity"),
-    ] = None
+    height_factor: Annotated[float | None, Field(ge=0, le=100, exclude_if=is_absent), Feature("irregularity")] = None
+    """Factor of all heights; default: 1 [-]."""
 
     @property
     def scale(self) -> float:
@@ -53,10 +50,10 @@ class ScaledIrregularity(SourcedTable):
 class MeasuredIrregularity(ScaledIrregularity):
     """Heights of the contact wire that a pantograph feels in addition to those at rest, joined by a cubic spline."""
 
-    x_m: Annotated[MeasuredPositions, Field(description="positions along the track, in increasing order [m]")]
-    height_m: Annotated[
-        MeasuredHeights, Field(description="additional heights [m]; beyond the positions that of the nearest end")
-    ]
+    x_m: MeasuredPositions
+    """Positions along the track, in increasing order [m]."""
+    height_m: MeasuredHeights
+    """Additional heights [m]; beyond the positions that of the nearest end."""
 
     @cross_check
     def _check_points(self) -> Problems:
@@ -66,11 +63,12 @@ class MeasuredIrregularity(ScaledIrregularity):
 class SpectralIrregularity(ScaledIrregularity):
     """One-sided power spectral density of the additional heights, realised over the line with random phases."""
 
-    frequency_1_m: Annotated[SpectralValues, Field(description="spatial frequencies, in increasing order [1/m]")]
-    density_m3: Annotated[
-        SpectralValues, Field(description="density at each frequency, log-log interpolated, zero outside of them [m3]")
-    ]
-    seed: Annotated[int, Field(ge=0, le=2**31 - 1, description="seed of the phases")]
+    frequency_1_m: SpectralValues
+    """Spatial frequencies, in increasing order [1/m]."""
+    density_m3: SpectralValues
+    """Density at each frequency, log-log interpolated, zero outside of them [m3]."""
+    seed: Annotated[int, Field(ge=0, le=2**31 - 1)]
+    """Seed of the phases."""
 
     @cross_check
     def _check_points(self) -> Problems:
@@ -114,26 +112,24 @@ IrregularityTable = Annotated[
 class DerivedIrregularity(InputTable):
     """Heights that a head feels in addition to those of the wire: a cubic spline with zero slope at both ends."""
 
-    x_m: Annotated[Numbers, Field(description="positions of the points [m]")]
-    height_m: Annotated[Numbers, Field(description="heights [m]; beyond the points that of the nearest end")]
+    x_m: Numbers
+    """Positions of the points [m]."""
+    height_m: Numbers
+    """Heights [m]; beyond the points that of the nearest end."""
 
 
 class IrregularWire(InputTable):
     """Key of the irregularity in the table of the contact wire."""
 
-    irregularity: Annotated[
-        IrregularityTable | None,
-        Field(description="heights that a pantograph feels in addition to those at rest", exclude_if=is_absent),
-        Feature("irregularity"),
-    ] = None
+    irregularity: Annotated[IrregularityTable | None, Field(exclude_if=is_absent), Feature("irregularity")] = None
+    """Heights that a pantograph feels in addition to those at rest."""
 
 
 class DerivedIrregularWire(InputTable):
     """Key of the irregularity in the derived values of the contact wire."""
 
-    irregularity: Annotated[
-        DerivedIrregularity | None, Field(exclude_if=is_absent, description="absent: a smooth wire")
-    ] = None
+    irregularity: Annotated[DerivedIrregularity | None, Field(exclude_if=is_absent)] = None
+    """absent: a smooth wire."""
 
 
 class Irregularities(Element):

@@ -27,22 +27,29 @@ WIRE_SPRINGS = Feature("wire_springs")
 class WireSpringTable(SourcedTable):
     """Vertical spring and damper between messenger and contact wire; of parallel wires, between each pair."""
 
-    x_m: Annotated[NonNegative, Field(description="position along the track [m]")]
-    stiffness_N_m: Annotated[float, Field(gt=0, le=1e6, description="stiffness of one spring [N/m]")]
-    damping_N_s_m: Annotated[float, Field(ge=0, le=1e5, description="damping of one spring [N s/m]"), WIRE_SPRINGS] = (
-        0.0
-    )
-    name: Annotated[str | None, Field(description="name in reports", max_length=100), NO_FEATURE] = None
+    x_m: NonNegative
+    """Position along the track [m]."""
+    stiffness_N_m: Annotated[float, Field(gt=0, le=1e6)]
+    """Stiffness of one spring [N/m]."""
+    damping_N_s_m: Annotated[float, Field(ge=0, le=1e5), WIRE_SPRINGS] = 0.0
+    """Damping of one spring [N s/m]."""
+    name: Annotated[str | None, Field(max_length=100), NO_FEATURE] = None
+    """Name in reports."""
 
 
 class DerivedWireSpring(InputTable):
     """Vertical spring and damper between a messenger and a contact wire; its force is zero at rest."""
 
-    position_m: Annotated[float, Field(description="position [m]")]
-    contact_wire: Annotated[int, Field(description="number of the contact wire among the parallel ones, from 1")]
-    messenger_wire: Annotated[int, Field(description="number of the messenger wire among the parallel ones, from 1")]
-    stiffness_N_m: Annotated[float, Field(description="stiffness [N/m]")]
-    damping_N_s_m: Annotated[float, Field(description="damping [N s/m]")]
+    position_m: float
+    """Position [m]."""
+    contact_wire: int
+    """Number of the contact wire among the parallel ones, from 1."""
+    messenger_wire: int
+    """Number of the messenger wire among the parallel ones, from 1."""
+    stiffness_N_m: float
+    """Stiffness [N/m]."""
+    damping_N_s_m: float
+    """Damping [N s/m]."""
 
 
 class WireSprings(Element):
@@ -53,10 +60,9 @@ class WireSprings(Element):
     }
 
     wire_spring: Annotated[
-        tuple[WireSpringTable, ...],
-        Field(strict=False, max_length=MOST_LINE_PARTS, description="springs between the wires", exclude_if=is_absent),
-        WIRE_SPRINGS,
+        tuple[WireSpringTable, ...], Field(strict=False, max_length=MOST_LINE_PARTS, exclude_if=is_absent), WIRE_SPRINGS
     ] = ()
+    """Springs between the wires."""
 
     @cross_check
     def _check_wire_springs(self) -> Problems:

@@ -15,11 +15,16 @@ LOADED_SHARE = 0.3
 class ArcTable(InputTable):
     """Arc detector of one pantograph; an arc lasts while its number exceeds a level."""
 
-    pantograph: Annotated[int, Field(ge=1, le=20, description="number of the pantograph in running order")]
-    detector: Annotated[FileColumnName, Field(description="column of the arc detector")]
-    above: Annotated[float, Field(description="level that the number of the detector exceeds during an arc")]
-    current: Annotated[ColumnTable | None, Field(description="current of the pantograph")] = None
-    nominal_current_A: Annotated[Positive | None, Field(le=1e5, description="nominal current [A]")] = None
+    pantograph: Annotated[int, Field(ge=1, le=20)]
+    """Number of the pantograph in running order."""
+    detector: FileColumnName
+    """Column of the arc detector."""
+    above: float
+    """Level that the number of the detector exceeds during an arc."""
+    current: ColumnTable | None = None
+    """Current of the pantograph."""
+    nominal_current_A: Annotated[Positive | None, Field(le=1e5)] = None
+    """Nominal current [A]."""
 
     @cross_check
     def _check_current(self) -> Problems:

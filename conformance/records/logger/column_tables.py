@@ -16,12 +16,12 @@ class ColumnTable(InputTable):
     """Column of the file: the value is scale times the number of the file plus offset, in the stated unit."""
 
     column: FileColumnName
-    unit: Annotated[
-        str | None,
-        Field(max_length=40, description="unit of the value, such as kN; default: the unit that the file states"),
-    ] = None
-    scale: Annotated[float, Field(description="factor on the numbers of the file [unit per number]")] = 1.0
-    offset: Annotated[float, Field(description="number added after the factor, in the unit of the value")] = 0.0
+    unit: Annotated[str | None, Field(max_length=40)] = None
+    """Unit of the value, such as kN; default: the unit that the file states."""
+    scale: float = 1.0
+    """Factor on the numbers of the file [unit per number]."""
+    offset: float = 0.0
+    """Number added after the factor, in the unit of the value."""
 
     @cross_check
     def _check_scale(self) -> Problems:
@@ -34,29 +34,21 @@ class ColumnTable(InputTable):
 class HeadPart(InputTable):
     """Part of the pantograph head above the force sensors, with its accelerometer."""
 
-    mass_kg: Annotated[Positive, Field(le=200, description="mass of this part of the head [kg]")]
-    acceleration: Annotated[ColumnTable, Field(description="vertical acceleration of this part, positive upward")]
+    mass_kg: Annotated[Positive, Field(le=200)]
+    """Mass of this part of the head [kg]."""
+    acceleration: ColumnTable
+    """Vertical acceleration of this part, positive upward."""
 
 
 class SensorSum(InputTable):
     """Contact force from several force sensors: their sum, less the inertia of the head above them."""
 
-    sum: Annotated[
-        tuple[ColumnTable, ...],
-        Field(
-            strict=False,
-            min_length=1,
-            max_length=32,
-            description="force sensors between head and frame, positive under pressure",
-        ),
-    ]
-    head: Annotated[
-        tuple[HeadPart, ...],
-        Field(strict=False, max_length=32, description="parts of the head above the sensors, for the inertia force"),
-    ] = ()
-    aerodynamic_N: Annotated[
-        float, Field(ge=-1000, le=1000, description="constant lift of the parts above the sensors [N], upward positive")
-    ] = 0.0
+    sum: Annotated[tuple[ColumnTable, ...], Field(strict=False, min_length=1, max_length=32)]
+    """Force sensors between head and frame, positive under pressure."""
+    head: Annotated[tuple[HeadPart, ...], Field(strict=False, max_length=32)] = ()
+    """Parts of the head above the sensors, for the inertia force."""
+    aerodynamic_N: Annotated[float, Field(ge=-1000, le=1000)] = 0.0
+    """Constant lift of the parts above the sensors [N], upward positive."""
 
 
 ColumnSource = ColumnTable | SensorSum

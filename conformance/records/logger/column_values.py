@@ -35,18 +35,12 @@ _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")
 
 @dataclass(frozen=True)
 class FileColumns:
-    """Columns of a table by name.
-
-    Parameters
-    ----------
-    table : MeasuredTable
-        Table in the units of the file.
-    where : str
-        Name of the sidecar in messages.
-    """
+    """Columns of a table by name."""
 
     table: MeasuredTable
+    """Table in the units of the file."""
     where: str
+    """Name of the sidecar in messages."""
 
     @property
     def labels(self) -> list[str]:
@@ -56,10 +50,8 @@ class FileColumns:
     def find(self, name: str, key: str) -> int:
         """Index of a column by its name.
 
-        Raises
-        ------
-        InputError
-            There is no such column, or there are several.
+        Raises:
+            InputError: There is no such column, or there are several.
         """
         indices = [i for i, label in enumerate(self.labels) if label.strip() == name.strip()]
         place = f"{self.where}, key {key}"
@@ -74,24 +66,17 @@ class FileColumns:
     def read(self, source: ColumnTable, unit: str, key: str) -> RealArray:
         """Values of a column in an SI unit.
 
-        Parameters
-        ----------
-        source : ColumnTable
-            Column with its unit and scale.
-        unit : str
-            SI unit as at the end of a key, such as `m_s2`.
-        key : str
-            Key of the sidecar in messages.
+        Args:
+            source: Column with its unit and scale.
+            unit: SI unit as at the end of a key, such as `m_s2`.
+            key: Key of the sidecar in messages.
 
-        Returns
-        -------
-        (n,) ndarray
-            Values [SI].
+        Returns:
+            Values, (n,) [SI].
 
-        Raises
-        ------
-        InputError
-            The column is missing or has no numbers; its unit is missing, of another quantity, or not that of the file.
+        Raises:
+            InputError: The column is missing or has no numbers; its unit is missing, of another quantity, or not that
+                of the file.
         """
         index = self.find(source.column, f"{key}.column")
         values = self.table.values[:, index]

@@ -28,12 +28,18 @@ EventPlace = Annotated[float | None, Field(ge=-1e7, le=1e7)]
 class EventTable(InputTable):
     """Place or stretch of the line by position x [m], or by kilometres with the table `track`."""
 
-    kind: Annotated[EventKind, Field(description="kind of the place")]
-    name: Annotated[str, Field(max_length=200, description="name of the place")] = ""
-    from_m: Annotated[EventPlace, Field(description="start of the stretch, or place of the event [m]")] = None
-    to_m: Annotated[EventPlace, Field(description="end of the stretch [m]; default: its start")] = None
-    from_km: Annotated[EventPlace, Field(description="one end of the stretch, or place of the event [km]")] = None
-    to_km: Annotated[EventPlace, Field(description="other end of the stretch [km]; default: the first one")] = None
+    kind: EventKind
+    """Kind of the place."""
+    name: Annotated[str, Field(max_length=200)] = ""
+    """Name of the place."""
+    from_m: EventPlace = None
+    """Start of the stretch, or place of the event [m]."""
+    to_m: EventPlace = None
+    """End of the stretch [m]; default: its start."""
+    from_km: EventPlace = None
+    """One end of the stretch, or place of the event [km]."""
+    to_km: EventPlace = None
+    """Other end of the stretch [km]; default: the first one."""
     exclude: Reason = None
 
     @cross_check
@@ -54,9 +60,10 @@ class EventChannel(InputTable):
     """Column of the file that marks events: an event lasts while its number exceeds a level."""
 
     column: FileColumnName
-    kind: Annotated[EventKind, Field(description="kind of the places")]
-    above: Annotated[float, Field(description="level that the number exceeds during an event")] = 0.5
-    ahead_m: Annotated[
-        float, Field(ge=-1000, le=1000, description="distance of the marked place ahead of the first pantograph [m]")
-    ] = 0.0
+    kind: EventKind
+    """Kind of the places."""
+    above: float = 0.5
+    """Level that the number exceeds during an event."""
+    ahead_m: Annotated[float, Field(ge=-1000, le=1000)] = 0.0
+    """Distance of the marked place ahead of the first pantograph [m]."""
     exclude: Reason = None

@@ -12,24 +12,16 @@ from pantocheck.conformance.records.record_channels import ChannelRows, find_col
 def read_mapped_rows(table: MeasuredTable, columns: Mapping[str, ColumnSource], where: str) -> ChannelRows:
     """Rows of the channels that a sidecar takes from columns of a file.
 
-    Parameters
-    ----------
-    table : MeasuredTable
-        Table in the units of the file.
-    columns : mapping of str to ColumnSource
-        Source of each channel, by its name with number and SI unit.
-    where : str
-        Name of the sidecar in messages.
+    Args:
+        table: Table in the units of the file.
+        columns: Source of each channel, by its name with number and SI unit.
+        where: Name of the sidecar in messages.
 
-    Returns
-    -------
-    dict of str to dict of int to ndarray
+    Returns:
         Rows of each channel by number from 1.
 
-    Raises
-    ------
-    InputError
-        A column is missing, or its unit is missing or wrong. The error lists all such columns.
+    Raises:
+        InputError: A column is missing, or its unit is missing or wrong. The error lists all such columns.
     """
     file, rows, errors = FileColumns(table, where), ChannelRows(), list[InputError]()
     for name, source in columns.items():

@@ -46,21 +46,14 @@ def list_used_channels(sidecar: RecordSidecar) -> tuple[str, ...]:
 def place_rows(rows: ChannelRows, table: MeasuredTable, sidecar: RecordSidecar, where: str) -> None:
     """Add or convert the rows of the position.
 
-    Parameters
-    ----------
-    rows : dict of str to dict of int to ndarray
-        Rows of each channel by number from 1; changed in place.
-    table : MeasuredTable
-        Table in the units of the file.
-    sidecar : RecordSidecar
-        Sidecar of the record.
-    where : str
-        Name of the sidecar in messages.
+    Args:
+        rows: Rows of each channel by number from 1; changed in place.
+        table: Table in the units of the file.
+        sidecar: Sidecar of the record.
+        where: Name of the sidecar in messages.
 
-    Raises
-    ------
-    InputError
-        The pulses are not usable, or marks need a time that the record lacks.
+    Raises:
+        InputError: The pulses are not usable, or marks need a time that the record lacks.
     """
     if sidecar.position is not None:
         if "position" in rows:

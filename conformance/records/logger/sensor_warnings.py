@@ -13,16 +13,11 @@ from pantocheck.conformance.records.logger.column_values import find_factor, fin
 def list_left_out_sensors(columns: Mapping[str, ColumnSource], unused: Iterable[TableColumn]) -> tuple[str, ...]:
     """Names of unused columns that may be further sensors of a sum.
 
-    Parameters
-    ----------
-    columns : mapping of str to ColumnSource
-        Source of each channel, as in the sidecar.
-    unused : iterable of TableColumn
-        Columns of the file that the sidecar does not use.
+    Args:
+        columns: Source of each channel, as in the sidecar.
+        unused: Columns of the file that the sidecar does not use.
 
-    Returns
-    -------
-    tuple of str
+    Returns:
         Names with a unit of force, or without a unit and with the name of a summed sensor apart from its number; empty
         if the sidecar sums no sensors.
     """
@@ -42,16 +37,11 @@ def list_left_out_sensors(columns: Mapping[str, ColumnSource], unused: Iterable[
 def list_sensor_warnings(columns: Mapping[str, ColumnSource] | None, left_out: Sequence[str] = ()) -> Iterator[str]:
     """Warn of a sum of sensors without a correction for the head, and of sensors that are left out.
 
-    Parameters
-    ----------
-    columns : mapping of str to ColumnSource, or None
-        Source of each channel, as in the sidecar.
-    left_out : sequence of str
-        Names of unused columns, as from `list_left_out_sensors`.
+    Args:
+        columns: Source of each channel, as in the sidecar.
+        left_out: Names of unused columns, as from `list_left_out_sensors`.
 
-    Yields
-    ------
-    str
+    Yields:
         Warning with the remedy.
     """
     for name, source in (columns or {}).items():

@@ -24,22 +24,15 @@ def count_distance(count: RealArray, metres_per_pulse: float) -> RealArray:
 
     A counter stands still between two pulses. The distance is interpolated between the samples at which it changes.
 
-    Parameters
-    ----------
-    count : (n,) ndarray
-        Reading of the counter, increasing or decreasing [pulses].
-    metres_per_pulse : float
-        Distance per pulse [m].
+    Args:
+        count: Reading of the counter, increasing or decreasing, (n,) [pulses].
+        metres_per_pulse: Distance per pulse [m].
 
-    Returns
-    -------
-    (n,) ndarray
-        Distance [m], 0 at the first sample; NaN where the train stands before the first or after the last pulse.
+    Returns:
+        Distance, (n,) [m], 0 at the first sample; NaN where the train stands before the first or after the last pulse.
 
-    Raises
-    ------
-    PulsesUnusable
-        The counter runs forwards and backwards, has gaps, or counts fewer than two pulses.
+    Raises:
+        PulsesUnusable: The counter runs forwards and backwards, has gaps, or counts fewer than two pulses.
     """
     if not np.isfinite(count).all():
         raise PulsesUnusable(f"sample {int(np.argmin(np.isfinite(count))) + 1} of the counter is missing")
@@ -59,10 +52,9 @@ def pulse_distance(signal: RealArray, metres_per_pulse: float) -> RealArray:
 
     The time of an edge is interpolated between two samples.
 
-    Raises
-    ------
-    PulsesUnusable
-        The signal is missing or constant, has fewer than two edges, or more than one edge in two samples.
+    Raises:
+        PulsesUnusable: The signal is missing or constant, has fewer than two edges, or more than one edge in two
+            samples.
     """
     if not np.isfinite(signal).all() or np.ptp(signal) == 0:
         raise PulsesUnusable("the pulse train is constant, or values are missing")
@@ -95,16 +87,11 @@ def _interpolate_from_start(index: RealArray, travelled: RealArray, size: int) -
 def interpolate_marks(time: RealArray, mark_time: RealArray, mark_position: RealArray) -> RealArray:
     """Position between marks by monotone cubics; NaN before the first and after the last mark.
 
-    Parameters
-    ----------
-    time : (n,) ndarray
-        Time of the samples [s].
-    mark_time, mark_position : (k,) ndarray
-        Times [s] and positions [m] of the marks, both increasing.
+    Args:
+        time: Time of the samples, (n,) [s].
+        mark_time, mark_position: Times [s] and positions [m] of the marks, both increasing, (k,).
 
-    Returns
-    -------
-    (n,) ndarray
-        Position [m].
+    Returns:
+        Position, (n,) [m].
     """
     return np.asarray(PchipInterpolator(mark_time, mark_position, extrapolate=False)(time))

@@ -13,10 +13,10 @@ from pantocheck.conformance.records.logger.column_tables import FileColumnName
 class KilometreTable(InputTable):
     """Kilometres of the line: x = 1000 (km - zero_km), or 1000 (zero_km - km) if they decrease in running direction."""
 
-    zero_km: Annotated[float, Field(ge=-10000, le=10000, description="kilometre of the line at x = 0")]
-    kilometres: Annotated[
-        Literal["increasing", "decreasing"], Field(description="kilometres of the line in running direction")
-    ]
+    zero_km: Annotated[float, Field(ge=-10000, le=10000)]
+    """Kilometre of the line at x = 0."""
+    kilometres: Literal["increasing", "decreasing"]
+    """Kilometres of the line in running direction."""
 
     @property
     def direction(self) -> float:
@@ -33,8 +33,10 @@ class CounterPosition(InputTable):
 
     kind: Literal["counter"]
     column: FileColumnName
-    metres_per_pulse: Annotated[Positive, Field(le=1000, description="distance per pulse [m]")]
-    start_m: Annotated[float, Field(description="position of the first pantograph at the first sample [m]")]
+    metres_per_pulse: Annotated[Positive, Field(le=1000)]
+    """Distance per pulse [m]."""
+    start_m: float
+    """Position of the first pantograph at the first sample [m]."""
 
 
 class PulsePosition(InputTable):
@@ -42,25 +44,27 @@ class PulsePosition(InputTable):
 
     kind: Literal["pulses"]
     column: FileColumnName
-    metres_per_pulse: Annotated[Positive, Field(le=1000, description="distance per pulse [m]")]
-    start_m: Annotated[float, Field(description="position of the first pantograph at the first sample [m]")]
+    metres_per_pulse: Annotated[Positive, Field(le=1000)]
+    """Distance per pulse [m]."""
+    start_m: float
+    """Position of the first pantograph at the first sample [m]."""
 
 
 class KilometreMark(InputTable):
     """Passing of a kilometre mark by the first pantograph."""
 
-    time_s: Annotated[float, Field(description="time of the passing, as in the channel time_s [s]")]
-    km: Annotated[float, Field(ge=-10000, le=10000, description="kilometre of the line")]
+    time_s: float
+    """Time of the passing, as in the channel time_s [s]."""
+    km: Annotated[float, Field(ge=-10000, le=10000)]
+    """Kilometre of the line."""
 
 
 class MarkPosition(InputTable):
     """Position from the times at which the first pantograph passes kilometre marks, interpolated between them."""
 
     kind: Literal["marks"]
-    mark: Annotated[
-        tuple[KilometreMark, ...],
-        Field(strict=False, min_length=2, max_length=10000, description="passings of kilometre marks in order of time"),
-    ]
+    mark: Annotated[tuple[KilometreMark, ...], Field(strict=False, min_length=2, max_length=10000)]
+    """Passings of kilometre marks in order of time."""
 
     @cross_check
     def _check_order(self) -> Problems:

@@ -32,18 +32,12 @@ NORMAL_QUANTILE = 1.96
 
 @dataclass(frozen=True)
 class BlockReplicates(Sampling):
-    """Statistics of each bootstrap replicate.
-
-    Parameters
-    ----------
-    starts : (replicates, blocks) ndarray
-        First sample of each block within the analysis section.
-    length : int
-        Number of samples in a block.
-    """
+    """Statistics of each bootstrap replicate."""
 
     starts: NDArray[np.intp]
+    """First sample of each block within the analysis section, (replicates, blocks)."""
     length: int
+    """Number of samples in a block."""
 
     def mean(self, series: RealArray) -> RealArray:
         """Mean value of each replicate."""
@@ -96,18 +90,12 @@ def bootstrap_uncertainties(
     The uncertainty of the largest and smallest value shows their dependence on single events of the record. It does not
     show that a longer record may contain larger events.
 
-    Parameters
-    ----------
-    signals : PantographSignals or SignalsOutside
-        Signals of one pantograph, with or without excluded stretches.
-    block_s : float
-        Length of a block: one span [s].
-    digest : str
-        SHA-256 of the case or of the samples in hexadecimal, which is the seed of the random numbers.
+    Args:
+        signals: Signals of one pantograph, with or without excluded stretches.
+        block_s: Length of a block: one span [s].
+        digest: SHA-256 of the case or of the samples in hexadecimal, which is the seed of the random numbers.
 
-    Returns
-    -------
-    dict of str to float
+    Returns:
         Half-widths by quantity; empty if the analysis section is not covered or too short.
     """
     try:

@@ -31,15 +31,11 @@ SMALLEST_DISTANCE_N = 50.0
 def find_outliers(force: RealArray) -> NDArray[np.intp]:
     """Find samples far from their neighbours; they are reported but not removed, because a peak may be real.
 
-    Parameters
-    ----------
-    force : (n,) ndarray
-        Contact force without missing values [N].
+    Args:
+        force: Contact force without missing values, (n,) [N].
 
-    Returns
-    -------
-    (k,) ndarray
-        Indices of the outliers.
+    Returns:
+        Indices of the outliers, (k,).
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)
@@ -53,19 +49,13 @@ def find_outliers(force: RealArray) -> NDArray[np.intp]:
 def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSignals, list[str]]:
     """Detect a filter of the measuring chain that the sidecar does not state.
 
-    Parameters
-    ----------
-    signals : PantographSignals
-        Signals of one pantograph, which cover the analysis section.
-    name : str
-        Name of the pantograph in messages.
+    Args:
+        signals: Signals of one pantograph, which cover the analysis section.
+        name: Name of the pantograph in messages.
 
-    Returns
-    -------
-    signals : PantographSignals
-        Signals with the filter that was applied.
-    warnings : list of str
-        One warning if a filter was detected.
+    Returns:
+        signals: Signals with the filter that was applied.
+        warnings: One warning if a filter was detected.
     """
     channel = signals.force
     if channel.filter_applied_Hz is not None or not is_observable(50, channel.rate):

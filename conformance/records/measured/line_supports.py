@@ -13,18 +13,12 @@ def list_line_supports(
 ) -> tuple[float, ...] | None:
     """Positions of the supports of a section: the listed ones, and one more where their distance exceeds a span.
 
-    Parameters
-    ----------
-    listed : sequence of float
-        Positions of the supports in the record [m].
-    span_m : float or None
-        Length of the longest span [m]; None if it is not known.
-    section : tuple of float
-        Start and end of the analysis section [m].
+    Args:
+        listed: Positions of the supports in the record [m].
+        span_m: Length of the longest span [m]; None if it is not known.
+        section: Start and end of the analysis section [m].
 
-    Returns
-    -------
-    tuple of float or None
+    Returns:
         Positions in increasing order [m]; None if the span length is not known.
     """
     if span_m is None:

@@ -36,42 +36,28 @@ MOST_NAMES = 20
 
 @dataclass(frozen=True)
 class PreparedRecord:
-    """Signals of a measured record.
-
-    Parameters
-    ----------
-    pantographs : dict of int to PantographSignals
-        Signals by number from 1.
-    line : LineSignals
-        Uplift at the supports.
-    rate : float
-        Sampling rate after resampling [Hz].
-    speed : float
-        Mean speed of the samples at nominal speed, or the nominal speed if there are none [m/s].
-    section : tuple of float
-        Start and end of the analysis section [m].
-    seconds : float
-        Evaluated duration of the first pantograph [s]; 0 if it does not cover the analysis section.
-    notes : tuple of str
-        Remarks on the preparation.
-    warnings : tuple of str
-        Caveats for the reader of the report.
-    events : tuple of RecordEvent
-        Events of the analysis section.
-    excluded : tuple of tuple of float
-        Stretches that are left out of the statistics of the pantographs [m, m].
-    """
+    """Signals of a measured record."""
 
     pantographs: dict[int, PantographSignals]
+    """Signals by number from 1."""
     line: LineSignals
+    """Uplift at the supports."""
     rate: float
+    """Sampling rate after resampling [Hz]."""
     speed: float
+    """Mean speed of the samples at nominal speed, or the nominal speed if there are none [m/s]."""
     section: tuple[float, float]
+    """Start and end of the analysis section [m]."""
     seconds: float
+    """Evaluated duration of the first pantograph [s]; 0 if it does not cover the analysis section."""
     notes: tuple[str, ...]
+    """Remarks on the preparation."""
     warnings: tuple[str, ...]
+    """Caveats for the reader of the report."""
     events: tuple[RecordEvent, ...] = ()
+    """Events of the analysis section."""
     excluded: tuple[tuple[float, float], ...] = ()
+    """Stretches that are left out of the statistics of the pantographs [m, m]."""
 
     @cached_property
     def evaluation(self) -> Evaluation:
@@ -107,26 +93,18 @@ def prepare_record(
 ) -> PreparedRecord:
     """Select the usable part of a record, evenly sampled in time.
 
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples as read.
-    sidecar : RecordSidecar
-        Sidecar of the record.
-    low_pass : LowPass
-        Filter of the graded force.
-    speed_tolerance_pct : float
-        Largest difference from the nominal speed in the analysis section [%].
+    Args:
+        samples: Samples as read.
+        sidecar: Sidecar of the record.
+        low_pass: Filter of the graded force.
+        speed_tolerance_pct: Largest difference from the nominal speed in the analysis section [%].
 
-    Returns
-    -------
-    PreparedRecord
+    Returns:
         Signals over the usable sections.
 
-    Raises
-    ------
-    RecordInvalid
-        Time or position decreases, no sample has both, the pantographs share no track, or no part is usable.
+    Raises:
+        RecordInvalid: Time or position decreases, no sample has both, the pantographs share no track, or no part is
+            usable.
     """
     placed = place_samples(samples, sidecar)
     samples, time, position = placed.samples, placed.time, placed.position

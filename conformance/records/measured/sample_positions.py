@@ -13,45 +13,30 @@ from pantocheck.conformance.records.samples import RecordSamples, complete_sampl
 
 @dataclass(frozen=True)
 class PlacedSamples:
-    """Samples with their time and position, both increasing.
-
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples with time and position.
-    time : (n,) ndarray
-        Time of each sample [s].
-    position : (p, n) ndarray
-        Position of each pantograph along the track [m].
-    warnings : tuple of str
-        Notes on discarded samples.
-    """
+    """Samples with their time and position, both increasing."""
 
     samples: RecordSamples
+    """Samples with time and position."""
     time: RealArray
+    """Time of each sample, (n,) [s]."""
     position: RealArray
+    """Position of each pantograph along the track, (p, n) [m]."""
     warnings: tuple[str, ...]
+    """Notes on discarded samples."""
 
 
 def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSamples:
     """Determine time and position of the samples; samples without them are discarded.
 
-    Parameters
-    ----------
-    samples : RecordSamples
-        Samples of a record.
-    sidecar : RecordSidecar
-        Sidecar of the record.
+    Args:
+        samples: Samples of a record.
+        sidecar: Sidecar of the record.
 
-    Returns
-    -------
-    PlacedSamples
+    Returns:
         Remaining samples with time and position.
 
-    Raises
-    ------
-    RecordInvalid
-        Time or position decreases, or fewer than two samples have both.
+    Raises:
+        RecordInvalid: Time or position decreases, or fewer than two samples have both.
     """
     warnings = []
     axes = [axis for axis in (samples.time, samples.speed, samples.position) if axis is not None]

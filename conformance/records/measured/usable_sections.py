@@ -24,24 +24,16 @@ SPEED_AVERAGED_S = 1.0
 
 @dataclass(frozen=True)
 class UsableSection:
-    """Evenly sampled section of the record of one pantograph.
-
-    Parameters
-    ----------
-    position : (n,) ndarray
-        Contact point along the track [m].
-    force : (n,) ndarray
-        Contact force [N].
-    height : (n,) ndarray or None
-        Height of the contact point [m], or None.
-    arcs : (2, n) ndarray or None
-        Arcs, and time under load, as 1, 0 or NaN; None without an arc detector.
-    """
+    """Evenly sampled section of the record of one pantograph."""
 
     position: RealArray
+    """Contact point along the track, (n,) [m]."""
     force: RealArray
+    """Contact force, (n,) [N]."""
     height: RealArray | None
+    """Height of the contact point, (n,) [m], or None."""
     arcs: RealArray | None = None
+    """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
 
 
 def local_speed(time: RealArray, position: RealArray) -> RealArray:
@@ -54,16 +46,11 @@ def local_speed(time: RealArray, position: RealArray) -> RealArray:
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
     """Find the sections of usable samples between gaps; gaps of up to `SHORT_GAP_S` are ignored.
 
-    Parameters
-    ----------
-    time : (n,) ndarray
-        Increasing time [s].
-    usable : (n,) ndarray
-        Whether each sample may be evaluated.
+    Args:
+        time: Increasing time, (n,) [s].
+        usable: Whether each sample may be evaluated, (n,).
 
-    Returns
-    -------
-    list of ndarray
+    Returns:
         Indices of the samples of each section that lasts at least `SHORTEST_S`.
     """
     indices = np.flatnonzero(usable)
@@ -82,18 +69,12 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
     Evenly spaced samples remain unchanged. Others are interpolated by monotone cubics, which do not overshoot: contact
     losses remain, and no new extremes appear.
 
-    Parameters
-    ----------
-    time : (n,) ndarray
-        Time of the samples [s].
-    section : UsableSection
-        Channels as recorded; a height with missing values is dropped.
-    rate : float
-        Sampling rate of the result [Hz].
+    Args:
+        time: Time of the samples, (n,) [s].
+        section: Channels as recorded; a height with missing values is dropped.
+        rate: Sampling rate of the result [Hz].
 
-    Returns
-    -------
-    UsableSection
+    Returns:
         Section with uniform sampling.
     """
     height = section.height

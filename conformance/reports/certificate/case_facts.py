@@ -1,63 +1,61 @@
 """Facts for reproducing a run: suite, system, platform, filter, time step, digests."""
 
-from typing import Any
-
 from pantocheck.conformance.reports.document import Facts
 from pantocheck.conformance.reports.page_text import format_plain, format_value
-from pantocheck.conformance.results.results_format import RunFacts
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts
 
 
-def list_suite_facts(results: dict[str, Any]) -> Facts:
+def list_suite_facts(results: Results) -> Facts:
     """Suite, system, platform and start of a run."""
-    platform = results["platform"]
-    versions = [f"{name} {version}" for name, version in platform.items() if name not in ("machine", "system")]
-    computer = f"{platform['system']} {platform['machine']}"
+    platform = results.platform
+    versions = [f"{name} {version}" for name, version in platform if name not in ("machine", "system")]
+    computer = f"{platform.system} {platform.machine}"
     return Facts(
         _drop_empty(
             ("Suite", name_suite(results)),
-            ("Digest of the suite", results["suite"]["digest"]),
-            ("Commit of the suite", results["suite"]["commit"] or "not known"),
+            ("Digest of the suite", results.suite.digest),
+            ("Commit of the suite", results.suite.commit or "not known"),
             ("System under test", name_system(results)),
             ("Platform", ", ".join([computer, *versions])),
-            ("Format of the results", results["schema"]),
+            ("Format of the results", results.schema_),
         ),
-        times=_drop_empty(("Started", results["started"])),
+        times=_drop_empty(("Started", results.started)),
     )
 
 
-def name_suite(results: dict[str, Any]) -> str:
+def name_suite(results: Results) -> str:
     """Name and version of the suite."""
-    return f"Pantocheck {results['suite']['version']}"
+    return f"Pantocheck {results.suite.version}"
 
 
-def name_system(results: dict[str, Any]) -> str:
+def name_system(results: Results) -> str:
     """Name, version and kind of the system under test."""
-    system = results["system"]
-    return f"{' '.join(filter(None, (system['name'], system['version'])))} ({system['kind']})"
+    system = results.system
+    return f"{' '.join(filter(None, (system.name, system.version)))} ({system.kind})"
 
 
-def list_case_facts(case: dict[str, Any]) -> Facts:
+def list_case_facts(case: CaseResult) -> Facts:
     """Facts of one run; unknown facts are left out."""
-    run = case["run"]
-    record, changed = case.get("record") or {}, case["limits_digest"] != case["stated_limits_digest"]
-    simulated, wall, section = run["simulated_s"], run["wall_s"], run["evaluated_m"]
+    run = case.run
+    record, changed = case.record, case.limits_digest != case.stated_limits_digest
+    simulated, wall, section = run.simulated_s, run.wall_s, run.evaluated_m
     return Facts(
         _drop_empty(
-            ("Speed", _with_unit(run["speed_km_h"], "km/h")),
+            ("Speed", _with_unit(run.speed_km_h, "km/h")),
             *_list_law_forces(run),
             ("Analysis section", f"{format_plain(section[0])} m to {format_plain(section[1])} m" if section else None),
-            ("Filter", _describe_filter(run["filter"])),
-            ("Sampling rate of the record", _with_unit(run["rate_Hz"], "samples per second")),
-            ("Time step", _with_unit(run["dt_s"], "s")),
-            ("Element length", _with_unit(run["element_m"], "m")),
+            ("Filter", _describe_filter(run)),
+            ("Sampling rate of the record", _with_unit(run.rate_Hz, "samples per second")),
+            ("Time step", _with_unit(run.dt_s, "s")),
+            ("Element length", _with_unit(run.element_m, "m")),
             ("Simulated time", _with_unit(simulated, "s")),
-            ("Edition", case["edition"]),
-            ("Superseded by", case["superseded_by"]),
-            ("Digest of the inputs", case["input_digest"]),
-            ("Digest of the limits", case["limits_digest"]),
-            ("Digest without the limits file", case["stated_limits_digest"] if changed else None),
-            ("Digest of the record", record.get("digest")),
-            ("Digest of the measured record", record.get("measured_digest")),
+            ("Edition", case.edition),
+            ("Superseded by", case.superseded_by),
+            ("Digest of the inputs", case.input_digest),
+            ("Digest of the limits", case.limits_digest),
+            ("Digest without the limits file", case.stated_limits_digest if changed else None),
+            ("Digest of the record", None if record is None else record.digest),
+            ("Digest of the measured record", None if record is None else record.measured_digest),
         ),
         times=_drop_empty(
             ("Wall time", None if wall is None else f"{format_value(wall, 3)} s"),
@@ -66,14 +64,14 @@ def list_case_facts(case: dict[str, Any]) -> Facts:
     )
 
 
-def _list_law_forces(run: dict[str, Any]) -> list[tuple[str, str]]:
-    facts = RunFacts.model_validate(run).law_forces
-    return [(f"Force law of pantograph {number}", force.text) for number, force in facts.items()]
+def _list_law_forces(run: RunFacts) -> list[tuple[str, str]]:
+    return [(f"Force law of pantograph {number}", force.text) for number, force in run.law_forces.items()]
 
 
-def _describe_filter(settings: dict[str, Any]) -> str:
-    kind, cutoff = settings["kind"].capitalize(), format_plain(settings["cutoff_Hz"])
-    return f"{kind}, order {settings['order']}, −3 dB at {cutoff} Hz, {settings['phase']} phase"
+def _describe_filter(run: RunFacts) -> str:
+    settings = run.filter
+    kind, cutoff = settings.kind.capitalize(), format_plain(settings.cutoff_Hz)
+    return f"{kind}, order {settings.order}, −3 dB at {cutoff} Hz, {settings.phase} phase"
 
 
 def _with_unit(value: float | None, unit: str) -> str | None:

@@ -1,10 +1,10 @@
 """Identity of a report on its page 1: administrative data, date, digest, verification and signature."""
 
-from typing import Any
-
 from pantocheck.conformance.reports.certificate.scope_page import list_sources
 from pantocheck.conformance.reports.document import Facts, Section
 from pantocheck.conformance.reports.formats.reproducibility import format_date
+from pantocheck.conformance.results.administration import Administration
+from pantocheck.conformance.results.results_format import Results
 
 ADMINISTRATION = {
     "report_number": "Report number",
@@ -21,20 +21,16 @@ SIGNATURE = "added to the file after writing, if any; the command below shows it
 VERIFICATION = "pantocheck verify FILE, with the name of this file"
 
 
-def build_document_section(results: dict[str, Any], digest: str, date: int) -> Section:
+def build_document_section(results: Results, digest: str, date: int) -> Section:
     """Section on the identity of a report.
 
-    Parameters
-    ----------
-    results : dict
-        Results from `prepare_results`.
-    digest : str
-        Digest of the results before their preparation; it covers the administrative data, and not the page.
-    date : int
-        Date of the document [s since 1970]; 0: not known.
+    Args:
+        results: Results from `prepare_results`.
+        digest: Digest of the results before their preparation; it covers the administrative data, and not the page.
+        date: Date of the document [s since 1970]; 0: not known.
     """
     pairs = (
-        *list_administration(results),
+        *list_administration(results.administration),
         ("Date of this document", format_date(date)),
         ("Digest of the results", digest),
         *list_sources(results),
@@ -44,8 +40,8 @@ def build_document_section(results: dict[str, Any], digest: str, date: int) -> S
     return Section("Document", (Facts(tuple(pair for pair in pairs if pair[1])),), anchor="document")
 
 
-def list_administration(results: dict[str, Any]) -> tuple[tuple[str, str], ...]:
+def list_administration(administration: Administration | None) -> tuple[tuple[str, str], ...]:
     """Labels and texts of the administrative data; without an issuer, that it is not stated."""
-    stated = {key: text for key, text in (results["administration"] or {}).items() if text is not None}
+    stated = {key: text for key, text in (administration or ()) if text is not None}
     known = {"issuer": NO_ISSUER, **stated}
     return tuple((label, known[key]) for key, label in ADMINISTRATION.items() if key in known)

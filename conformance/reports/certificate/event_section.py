@@ -1,26 +1,28 @@
 """Sections of a case on the events of its record: places of the line, and contact losses."""
 
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import replace_minus
 from pantocheck.conformance.reports.words import name_pantograph
+from pantocheck.conformance.results.case_facts_format import ContactLossFacts, EventFacts
+from pantocheck.conformance.results.results_format import CaseResult
 
 LISTED_LOSSES = 40
 """Largest number of contact losses in the table of a page; results.json lists more."""
 
 
-def event_blocks(case: dict[str, Any]) -> tuple[doc.Block, ...]:
+def event_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
     """Blocks on the events of a record; empty if it has none."""
-    return (*_build_place_section(case.get("events") or []), *_build_loss_section(case.get("contact_losses") or {}))
+    return (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
 
 
-def _build_loss_section(losses: dict[str, list[dict[str, Any]]]) -> tuple[doc.Block, ...]:
+def _build_loss_section(losses: Mapping[str, Sequence[ContactLossFacts]]) -> tuple[doc.Block, ...]:
     """Table of the longest contact losses."""
     rows = [(name_pantograph(key), loss) for key, found in losses.items() for loss in found]
     if not rows:
         return ()
-    longest = sorted(rows, key=lambda row: -row[1]["duration_s"])[:LISTED_LOSSES]
+    longest = sorted(rows, key=lambda row: -row[1].duration_s)[:LISTED_LOSSES]
     columns = (
         doc.Column("Pantograph", share=1),
         *(doc.Column(name, number=True) for name in ("Place [m]", "Time [s]", "Duration [ms]", "Lowest force [N]")),
@@ -28,10 +30,10 @@ def _build_loss_section(losses: dict[str, list[dict[str, Any]]]) -> tuple[doc.Bl
     cells = tuple(
         (
             name,
-            f"{loss['position_m']:.1f}",
-            f"{loss['time_s']:.3f}",
-            f"{1000 * loss['duration_s']:.4g}",
-            replace_minus(f"{loss['lowest_force_N']:.3g}"),
+            f"{loss.position_m:.1f}",
+            f"{loss.time_s:.3f}",
+            f"{1000 * loss.duration_s:.4g}",
+            replace_minus(f"{loss.lowest_force_N:.3g}"),
         )
         for name, loss in longest
     )
@@ -44,7 +46,7 @@ def _build_loss_section(losses: dict[str, list[dict[str, Any]]]) -> tuple[doc.Bl
     return (doc.Section("Contact losses", tuple(blocks)),)
 
 
-def _build_place_section(events: list[dict[str, Any]]) -> tuple[doc.Block, ...]:
+def _build_place_section(events: Sequence[EventFacts]) -> tuple[doc.Block, ...]:
     """Table of the places of the line."""
     if not events:
         return ()
@@ -56,10 +58,10 @@ def _build_place_section(events: list[dict[str, Any]]) -> tuple[doc.Block, ...]:
     )
     rows = tuple(
         (
-            " ".join(filter(None, (event["kind"].replace("_", " "), event["name"]))),
-            f"{event['start_m']:.1f}",
-            f"{event['end_m']:.1f}",
-            f"left out: {event['remark']}" if event["excluded"] else event["remark"] or "evaluated",
+            " ".join(filter(None, (event.kind.replace("_", " "), event.name))),
+            f"{event.start_m:.1f}",
+            f"{event.end_m:.1f}",
+            f"left out: {event.remark}" if event.excluded else event.remark or "evaluated",
         )
         for event in events
     )

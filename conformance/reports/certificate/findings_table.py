@@ -1,10 +1,12 @@
 """Table of the findings of publications that the cases of a run grade."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import describe_criterion
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.finding_format import GradedFinding
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 FINDING_MEANING = (
     "Imposed: the inputs were chosen with this finding, so meeting it shows nothing. Held out: they were chosen "
@@ -12,9 +14,9 @@ FINDING_MEANING = (
 )
 
 
-def build_findings_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+def build_findings_section(results: Results) -> tuple[doc.Section, ...]:
     """Section with every finding of a run, its bounds and its outcome; empty without findings."""
-    rows = tuple(_build_row(case, row) for case, row in list_findings(results))
+    rows = tuple(_build_row(*graded) for graded in list_findings(results))
     if not rows:
         return ()
     columns = (
@@ -31,29 +33,29 @@ def build_findings_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
     return (doc.Section("Findings", (counts, table, doc.SmallPrint(FINDING_MEANING)), anchor="findings"),)
 
 
-def list_findings(results: dict[str, Any]) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+def list_findings(results: Results) -> Iterator[tuple[CaseResult, Criterion, GradedFinding]]:
     """Cases and their criteria that grade a finding, in the order of the sections of the publication."""
-    pairs = [(case, row) for case in results["cases"] for row in case["criteria"] if row["finding"] is not None]
-    yield from sorted(pairs, key=lambda pair: str(pair[1]["finding"]["section"]))
+    graded = [(case, row, row.finding) for case in results.cases for row in case.criteria if row.finding is not None]
+    yield from sorted(graded, key=lambda item: item[2].section)
 
 
-def count_sentences(results: dict[str, Any]) -> list[str]:
+def count_sentences(results: Results) -> list[str]:
     """Sentence on the numbers of findings by outcome; none without findings."""
-    if results["findings"] is None:
+    if results.findings is None:
         return []
-    counts = {name.replace("_", " "): number for name, number in results["findings"].items()}
+    counts = {name.replace("_", " "): number for name, number in results.findings}
     shown = [f"{number} {name}" for name, number in counts.items() if number or name != "not evaluated"]
     return [f"Findings: {', '.join(shown)}."]
 
 
-def _build_row(case: dict[str, Any], row: dict[str, Any]) -> tuple[doc.RichText, ...]:
-    finding, texts = row["finding"], describe_criterion(row)
-    remarks = [finding["tolerance"], finding["sensitivity"] if finding["outcome"] == "not_reproduced" else ""]
-    remark = doc.Remark(" ".join(filter(None, (f"{case['id']}:", *remarks))))
+def _build_row(case: CaseResult, row: Criterion, finding: GradedFinding) -> tuple[doc.RichText, ...]:
+    texts = describe_criterion(row)
+    remarks = [finding.tolerance, finding.sensitivity if finding.outcome == "not_reproduced" else ""]
+    remark = doc.Remark(" ".join(filter(None, (f"{case.id}:", *remarks))))
     return (
-        finding["section"],
-        (finding["sentence"], remark),
-        finding["printed"],
+        finding.section,
+        (finding.sentence, remark),
+        finding.printed,
         texts.value,
         texts.limits,
         doc.TrustMark(texts.trust),
@@ -61,7 +63,7 @@ def _build_row(case: dict[str, Any], row: dict[str, Any]) -> tuple[doc.RichText,
     )
 
 
-def _describe_outcome(finding: dict[str, Any]) -> str:
+def _describe_outcome(finding: GradedFinding) -> str:
     """Outcome of a finding, and its role if the outcome does not state it."""
-    outcome = str(finding["outcome"]).replace("_", " ")
-    return f"imposed, {outcome}" if finding["role"] == "imposed" != outcome else outcome
+    outcome = finding.outcome.replace("_", " ")
+    return f"imposed, {outcome}" if finding.role == "imposed" != outcome else outcome

@@ -1,11 +1,13 @@
 """Inputs of a case: values of every group with their trust and source; groups of an earlier case are named only."""
 
 from collections import defaultdict
-from typing import Any
+from collections.abc import Sequence
 
 from pantocheck.conformance.input_files.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import format_plain
+from pantocheck.conformance.results.case_facts_format import StoredRange, StoredValue
+from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
 INPUT_COLUMNS = (
     doc.Column("Group", share=1.5),
@@ -24,28 +26,24 @@ KEY_UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K"
 """Units by the end of a key."""
 
 
-def input_blocks(case: dict[str, Any], earlier: tuple[dict[str, Any], ...], anchor: str) -> tuple[doc.Block, ...]:
+def input_blocks(case: CaseResult, earlier: tuple[CaseResult, ...], anchor: str) -> tuple[doc.Block, ...]:
     """Table of the inputs of a case with its sources, and the groups that are those of an earlier case.
 
-    Parameters
-    ----------
-    case : dict
-        Case of results.json.
-    earlier : tuple of dict
-        Cases that stand before it in the report.
-    anchor : str
-        Anchor of the sources, before their number.
+    Args:
+        case: The case.
+        earlier: Cases that stand before it in the report.
+        anchor: Anchor of the sources, before their number.
     """
-    single, groups = _split_single_values(case["inputs"])
+    single, groups = _split_single_values(case.inputs)
     repeated: dict[str, list[str]] = defaultdict(list)
     shown = []
     for group in groups:
-        other = next((other["id"] for other in earlier if group in other["inputs"]), None)
+        other = next((other.id for other in earlier if group in other.inputs), None)
         if other is None:
             shown.append(group)
         else:
-            repeated[other].append(group["group"])
-    sources = list(dict.fromkeys(group["source"] for group in shown))
+            repeated[other].append(group.group)
+    sources = list(dict.fromkeys(group.source for group in shown))
     rows = tuple(_row(group, single, sources, anchor) for group in shown)
     marked = PROVISIONAL_KEY if any(PROVISIONAL in str(row[1]) for row in rows) else ""
     texts = [*filter(None, [marked]), *(f"As in {name}: {', '.join(names)}." for name, names in repeated.items())]
@@ -56,25 +54,25 @@ def input_blocks(case: dict[str, Any], earlier: tuple[dict[str, Any], ...], anch
     )
 
 
-def _split_single_values(inputs: list[dict[str, Any]]) -> tuple[set[str], list[dict[str, Any]]]:
+def _split_single_values(inputs: Sequence[InputGroup]) -> tuple[set[str], list[InputGroup]]:
     """Dotted names of single provisional values whose group shows them, and all other groups."""
-    stated = {f"{group['group']}.{key}".split("[")[0] for group in inputs for key in group["values"]}
-    tops = {name for name in (group["group"] for group in inputs if not group["values"]) if _is_stated(name, stated)}
-    return tops, [group for group in inputs if group["group"] not in tops]
+    stated = {f"{group.group}.{key}".split("[")[0] for group in inputs for key in group.values}
+    tops = {name for name in (group.group for group in inputs if not group.values) if _is_stated(name, stated)}
+    return tops, [group for group in inputs if group.group not in tops]
 
 
 def _is_stated(name: str, stated: set[str]) -> bool:
     return any(key == name or key.startswith(f"{name}.") for key in stated)
 
 
-def _row(group: dict[str, Any], single: set[str], sources: list[str], anchor: str) -> tuple[doc.RichText, ...]:
-    number = sources.index(group["source"]) + 1
+def _row(group: InputGroup, single: set[str], sources: list[str], anchor: str) -> tuple[doc.RichText, ...]:
+    number = sources.index(group.source) + 1
     values = [
-        f"{_describe_value(key, value)}{f' {PROVISIONAL}' if _is_single(group['group'], key, single) else ''}"
-        for key, value in group["values"].items()
+        f"{_describe_value(key, value)}{f' {PROVISIONAL}' if _is_single(group.group, key, single) else ''}"
+        for key, value in group.values.items()
     ]
     source = doc.Link(f"[{number}]", f"{anchor}-{number}")
-    return doc.Code(group["group"]), "; ".join(values) or "–", doc.TrustMark(group["trust"]), source
+    return doc.Code(group.group), "; ".join(values) or "–", doc.TrustMark(group.trust), source
 
 
 def _is_single(group: str, key: str, single: set[str]) -> bool:
@@ -82,7 +80,7 @@ def _is_single(group: str, key: str, single: set[str]) -> bool:
     return any(".".join((group, *parts[:n])) in single for n in range(1, len(parts) + 1))
 
 
-def _describe_value(key: str, value: Any) -> str:
+def _describe_value(key: str, value: StoredValue) -> str:
     """Name, value and unit of an input: `tension 20000 N`."""
     suffix = next((unit for unit in ("1_s", "1_m", "1_K") if key.endswith(f"_{unit}")), None) or find_unit(key)
     suffix = suffix or next((unit for unit in KEY_UNITS if key.endswith(f"_{unit}")), None)
@@ -90,10 +88,10 @@ def _describe_value(key: str, value: Any) -> str:
     return f"{name} {_format_input(value)} {KEY_UNITS[suffix] if suffix else ''}".rstrip()
 
 
-def _format_input(value: Any) -> str:
-    if isinstance(value, dict):
-        lowest, highest = format_plain(value["lowest"]), format_plain(value["highest"])
-        return f"{value['count']} values, {lowest} to {highest}"
+def _format_input(value: StoredValue) -> str:
+    if isinstance(value, StoredRange):
+        lowest, highest = format_plain(value.lowest), format_plain(value.highest)
+        return f"{value.count} values, {lowest} to {highest}"
     if isinstance(value, list):
         return ", ".join(map(_format_input, value))
     if isinstance(value, bool):

@@ -1,33 +1,31 @@
 """Schemes of the pantographs of a case that are chains; equal chains are drawn once in a document."""
 
 from collections import defaultdict
-from typing import Any
 
 from pantocheck.conformance.reports.document import Figure
 from pantocheck.conformance.reports.figures.chain_figure import DrawnChain, draw_chain
 from pantocheck.conformance.reports.page_text import format_plain
+from pantocheck.conformance.results.case_facts_format import StoredValue, StoredValues
+from pantocheck.conformance.results.results_format import CaseResult
 
 DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
 """Keys of the values of a chain, base to head."""
 
 
-def scheme_figures(case: dict[str, Any], earlier: tuple[dict[str, Any], ...]) -> tuple[Figure, ...]:
+def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Figure, ...]:
     """Scheme of every chain of a case that no earlier case has.
 
-    Parameters
-    ----------
-    case : dict
-        Case of results.json. Older results have no values of inputs, and no scheme.
-    earlier : tuple of dict
-        Cases that stand before it in the report.
+    Args:
+        case: The case. Older results have no values of inputs, and no scheme.
+        earlier: Cases that stand before it in the report.
     """
     known = {chain for other in earlier for chain in _read_chains(other)}
     return tuple(_describe(chain, names) for chain, names in _read_chains(case).items() if chain not in known)
 
 
-def _read_chains(case: dict[str, Any]) -> dict[DrawnChain, list[str]]:
+def _read_chains(case: CaseResult) -> dict[DrawnChain, list[str]]:
     """Chains of a case with the names of their pantographs."""
-    values = {group["group"]: group["values"] for group in case["inputs"]}
+    values = {group.group: group.values for group in case.inputs}
     chains: dict[DrawnChain, list[str]] = defaultdict(list)
     for group, content in values.items():
         name = group.removesuffix(".chain")
@@ -37,7 +35,7 @@ def _read_chains(case: dict[str, Any]) -> dict[DrawnChain, list[str]]:
     return chains
 
 
-def _read_chain(values: dict[str, Any], contact: dict[str, Any]) -> DrawnChain | None:
+def _read_chain(values: StoredValues, contact: StoredValues) -> DrawnChain | None:
     """Chain of a group of inputs; None where values are missing, or are stored as a range."""
     masses, stiffness, damping = (_list_numbers(values.get(key)) for key in DRAWN_KEYS)
     contact_stiffness = _list_numbers(contact.get("stiffness_N_m"))
@@ -50,13 +48,14 @@ def _read_chain(values: dict[str, Any], contact: dict[str, Any]) -> DrawnChain |
     return DrawnChain(masses, stiffness, damping, names, lifted, contact_stiffness[0])
 
 
-def _list_numbers(value: Any) -> tuple[float, ...]:
+def _list_numbers(value: StoredValue | None) -> tuple[float, ...]:
     """Numbers of a stored value; a single number is a list of one; nothing for other values."""
     listed = value if isinstance(value, list) else [value]
-    return tuple(listed) if all(isinstance(number, float) for number in listed) else ()
+    numbers = tuple(number for number in listed if isinstance(number, float))
+    return numbers if len(numbers) == len(listed) else ()
 
 
-def _list_names(value: Any, size: int) -> tuple[str, ...]:
+def _list_names(value: StoredValue | None, size: int) -> tuple[str, ...]:
     names = tuple(map(str, value if isinstance(value, list) else [value]))
     return names if value is not None and len(names) == size else tuple(f"mass {n}" for n in range(1, size + 1))
 

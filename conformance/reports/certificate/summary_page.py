@@ -1,12 +1,12 @@
 """The summary of a run for the page of a CI job."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.certificate_page import build_header
 from pantocheck.conformance.reports.certificate.criteria_table import (
     NO_BASIS,
+    Basis,
     describe_criterion,
     error_name,
     note_incomplete,
@@ -32,32 +32,29 @@ from pantocheck.conformance.reports.certificate.two_verdicts import (
 )
 from pantocheck.conformance.reports.certificate.verdict_reasons import describe_record, list_reasons
 from pantocheck.conformance.reports.words import read_words
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
-def build_summary(results: dict[str, Any], certificates: Sequence[str] = ()) -> doc.Document:
+def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Document:
     """Verdict, reasons and criteria of a run.
 
-    Parameters
-    ----------
-    results : dict
-        results.json as a dictionary.
-    certificates : sequence of str
-        Names of the certificates in the same folder, which the page links.
+    Args:
+        results: Results of a run.
+        certificates: Names of the certificates in the same folder, which the page links.
 
-    Returns
-    -------
-    Document
+    Returns:
         The page.
     """
     results = prepare_results(results)
     header = build_header(results)
     warnings = list_identity_warnings(results)
     scope = (*_build_scope(results), *build_findings_section(results))
-    facts = (*(list_administration(results) if results["administration"] else ()), *list_sources(results))
+    facts = (*(list_administration(results.administration) if results.administration else ()), *list_sources(results))
     stated = (doc.Facts(facts),) if facts else ()
     first = (*_link_certificates(certificates), *stated, *((doc.WarningBox(warnings),) if warnings else ()))
     return doc.Document(
-        header.heading, header, (*first, *scope, *list_reasons(results), *map(_case_section, results["cases"]))
+        header.heading, header, (*first, *scope, *list_reasons(results), *map(_case_section, results.cases))
     )
 
 
@@ -67,46 +64,43 @@ def _link_certificates(names: Sequence[str]) -> tuple[doc.Paragraph, ...]:
     return (doc.Paragraph(("Certificate: ", links[0], *separated)),) if links else ()
 
 
-def _build_scope(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+def _build_scope(results: Results) -> tuple[doc.Section, ...]:
     """Steps of the procedure of a dossier with their own criteria, or the verdicts and the scope of a run."""
-    if "procedure" not in results:
+    if (procedure := results.procedure) is None:
         return (*build_verdict_section(results), *build_scope_section(results, {}))
-    graded = (step for step in results["procedure"]["steps"] if step["criteria"])
-    sections = (doc.Section(name_step(step), (_criteria(step),)) for step in graded)
-    return (build_procedure_section(results), *list_step_reasons(results), *sections)
+    graded = (step for step in procedure.steps if step.criteria)
+    sections = (doc.Section(name_step(step), (_criteria(step.criteria),)) for step in graded)
+    return (build_procedure_section(procedure, results.cases), *list_step_reasons(procedure), *sections)
 
 
-def _case_section(case: dict[str, Any]) -> doc.Section:
-    blocks: list[doc.Block] = [doc.Paragraph(f"Case {case['id']}{': ' + case['reason'] if case['reason'] else ''}")]
+def _case_section(case: CaseResult) -> doc.Section:
+    blocks: list[doc.Block] = [doc.Paragraph(f"Case {case.id}{': ' + case.reason if case.reason else ''}")]
     if record := describe_record(case):
         blocks.append(doc.Paragraph(record))
-    if case["warnings"]:
-        blocks.append(doc.WarningBox(tuple(case["warnings"])))
+    if case.warnings:
+        blocks.append(doc.WarningBox(tuple(case.warnings)))
     if criteria := list_criteria(case, "criteria"):
-        rows = case | {"criteria": criteria}
-        blocks += [_criteria(rows), *note_incomplete(rows)]
-    if (verification := case["verification"]) is not None:
-        blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification["verdict"]))))
-        if verification["criteria"]:
-            blocks.append(_criteria(case | {"criteria": verification["criteria"]}))
-    if (comparison := case.get("baseline")) is not None:
-        mark, text = doc.VerdictMark(comparison["verdict"]), describe_comparison(comparison)
+        blocks += [_criteria(criteria, case.uncertainty_basis), *note_incomplete(criteria, case.uncertainty_basis)]
+    if (verification := case.verification) is not None:
+        blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification.verdict))))
+        if verification.criteria:
+            blocks.append(_criteria(verification.criteria, case.uncertainty_basis))
+    if (comparison := case.baseline) is not None:
+        mark, text = doc.VerdictMark(comparison.verdict), describe_comparison(comparison)
         blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
         if drifts := list_criteria(case, "baseline"):
-            blocks.append(_criteria(case | {"criteria": drifts}))
-    word = read_words()["verdict"][case["verdict"]]["word"]
-    return doc.Section(f"{word}: {case['title']}", tuple(blocks))
+            blocks.append(_criteria(drifts, case.uncertainty_basis))
+    word = read_words()["verdict"][case.verdict]["word"]
+    return doc.Section(f"{word}: {case.title}", tuple(blocks))
 
 
-def _criteria(case: dict[str, Any]) -> doc.Table:
-    rows = []
-    for criterion in case["criteria"]:
-        texts = describe_criterion(criterion, case.get("uncertainty_basis", NO_BASIS))
+def _criteria(criteria: Sequence[Criterion], basis: Basis = NO_BASIS) -> doc.Table:
+    rows: list[tuple[doc.RichText, ...]] = []
+    for criterion in criteria:
+        texts = describe_criterion(criterion, basis)
         numbers = (texts.value, texts.error, texts.limits, texts.margin)
-        rows.append(
-            (texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion["verdict"]), texts.trust or "–")
-        )
-    numbers = ("Value", error_name(case), "Limits", "Margin")
+        rows.append((texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion.verdict), texts.trust or "–"))
+    numbers = ("Value", error_name(criteria), "Limits", "Margin")
     columns = (
         *map(doc.Column, ("Quantity", "Pantograph")),
         *(doc.Column(heading, number=True) for heading in numbers),

@@ -2,13 +2,15 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
 
 from pantocheck.conformance.counted_noun import count_noun
+from pantocheck.conformance.grading.verdicts import Verdict
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.criteria_table import criteria_blocks
 from pantocheck.conformance.reports.words import read_words
-from pantocheck.conformance.results.criterion_format import is_drift
+from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 NAMES = {
     "criteria": "EN 50318 criteria",
@@ -34,32 +36,30 @@ BASELINE_MEANING = (
 )
 
 
-def case_verdict(case: dict[str, Any], name: str) -> str | None:
+def case_verdict(case: CaseResult, name: str) -> Verdict | None:
     """One of the verdicts of a case; None if the case has no converged values, or no baseline."""
     if name == "criteria":
-        return str(case["criteria_verdict"] or case["verdict"])
-    part = case.get(name)
-    return None if part is None else str(part["verdict"])
+        return case.criteria_verdict or case.verdict
+    part = case.verification if name == "verification" else case.baseline
+    return None if part is None else part.verdict
 
 
-def list_criteria(case: dict[str, Any], name: str) -> list[dict[str, Any]]:
+def list_criteria(case: CaseResult, name: str) -> list[Criterion]:
     """Criteria of one of the verdicts of a case."""
-    table = (case["verification"] or {"criteria": []}) if name == "verification" else case
-    criteria: list[dict[str, Any]] = table["criteria"]
     if name == "verification":
-        return criteria
-    return [row for row in criteria if is_drift(row) == (name == "baseline")]
+        return [] if case.verification is None else case.verification.criteria
+    return [row for row in case.criteria if row.is_drift == (name == "baseline")]
 
 
-def select_criteria(results: dict[str, Any], case: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def select_criteria(results: Results, case: CaseResult) -> Iterator[Criterion]:
     """Criteria of the verdicts that decide on a case; its drift from a baseline always belongs to them."""
     for name in NAMES:
-        left_out = name == "criteria" and case["id"] in results["verification_only"]
-        decides = name in results["requested"] and not left_out
-        yield from (row for row in list_criteria(case, name) if decides or is_drift(row))
+        left_out = name == "criteria" and case.id in results.verification_only
+        decides = name in results.requested and not left_out
+        yield from (row for row in list_criteria(case, name) if decides or row.is_drift)
 
 
-def build_verdict_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
+def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
     """The verdicts of a run side by side; empty if there is one only."""
     names = _list_names(results)
     if len(names) == 1:
@@ -71,22 +71,32 @@ def build_verdict_section(results: dict[str, Any]) -> tuple[doc.Section, ...]:
     return (doc.Section(f"{NUMBERS[len(names)]} verdicts", blocks, anchor="verdicts"),)
 
 
-def _list_names(results: dict[str, Any]) -> list[str]:
+def _list_names(results: Results) -> list[str]:
     """Verdicts of a run: by the criteria, and by verification and baseline if there are any."""
-    verified = results["verification_verdict"] is not None or "verification" in results["requested"]
-    compared = results.get("baseline_verdict") is not None
+    verified = results.verification_verdict is not None or "verification" in results.requested
+    compared = results.baseline_verdict is not None
     return ["criteria", *(["verification"] if verified else []), *(["baseline"] if compared else [])]
 
 
-def _verdict_row(results: dict[str, Any], name: str) -> tuple[doc.RichText, ...]:
-    verdict = results[f"{name}_verdict"] or "info"
-    part = "decides" if name == "baseline" or name in results["requested"] else "for information"
+def _run_verdict(results: Results, name: str) -> Verdict:
+    """One of the verdicts of a run; `info` if it has none."""
+    verdicts = {
+        "criteria": results.criteria_verdict,
+        "verification": results.verification_verdict,
+        "baseline": results.baseline_verdict,
+    }
+    return verdicts[name] or "info"
+
+
+def _verdict_row(results: Results, name: str) -> tuple[doc.RichText, ...]:
+    verdict = _run_verdict(results, name)
+    part = "decides" if name == "baseline" or name in results.requested else "for information"
     return NAMES[name], doc.VerdictMark(verdict), part, " ".join(_describe_basis(results, name))
 
 
-def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
-    shown = {*results["information"], *(results["verification_only"] if name == "criteria" else ())}
-    cases = [case for case in results["cases"] if case["id"] not in shown and case_verdict(case, name) is not None]
+def _describe_basis(results: Results, name: str) -> Iterator[str]:
+    shown = {*results.information, *(results.verification_only if name == "criteria" else ())}
+    cases = [case for case in results.cases if case.id not in shown and case_verdict(case, name) is not None]
     verdicts = Counter(case_verdict(case, name) for case in cases)
     if not cases:
         yield "No case takes part."
@@ -96,21 +106,21 @@ def _describe_basis(results: dict[str, Any], name: str) -> Iterator[str]:
         passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
         yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}."
     if name == "baseline":
-        yield from dict.fromkeys(describe_comparison(case["baseline"]) for case in cases)
-        others = [case for case in results["cases"] if case["id"] not in shown and case.get("baseline") is None]
+        yield from dict.fromkeys(describe_comparison(case.baseline) for case in cases if case.baseline is not None)
+        others = [case for case in results.cases if case.id not in shown and case.baseline is None]
         if others:
             yield f"{count_noun(len(others), 'case was', 'cases were')} not compared."
         return
-    rows = Counter(row["verdict"] for case in cases for row in list_criteria(case, name))
+    rows = Counter(row.verdict for case in cases for row in list_criteria(case, name))
     counted = sum(rows[verdict] for verdict in ("pass", "fail", "skip"))
     if counted:
         yield f"{rows['pass']} of {counted} counted criteria are inside their limits."
     if name == "verification":
-        for text in dict.fromkeys(case["verification"]["confirmed_by"] for case in cases):
+        for text in dict.fromkeys(case.verification.confirmed_by for case in cases if case.verification is not None):
             yield f"Confirmed by {text}."
 
 
-def verdict_sentences(results: dict[str, Any]) -> list[str]:
+def verdict_sentences(results: Results) -> list[str]:
     """Sentence for the headline on the verdicts; none if there is one only."""
     names = _list_names(results)
     if len(names) == 1:
@@ -118,44 +128,43 @@ def verdict_sentences(results: dict[str, Any]) -> list[str]:
     words = read_words()["verdict"]
     parts = []
     for name in names:
-        note = "" if name == "baseline" or name in results["requested"] else " (for information)"
-        parts.append(f"{SHORT_TITLES[name]}: {words[results[f'{name}_verdict'] or 'info']['word']}{note}")
+        note = "" if name == "baseline" or name in results.requested else " (for information)"
+        parts.append(f"{SHORT_TITLES[name]}: {words[_run_verdict(results, name)]['word']}{note}")
     return [f"{'; '.join(parts)}."]
 
 
-def describe_comparison(comparison: dict[str, Any]) -> str:
+def describe_comparison(comparison: BaselineComparison) -> str:
     """Numbers of compared and of drifted values of a case in one sentence."""
-    values, drifted = comparison["values"], comparison["drifted"]
+    values, drifted = comparison.values, comparison.drifted
     if not values:
-        return f"No value was compared with {comparison['name']}."
-    drift = f"drifted by more than {comparison['drift_pct']:g} % from {comparison['name']}"
+        return f"No value was compared with {comparison.name}."
+    drift = f"drifted by more than {comparison.drift_pct:g} % from {comparison.name}"
     return f"{drifted} of {values} values {drift}, or are missing."
 
 
-def baseline_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
+def baseline_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
     """Section on the drift of a case from its baseline; empty if it was not compared with one."""
-    comparison = case.get("baseline")
+    comparison = case.baseline
     if comparison is None:
         return ()
-    mark = doc.VerdictMark(comparison["verdict"])
+    mark = doc.VerdictMark(comparison.verdict)
     blocks: list[doc.Block] = [doc.Paragraph((mark, f"\N{EN SPACE}{describe_comparison(comparison)}"))]
     if rows := list_criteria(case, "baseline"):
-        blocks += criteria_blocks(case | {"criteria": rows}, anchor, f"{anchor}-baseline-source")
+        blocks += criteria_blocks(rows, anchor, f"{anchor}-baseline-source", case)
     return (doc.Section(NAMES["baseline"], tuple(blocks)),)
 
 
-def verification_blocks(case: dict[str, Any], anchor: str) -> tuple[doc.Block, ...]:
+def verification_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
     """Section on the verification of a case; empty if the case has no converged values."""
-    verification = case["verification"]
+    verification = case.verification
     if verification is None:
         return ()
-    basis = f"\N{EN SPACE}Converged values of the reference simulator, confirmed by {verification['confirmed_by']}."
-    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(verification["verdict"]), basis))]
-    if verification["reason"] and verification["reason"] != case["reason"]:
-        blocks.append(doc.Paragraph(str(verification["reason"])))
-    if verification["criteria"]:
-        rows = case | {"criteria": verification["criteria"]}
-        blocks += criteria_blocks(rows, anchor, f"{anchor}-verification-source")
-    if verification["omitted"]:
-        blocks.append(doc.Section("Without a confirmed value", (doc.BulletList(tuple(verification["omitted"])),)))
+    basis = f"\N{EN SPACE}Converged values of the reference simulator, confirmed by {verification.confirmed_by}."
+    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(verification.verdict), basis))]
+    if verification.reason and verification.reason != case.reason:
+        blocks.append(doc.Paragraph(verification.reason))
+    if verification.criteria:
+        blocks += criteria_blocks(verification.criteria, anchor, f"{anchor}-verification-source", case)
+    if verification.omitted:
+        blocks.append(doc.Section("Without a confirmed value", (doc.BulletList(tuple(verification.omitted)),)))
     return (doc.Section(NAMES["verification"], tuple(blocks)),)

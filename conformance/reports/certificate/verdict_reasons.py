@@ -2,11 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
 
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
-from pantocheck.conformance.reports.certificate.criteria_table import criterion_title, is_close
+from pantocheck.conformance.reports.certificate.criteria_table import criterion_title
 from pantocheck.conformance.reports.certificate.findings_table import count_sentences
 from pantocheck.conformance.reports.certificate.procedure_page import build_procedure_headline
 from pantocheck.conformance.reports.certificate.scope_page import summarise_identity
@@ -14,8 +13,9 @@ from pantocheck.conformance.reports.certificate.two_verdicts import list_criteri
 from pantocheck.conformance.reports.document import BulletList, Section
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_value, replace_minus
 from pantocheck.conformance.reports.words import name_owner, read_words
-from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, is_drift
+from pantocheck.conformance.results.criterion_format import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -34,36 +34,36 @@ CLAUSES = {
 """Parts of the headline by verdict, in the singular and the plural, the worst first."""
 
 
-CaseCriterion = tuple[dict[str, Any], dict[str, Any]]
+CaseCriterion = tuple[CaseResult, Criterion]
 """A case and one of its criteria."""
 
 
-def build_headline(results: dict[str, Any]) -> str:
+def build_headline(results: Results) -> str:
     """The verdict in sentences: passed cases, reasons against a better verdict, and the exceptions of the user."""
-    if "procedure" in results:
-        return build_procedure_headline(results)
-    cases = [case for case in results["cases"] if case["id"] not in results["information"]]
-    verdicts = Counter(case["verdict"] for case in cases)
-    accepted = verdicts["unverified"] if results["system"]["name"] in results["accepted_unverified"] else 0
+    if results.procedure is not None:
+        return build_procedure_headline(results, results.procedure)
+    cases = [case for case in results.cases if case.id not in results.information]
+    verdicts: Counter[str] = Counter(case.verdict for case in cases)
+    accepted = verdicts["unverified"] if results.system.name in results.accepted_unverified else 0
     passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
     pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
-    grades = Counter(row["verdict"] for _, row in pairs if not is_drift(row))
+    grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
     counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
     total = count_noun(len(cases), "case")
     if not cases:
         sentences = ["No case takes part in the verdict."]
-    elif passed == len(cases) and results["verdict"] in ("pass", "unverified"):
+    elif passed == len(cases) and results.verdict in ("pass", "unverified"):
         sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
             if number := verdicts[verdict]:
-                outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if is_drift(pair[1])])
+                outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if pair[1].is_drift])
                 parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
     if accepted:
-        sentences.append(f"Accepted by the user: unverified records of {results['system']['name']}.")
-    if shown := results["information"]:
+        sentences.append(f"Accepted by the user: unverified records of {results.system.name}.")
+    if shown := results.information:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
@@ -72,32 +72,30 @@ def build_headline(results: dict[str, Any]) -> str:
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
     """Numbers of criteria outside their limits and of drifted values, with the largest drift; empty without any."""
     parts = [f"{failed} of {counted} counted criteria outside their limits"] if counted else []
-    if drifted := [pair for pair in drifts if pair[1]["verdict"] == "fail"]:
+    if drifted := [pair for pair in drifts if pair[1].verdict == "fail"]:
         # The margin is the drift in units of the accepted one.
-        case, row = min(drifted, key=lambda pair: pair[1]["margin"] or 0.0)
-        change = (row["reason"] or "").partition(" from ")[0].removeprefix("drifted ")
-        largest = f"{row['quantity']} of {case['id']} {change}".rstrip()
+        case, row = min(drifted, key=lambda pair: pair[1].margin or 0.0)
+        change = (row.reason or "").partition(" from ")[0].removeprefix("drifted ")
+        largest = f"{row.quantity} of {case.id} {change}".rstrip()
         parts.append(f"{count_noun(len(drifted), 'value')} drifted from the baseline, most {largest}")
     return f" ({', '.join(parts)})" if parts else ""
 
 
-def describe_record(case: dict[str, Any]) -> str | None:
+def describe_record(case: CaseResult) -> str | None:
     """The state of the record of a case in one sentence; None without a record."""
-    record = case["record"]
+    record = case.record
     if record is None:
         return None
-    remark = "" if record["demanded"] else " The profile does not demand verification."
-    return f"Record {record['state']}: {record['reason']}.{remark}"
+    remark = "" if record.demanded else " The profile does not demand verification."
+    return f"Record {record.state}: {record.reason}.{remark}"
 
 
-def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
+def list_reasons(results: Results) -> tuple[Section, ...]:
     """Sentences under headings, errors first; a heading without sentences is left out."""
     passed = _select(results, "pass")
-    drifts = [(case, row) for case in results["cases"] for row in select_criteria(results, case) if is_drift(row)]
+    drifts = [(case, row) for case in results.cases for row in select_criteria(results, case) if row.is_drift]
     ranked = [
-        (case, row)
-        for case, row in passed
-        if row["lower"] != row["upper"] and is_relative_margin(row["lower"], row["upper"])
+        (case, row) for case, row in passed if row.lower != row.upper and is_relative_margin(row.lower, row.upper)
     ]
     groups = {
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
@@ -105,9 +103,9 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Drift from the baseline": [_reason(pair) for pair in drifts],
         "Not verified": _record_reasons(results),
-        "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1]["reason"]],
+        "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
         "Closer to a limit than the uncertainty": [
-            _close_value(pair) for pair in _criteria(results) if is_close(pair[1])
+            _close_value(pair) for pair in _criteria(results) if pair[1].is_close
         ],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],
@@ -117,10 +115,10 @@ def list_reasons(results: dict[str, Any]) -> tuple[Section, ...]:
     )
 
 
-def count_incomplete(results: dict[str, Any]) -> str | None:
+def count_incomplete(results: Results) -> str | None:
     """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
-    counted = [pair for pair in _criteria(results) if pair[1]["verdict"] in ("pass", "fail")]
-    missing = [list_missing(case["uncertainty_basis"], row["uncertainty"], row["trust"]) for case, row in counted]
+    counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "fail")]
+    missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]
     number = sum(map(bool, missing))
     if not number:
         return None
@@ -132,11 +130,11 @@ def count_incomplete(results: dict[str, Any]) -> str | None:
     )
 
 
-def summarise_case(case: dict[str, Any]) -> str:
+def summarise_case(case: CaseResult) -> str:
     """The verdict of one case in one sentence."""
-    if case["reason"]:
-        return str(case["reason"])
-    verdicts = Counter(criterion["verdict"] for criterion in list_criteria(case, "criteria"))
+    if case.reason:
+        return case.reason
+    verdicts = Counter(criterion.verdict for criterion in list_criteria(case, "criteria"))
     words = read_words()["verdict"]
     parts = [
         f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'with a limit that does not count'}"
@@ -150,45 +148,45 @@ def summarise_case(case: dict[str, Any]) -> str:
     )
 
 
-def _criteria(results: dict[str, Any]) -> Iterator[CaseCriterion]:
+def _criteria(results: Results) -> Iterator[CaseCriterion]:
     """Criteria of the verdicts that decide, without those of drift."""
-    return ((case, row) for case in results["cases"] for row in select_criteria(results, case) if not is_drift(row))
+    return ((case, row) for case in results.cases for row in select_criteria(results, case) if not row.is_drift)
 
 
-def _select(results: dict[str, Any], verdict: str) -> list[CaseCriterion]:
+def _select(results: Results, verdict: str) -> list[CaseCriterion]:
     """Criteria with one verdict, the smallest margin first."""
-    pairs = [pair for pair in _criteria(results) if pair[1]["verdict"] == verdict]
-    return sorted(pairs, key=lambda pair: pair[1]["margin"] or 0.0)
+    pairs = [pair for pair in _criteria(results) if pair[1].verdict == verdict]
+    return sorted(pairs, key=lambda pair: pair[1].margin or 0.0)
 
 
-def _case_reasons(results: dict[str, Any], verdict: str) -> list[str]:
+def _case_reasons(results: Results, verdict: str) -> list[str]:
     """Reasons of cases; cases with the same reason share a sentence."""
     cases: dict[str, list[str]] = {}
-    for case in results["cases"]:
-        if case["verdict"] == verdict and case["reason"]:
-            cases.setdefault(case["reason"], []).append(case["id"])
+    for case in results.cases:
+        if case.verdict == verdict and case.reason:
+            cases.setdefault(case.reason, []).append(case.id)
     return [f"{', '.join(ids)}: {reason}" for reason, ids in cases.items()]
 
 
-def _record_reasons(results: dict[str, Any]) -> list[str]:
-    cases = [case for case in results["cases"] if case["record"] and case["record"]["state"] == "unverified"]
-    return [f"{case['id']}: {describe_record(case)}" for case in cases]
+def _record_reasons(results: Results) -> list[str]:
+    cases = [case for case in results.cases if case.record and case.record.state == "unverified"]
+    return [f"{case.id}: {describe_record(case)}" for case in cases]
 
 
 def _value(pair: CaseCriterion) -> str:
     case, criterion = pair
-    value, limits = format_beside_limits(criterion["value"], criterion["lower"], criterion["upper"])
-    shown = format_criterion_margin(*(criterion[key] for key in ("margin", "lower", "upper", "unit")))
-    margin = "" if criterion["margin"] is None else f", margin {replace_minus(shown)}"
-    text = f"{_subject(case, criterion)}: {value} {criterion['unit']}".rstrip()
+    value, limits = format_beside_limits(criterion.value, criterion.lower, criterion.upper)
+    shown = format_criterion_margin(criterion.margin, criterion.lower, criterion.upper, criterion.unit)
+    margin = "" if criterion.margin is None else f", margin {replace_minus(shown)}"
+    text = f"{_subject(case, criterion)}: {value} {criterion.unit}".rstrip()
     return f"{text}, limits {limits}{margin}."
 
 
 def _close_value(pair: CaseCriterion) -> str:
     """A value and its limits with its uncertainty, which is the reason why it is close."""
     case, row = pair
-    uncertainty, unit = row["uncertainty"], row["unit"]
-    missing = list_missing(case["uncertainty_basis"], uncertainty, row["trust"])
+    uncertainty, unit = row.uncertainty, row.unit
+    missing = list_missing(case.uncertainty_basis, uncertainty, row.trust)
     if uncertainty is None:
         return _value(pair)
     width = f"{mark_half_width(uncertainty, format_value(uncertainty, 2), missing, '± ')} {unit}".rstrip()
@@ -197,9 +195,9 @@ def _close_value(pair: CaseCriterion) -> str:
 
 def _reason(pair: CaseCriterion) -> str:
     case, criterion = pair
-    return f"{_subject(case, criterion)}: {criterion['reason'] or 'no reason given'}"
+    return f"{_subject(case, criterion)}: {criterion.reason or 'no reason given'}"
 
 
-def _subject(case: dict[str, Any], criterion: dict[str, Any]) -> str:
-    verification = ", verification" if criterion["trust"] == "computed" else ""
-    return f"{case['id']}, {name_owner(criterion)}, {criterion_title(criterion)}{verification}"
+def _subject(case: CaseResult, criterion: Criterion) -> str:
+    verification = ", verification" if criterion.trust == "computed" else ""
+    return f"{case.id}, {name_owner(criterion)}, {criterion_title(criterion)}{verification}"

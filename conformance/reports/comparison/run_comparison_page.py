@@ -45,8 +45,7 @@ def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
     blocks: list[doc.Block] = []
     if owner.charts:
         figures = (
-            doc.Figure(draw_chart(chart.model_dump()), chart.alternative, chart.caption, chart.wide)
-            for chart in owner.charts
+            doc.Figure(draw_chart(chart), chart.alternative, chart.caption, chart.wide) for chart in owner.charts
         )
         blocks.append(doc.Figures(tuple(figures)))
     if owner.reasons:

@@ -24,26 +24,18 @@ LONGEST_MASS_NAME = 14
 
 @dataclass(frozen=True)
 class DrawnChain:
-    """Chain of masses from base to head.
-
-    Parameters
-    ----------
-    masses, stiffness, damping : tuple of float
-        Masses [kg], and spring [N/m] and damper [N s/m] below each of them.
-    names : tuple of str
-        Name of each mass.
-    lifted : int
-        Index of the mass on which the uplift force acts.
-    contact_stiffness : float
-        Stiffness of the contact [N/m].
-    """
+    """Chain of masses from base to head."""
 
     masses: tuple[float, ...]
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
+    """Masses [kg], and spring [N/m] and damper [N s/m] below each of them."""
     names: tuple[str, ...]
+    """Name of each mass."""
     lifted: int
+    """Index of the mass on which the uplift force acts."""
     contact_stiffness: float
+    """Stiffness of the contact [N/m]."""
 
 
 @render_svg

@@ -1,7 +1,8 @@
 """Schematic of a mass drop: supports, wires, sensors and masses along the line, without a scale of the heights."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,9 +22,18 @@ NAME_OFFSET = 0.16
 """Distance of a text from its point in the drawing."""
 
 
+@dataclass(frozen=True)
+class DrawnPlace:
+    """Sensor or mass on a wire: its text, wire, and position [m]."""
+
+    label: str
+    wire: str
+    position_m: float
+
+
 @render_svg
-def draw_drop_layout(spans: list[float], sensors: list[dict[str, Any]], masses: list[dict[str, Any]]) -> Figure:
-    """Wires over spans [m]; sensors stand above and masses below their wires (`label`, `wire`, `position_m`)."""
+def draw_drop_layout(spans: Sequence[float], sensors: Sequence[DrawnPlace], masses: Sequence[DrawnPlace]) -> Figure:
+    """Wires over spans [m]; sensors stand above and masses below their wires."""
     figure, panels = add_panels(PanelGrid(FULL, 1.1, left=0.15, right=0.15, top=0.02))
     axes = panels[0][0]
     supports = np.concatenate([[0.0], np.cumsum(spans)])
@@ -39,19 +49,19 @@ def draw_drop_layout(spans: list[float], sensors: list[dict[str, Any]], masses: 
     axes.set(xlim=(supports[0] - 2, supports[-1] + 2), ylim=(-0.7, 1.4), xlabel="position along the line [m]")
     axes.set_xticks(supports, [f"{x:g}" for x in supports])
     axes.set_yticks([])
-    axes.spines["left"].set_visible(False)
+    axes.spines.left.set_visible(False)
     return figure
 
 
-def _draw_points(axes: Axes, supports: RealArray, points: list[dict[str, Any]], marker: str, offset: float) -> None:
+def _draw_points(axes: Axes, supports: RealArray, points: Sequence[DrawnPlace], marker: str, offset: float) -> None:
     for point in points:
-        x = np.array([point["position_m"]])
-        height = float(_messenger_height(x, supports)[0]) if point["wire"] == "MW" else 0.0
+        x = np.array([point.position_m])
+        height = float(_messenger_height(x, supports)[0]) if point.wire == "MW" else 0.0
         # A mass hangs below its wire.
         axes.plot(x, [height - 0.1 * (marker == "v")], marker, color=INK, markersize=6 if marker == "v" else 4)
         side = "bottom" if offset > 0 else "top"
         ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
-        axes.text(x[0], height + offset, point["label"], ha="center", va=side, size=7, bbox=ground)
+        axes.text(x[0], height + offset, point.label, ha="center", va=side, size=7, bbox=ground)
 
 
 def _messenger_height(x: RealArray, supports: RealArray) -> RealArray:

@@ -28,6 +28,9 @@ FULL, HALF = 6.9, 3.4
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
+PlotStyle = dict[str, Any]
+"""Keyword arguments of a drawing function of matplotlib."""
+
 Arguments = ParamSpec("Arguments")
 Content = TypeVar("Content")
 
@@ -62,12 +65,9 @@ def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
 def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Content]) -> bytes:
     """Render figures in the common style as the pages of a PDF; equal figures give equal bytes.
 
-    Parameters
-    ----------
-    paint : callable
-        Function that paints one page.
-    contents : iterable
-        Argument of the function for each page.
+    Args:
+        paint: Function that paints one page.
+        contents: Argument of the function for each page.
     """
     # Imported here: it takes 0.3 s, which a certificate does not need.
     from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages

@@ -8,30 +8,22 @@ from matplotlib.figure import Figure
 
 @dataclass(frozen=True)
 class PanelGrid:
-    """Sizes of a grid of panels [in].
-
-    Parameters
-    ----------
-    width, height : float
-        Width of the figure, and height of one panel.
-    rows, columns : int
-        Number of panels below and beside each other.
-    left, right, bottom, top : float
-        Margins around the grid; the legend stands in the upper one.
-    between_rows, between_columns : float
-        Gaps between the panels.
-    """
+    """Sizes of a grid of panels [in]."""
 
     width: float
     height: float
+    """Width of the figure, and height of one panel."""
     rows: int = 1
     columns: int = 1
+    """Number of panels below and beside each other."""
     left: float = 0.6
     right: float = 0.1
     bottom: float = 0.42
     top: float = 0.28
+    """Margins around the grid; the legend stands in the upper one."""
     between_rows: float = 0.3
     between_columns: float = 0.55
+    """Gaps between the panels."""
 
     @property
     def total_height(self) -> float:
@@ -48,11 +40,7 @@ class PanelGrid:
 def add_panels(grid: PanelGrid) -> tuple[Figure, list[list[Axes]]]:
     """Add a grid of panels to a new figure.
 
-    Returns
-    -------
-    Figure
-        The figure.
-    list of list of Axes
+    Returns:
         The panels, row by row from the upper left.
     """
     figure = Figure(figsize=(grid.width, grid.total_height))

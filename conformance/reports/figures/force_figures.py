@@ -1,7 +1,6 @@
 """Contact force over the track, its spectrum and its histogram."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,10 +15,14 @@ from pantocheck.conformance.reports.figures.figure_style import (
     LIMIT_FILL,
     PALE,
     SHADES,
+    PlotStyle,
     add_legend,
     render_svg,
 )
 from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.figure_data import Histogram, Traces
+from pantocheck.conformance.results.results_part import Number, select_single
 
 # Levels of the force whose limits are drawn beside it, in this order, under short names.
 FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
@@ -28,7 +31,7 @@ FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.item
 MOST_SUPPORT_TICKS = 12
 """Largest number of supports whose positions are the ticks of the track."""
 
-REFERENCE_STYLE: dict[str, Any] = {
+REFERENCE_STYLE: PlotStyle = {
     "color": INK,
     "linewidth": 1.1,
     "linestyle": (0, (3, 1.5)),
@@ -38,17 +41,13 @@ REFERENCE_STYLE: dict[str, Any] = {
 
 
 @render_svg
-def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]], reference: list[float]) -> Figure:
+def draw_force(trace: Traces, limited: Sequence[Criterion], reference: list[float]) -> Figure:
     """Contact force of one pantograph; on the right, its limits.
 
-    Parameters
-    ----------
-    trace : dict
-        Entry of `traces` in results.json.
-    limited : list of dict
-        Criteria of `select_limited`.
-    reference : list of float
-        Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
+    Args:
+        trace: Entry of `traces` in results.json.
+        limited: Criteria of `select_limited`.
+        reference: Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
     """
     figure = Figure(figsize=(FULL, 2.25))
     if limited:
@@ -56,66 +55,66 @@ def draw_force(trace: dict[str, Any], limited: list[dict[str, Any]], reference: 
         _draw_limits(right, limited)
     else:
         left = figure.subplots()
-    position = trace["position_m"]
-    if trace["force_N"]:
-        left.plot(position, trace["force_N"], color=GREY, linewidth=0.6, label="unfiltered")
+    position = trace.position_m
+    if trace.force_N:
+        left.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
     if reference:
         left.plot(position, reference, **REFERENCE_STYLE)
-    if trace["force_20_N"]:
-        left.plot(position, trace["force_20_N"], color=INK, linewidth=1.2, label="0–20 Hz")
+    if trace.force_20_N:
+        left.plot(position, trace.force_20_N, color=INK, linewidth=1.2, label="0–20 Hz")
     _draw_levels(left.axhline, trace)
-    for number, support in enumerate(trace["supports_m"]):
+    for number, support in enumerate(trace.supports_m):
         left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
     left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
-    if 1 < len(trace["supports_m"]) <= MOST_SUPPORT_TICKS:
-        left.set_xticks(trace["supports_m"], [f"{support:g}" for support in trace["supports_m"]])
+    if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
+        left.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
     add_legend(left, 3 if reference else 5)
     return figure
 
 
-def select_limited(criteria: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def select_limited(criteria: Sequence[Criterion]) -> list[Criterion]:
     """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LEVELS`."""
     return [
         row
         for name in FORCE_LEVELS
         for row in criteria
-        if row["quantity"] == name and (row["lower"] is not None or row["upper"] is not None)
+        if row.quantity == name and (row.lower is not None or row.upper is not None)
     ]
 
 
-def _draw_limits(axes: Axes, rows: list[dict[str, Any]]) -> None:
+def _draw_limits(axes: Axes, rows: Sequence[Criterion]) -> None:
     """One column per statistic: its limits as a bar, its value as a disc, cross or ring."""
     for column, row in enumerate(rows):
-        lower, upper = row["lower"], row["upper"]
+        lower, upper = row.lower, row.upper
         bounds = [limit for limit in (lower, upper) if limit is not None]
-        if len(bounds) == 2:
+        if lower is not None and upper is not None:
             axes.fill_between([column - 0.32, column + 0.32], lower, upper, color=LIMIT_FILL, linewidth=0)
         axes.hlines(bounds, column - 0.36, column + 0.36, color=INK, linewidth=1.2)
         if len(bounds) == 1:  # an arrow from the only limit into the permitted side
             arrow = {"arrowstyle": "<-", "color": INK, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
             tip = (0, 16 if upper is None else -16)
             axes.annotate("", (column, bounds[0]), xytext=tip, textcoords="offset points", arrowprops=arrow)
-        if row["value"] is not None:
-            marker, face = {"pass": ("o", INK), "fail": ("X", INK)}.get(row["verdict"], ("o", "white"))
-            axes.plot(column, row["value"], marker, color=INK, markerfacecolor=face, markersize=5)
+        if row.value is not None:
+            marker, face = {"pass": ("o", INK), "fail": ("X", INK)}.get(row.verdict, ("o", "white"))
+            axes.plot(column, row.value, marker, color=INK, markerfacecolor=face, markersize=5)
     axes.set(xlim=(-0.7, len(rows) - 0.3), xlabel="limits")
-    axes.set_xticks(range(len(rows)), [FORCE_LEVELS[row["quantity"]] for row in rows])
+    axes.set_xticks(range(len(rows)), [FORCE_LEVELS[row.quantity] for row in rows])
     axes.tick_params(axis="both", length=0, labelleft=False)
-    axes.spines["left"].set_visible(False)
+    axes.spines.left.set_visible(False)
 
 
 @render_svg
-def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
+def draw_spectrum(trace: Traces, quantities: Mapping[str, Number]) -> Figure:
     """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS."""
-    frequency, amplitude = trace["spectrum"]["frequency_Hz"], trace["spectrum"]["amplitude_N"]
+    frequency, amplitude = trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N
     figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
-    above: dict[str, Any] = {"va": "bottom", "fontsize": 7}
+    above: PlotStyle = {"va": "bottom", "fontsize": 7}
     for number, (low, high, quantity) in enumerate(BANDS):
         axes.axvspan(low, high, color=PALE if number % 2 == 0 else "white", zorder=0)
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
-        rms = quantities.get(quantity)
+        rms = select_single(quantities.get(quantity))
         text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
         axes.text((low + high) / 2, 1.02, text, ha="center", transform=axes.get_xaxis_transform(), **above)
     axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", transform=axes.transAxes, **above)
@@ -125,14 +124,14 @@ def draw_spectrum(trace: dict[str, Any], quantities: dict[str, Any]) -> Figure:
 
 
 @render_svg
-def draw_histogram(trace: dict[str, Any]) -> Figure:
+def draw_histogram(trace: Traces, histogram: Histogram) -> Figure:
     """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
-    edges, share = trace["histogram"]["edges_N"], trace["histogram"]["share_pct"]
+    edges, share = histogram.edges_N, histogram.share_pct
     figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
     axes.set_ylim(0, 1.08 * max(share))
     axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)
-    if trace["std_N"] is not None:
+    if trace.std_N is not None:
         _draw_levels(axes.axvline, trace)
         axes.margins(x=0.04)
         add_legend(axes)
@@ -140,9 +139,9 @@ def draw_histogram(trace: dict[str, Any]) -> Figure:
     return figure
 
 
-def _draw_levels(draw_line: Callable[..., object], trace: dict[str, Any]) -> None:
+def _draw_levels(draw_line: Callable[..., object], trace: Traces) -> None:
     """The mean and mean plus and minus three standard deviations, if they are known."""
-    mean, std = trace["mean_N"], trace["std_N"]
+    mean, std = trace.mean_N, trace.std_N
     if std is not None:
         draw_line(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
         for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):

@@ -1,20 +1,21 @@
 """Spectral lines in the half-power band of each mode over frequency."""
 
-from typing import Any
+from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
+from pantocheck.conformance.identification.mode import Mode
 from pantocheck.conformance.reports.figures.figure_style import FULL, INK, LIMIT_LINE, SHADES, render_svg
 from pantocheck.conformance.reports.figures.fixed_panels import add_panel
 
 
 @render_svg
-def draw_half_power(modes: list[dict[str, Any]], recommended: int) -> Figure:
+def draw_half_power(modes: Sequence[Mode], recommended: int) -> Figure:
     """Number of spectral lines over frequency; open markers: uncertain or lateral modes; dashed: recommended number."""
     figure, axes = add_panel(FULL, 1.7)
     for reliable, face in ((True, SHADES[1]), (False, "white")):
-        shown = [mode for mode in modes if (mode["certain"] and not mode["lateral"]) == reliable]
-        points = [(mode["frequency_Hz"], mode["half_power_points"]) for mode in shown if mode["half_power_points"]]
+        shown = [mode for mode in modes if (mode.certain and not mode.lateral) == reliable]
+        points = [(mode.frequency_Hz, mode.half_power_points) for mode in shown if mode.half_power_points]
         if points:
             label = "certain mode" if reliable else "uncertain or lateral mode"
             axes.plot(*zip(*points, strict=True), "o", color=INK, markerfacecolor=face, markersize=3.5, label=label)

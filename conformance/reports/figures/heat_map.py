@@ -8,24 +8,25 @@ from matplotlib.figure import Figure
 
 from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.reports.figures.figure_style import FULL, INK, LIMIT_LINE, render_svg
+from pantocheck.conformance.results.campaign_format import ValueMap
 
 MAP_COLOURS = "Greys"
 """Colour map that paper and every eye can tell apart."""
 
 
 @render_svg
-def draw_map(data: dict[str, Any]) -> Figure:
+def draw_map(data: ValueMap) -> Figure:
     """A map of campaign.json: one cell per run, white where there is none; dashed: the limit between the cells."""
     figure = Figure(figsize=(FULL, 3.2))
     axes = figure.subplots()
-    x, y = np.array(data["x"]), np.array(data["y"])
-    values = np.ma.masked_invalid(np.array(data["values"], float))
+    x, y = np.array(data.x), np.array(data.y)
+    values = np.ma.masked_invalid(np.array(data.values, float))
     mesh = axes.pcolormesh(x, y, values, shading="nearest", cmap=MAP_COLOURS, rasterized=False)
-    figure.colorbar(mesh, ax=axes, label=data["value_label"])
-    for bound in (data["lower"], data["upper"]):
+    figure.colorbar(mesh, ax=axes, label=data.value_label)
+    for bound in (data.lower, data.upper):
         if bound is not None:
             _draw_limit(axes, x, y, values, bound)
-    axes.set(xlabel=data["x_label"], ylabel=data["y_label"])
+    axes.set(xlabel=data.x_label, ylabel=data.y_label)
     return figure
 
 

@@ -1,5 +1,7 @@
 """Mode shapes: one row per mode along the line, with the values at the sensors and, if known, the computed shape."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -7,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pantocheck.conformance.reports.figures.figure_style import FULL, INK, SHADES, render_svg
+from pantocheck.conformance.identification.damping.damping_format import MeasuredDeflection, WireShape
+from pantocheck.conformance.reports.figures.figure_style import FULL, INK, SHADES, PlotStyle, render_svg
 from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels
 
 DRAWN_AMPLITUDE = 0.42
@@ -23,19 +26,32 @@ CURVE_STYLES: dict[str, tuple[Any, str, float]] = {"MW": ("--", SHADES[1], 0.8),
 """Line style, colour and width of a computed shape by its wire."""
 
 
+@dataclass(frozen=True)
+class ShapeRow:
+    """Shape of one mode, whose largest value is 1."""
+
+    label: str
+    sensors: Sequence[MeasuredDeflection]
+    curves: Sequence[WireShape] = ()
+
+
+@dataclass(frozen=True)
+class ShapeColumn:
+    """Shapes of one group of modes."""
+
+    title: str
+    rows: Sequence[ShapeRow]
+
+
 @render_svg
-def draw_shapes(columns: list[dict[str, Any]], supports: list[float]) -> Figure:
+def draw_shapes(columns: Sequence[ShapeColumn], supports: Sequence[float]) -> Figure:
     """Mode shapes of several groups of modes side by side.
 
-    Parameters
-    ----------
-    columns : list of dict
-        Groups with `title` and `rows`. Each row has `label`, `sensors` (`wire`, `position_m`, `value`) and `curves`
-        (`wire`, `position_m`, `value`); the largest value of a row is 1.
-    supports : list of float
-        Positions of the supports [m]; empty: unknown.
+    Args:
+        columns: Groups of modes.
+        supports: Positions of the supports [m]; empty: unknown.
     """
-    count = max(len(column["rows"]) for column in columns)
+    count = max(len(column.rows) for column in columns)
     grid = PanelGrid(
         FULL, ROW_HEIGHT * count, columns=len(columns), left=0.75, right=0.15, top=0.45, between_columns=0.9
     )
@@ -49,16 +65,16 @@ def draw_shapes(columns: list[dict[str, Any]], supports: list[float]) -> Figure:
     return figure
 
 
-def _draw_column(axes: Axes, column: dict[str, Any], count: int, supports: list[float]) -> None:
-    rows = column["rows"]
+def _draw_column(axes: Axes, column: ShapeColumn, count: int, supports: Sequence[float]) -> None:
+    rows = column.rows
     for level, row in zip(_list_levels(rows), rows, strict=True):
-        for curve in row["curves"]:
-            style, shade, width = CURVE_STYLES.get(curve["wire"], CURVE_STYLES["CW"])
-            values = level + DRAWN_AMPLITUDE * np.array(curve["value"])
-            axes.plot(curve["position_m"], values, style, color=shade, linewidth=width)
-    for wire in sorted({sensor["wire"] for row in rows for sensor in row["sensors"]}):
+        for curve in row.curves:
+            style, shade, width = CURVE_STYLES.get(curve.wire, CURVE_STYLES["CW"])
+            values = level + DRAWN_AMPLITUDE * np.array(curve.value)
+            axes.plot(curve.position_m, values, style, color=shade, linewidth=width)
+    for wire in sorted({sensor.wire for row in rows for sensor in row.sensors}):
         _draw_sensors(axes, rows, wire)
-    axes.set_yticks(_list_levels(rows), [row["label"] for row in rows])
+    axes.set_yticks(_list_levels(rows), [row.label for row in rows])
     axes.set_ylim(-count + 0.45, 0.55)
     axes.tick_params(axis="y", length=0)
     if supports:
@@ -67,46 +83,46 @@ def _draw_column(axes: Axes, column: dict[str, Any], count: int, supports: list[
     else:
         axes.margins(x=0.05)
     axes.grid(color=SHADES[2])
-    axes.set_title(column["title"], fontsize=8, loc="left", pad=3)
+    axes.set_title(column.title, fontsize=8, loc="left", pad=3)
     axes.set_xlabel("position along the line [m]")
 
 
-def _list_levels(rows: list[dict[str, Any]]) -> list[int]:
+def _list_levels(rows: Sequence[ShapeRow]) -> list[int]:
     """Heights of the rows in the drawing, from the top."""
     return [-number for number in range(len(rows))]
 
 
-def _draw_sensors(axes: Axes, rows: list[dict[str, Any]], wire: str) -> None:
+def _draw_sensors(axes: Axes, rows: Sequence[ShapeRow], wire: str) -> None:
     """Values at the sensors of one wire in all rows, with stems."""
     points = [
-        (sensor["position_m"], level, level + DRAWN_AMPLITUDE * sensor["value"])
+        (sensor.position_m, level, level + DRAWN_AMPLITUDE * sensor.value)
         for level, row in zip(_list_levels(rows), rows, strict=True)
-        for sensor in row["sensors"]
-        if sensor["wire"] == wire
+        for sensor in row.sensors
+        if sensor.wire == wire
     ]
     places, levels, values = np.transpose(points)
     axes.vlines(places, levels, values, color=INK, linewidth=0.8)
     axes.plot(places, values, **_choose_marker(wire))
 
 
-def _choose_marker(wire: str) -> dict[str, Any]:
+def _choose_marker(wire: str) -> PlotStyle:
     """Properties of the marker of a sensor."""
     marker = SENSOR_MARKERS.get(wire, "o")
     face = "white" if marker == "s" else INK
     return {"linestyle": "", "marker": marker, "color": INK, "markerfacecolor": face, "markersize": 4}
 
 
-def _list_handles(columns: list[dict[str, Any]]) -> list[Line2D]:
+def _list_handles(columns: Sequence[ShapeColumn]) -> list[Line2D]:
     """Entries of the legend for the wires that occur."""
-    rows = [row for column in columns for row in column["rows"]]
-    sensors = {sensor["wire"] for row in rows for sensor in row["sensors"]}
-    curves = {curve["wire"] for row in rows for curve in row["curves"]}
+    rows = [row for column in columns for row in column.rows]
+    sensors = {sensor.wire for row in rows for sensor in row.sensors}
+    curves = {curve.wire for row in rows for curve in row.curves}
     handles = [
         Line2D([], [], linestyle=style, color=shade, linewidth=width, label=f"computed, {wire}")
         for wire, (style, shade, width) in reversed(CURVE_STYLES.items())
         if wire in curves
     ]
     for wire in sorted(sensors):
-        marker: dict[str, Any] = {"label": f"measured, {wire}" if wire else "measured", **_choose_marker(wire)}
+        marker: PlotStyle = {"label": f"measured, {wire}" if wire else "measured", **_choose_marker(wire)}
         handles.append(Line2D([], [], **marker))
     return handles

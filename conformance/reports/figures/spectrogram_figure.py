@@ -1,12 +1,13 @@
 """Spectrogram of a drop: whole record and first seconds, with the release and the limits of the linear decay."""
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from pantocheck.conformance.identification.identification_format import Spectrogram, SpectrogramPart
 from pantocheck.conformance.reports.figures.figure_style import FULL, INK, render_svg
 from pantocheck.conformance.reports.figures.fixed_panels import PanelGrid, add_panels
 
@@ -21,23 +22,19 @@ SCALE_WIDTH, SCALE_GAP = 0.12, 0.12
 
 
 @render_svg
-def draw_spectrogram(data: dict[str, Any], marks: dict[str, float], limits: tuple[float, float]) -> Figure:
+def draw_spectrogram(data: Spectrogram, marks: dict[str, float], limits: tuple[float, float]) -> Figure:
     """Levels over time and frequency.
 
-    Parameters
-    ----------
-    data : dict
-        Entry `spectrogram` of a line.
-    marks : dict of str to float
-        Times after the release that are marked, by their names [s].
-    limits : tuple of float
-        Start and end of the record after the release [s].
+    Args:
+        data: Entry `spectrogram` of a line.
+        marks: Times after the release that are marked, by their names [s].
+        limits: Start and end of the record after the release [s].
     """
     grid = PanelGrid(FULL, 1.6, columns=2, right=0.85, between_columns=0.5)
     figure, panels = add_panels(grid)
     whole, start = panels[0]
-    _draw_levels(whole, data["whole"])
-    _draw_levels(start, data["start"])
+    _draw_levels(whole, data.whole)
+    _draw_levels(start, data.start)
     whole.set_xlim(*limits)
     for axes in (whole, start):
         _draw_marks(axes, marks)
@@ -52,19 +49,19 @@ def draw_spectrogram(data: dict[str, Any], marks: dict[str, float], limits: tupl
     return figure
 
 
-def _draw_levels(axes: Axes, part: dict[str, Any]) -> None:
+def _draw_levels(axes: Axes, part: SpectrogramPart) -> None:
     """Levels as an image of one pixel per value, whose centres lie at the times and frequencies."""
     axes.imshow(
-        np.array(part["level_dB"], dtype=np.float64).T,
+        np.array(part.level_dB, dtype=np.float64).T,
         cmap="Greys",
         vmin=SHOWN_LEVELS[0],
         vmax=SHOWN_LEVELS[1],
         aspect="auto",
         origin="lower",
         interpolation="none",
-        extent=(*_find_edges(part["time_s"]), *_find_edges(part["frequency_Hz"])),
+        extent=(*_find_edges(part.time_s), *_find_edges(part.frequency_Hz)),
     )
-    axes.set_ylim(0, part["frequency_Hz"][-1])
+    axes.set_ylim(0, part.frequency_Hz[-1])
     axes.grid(visible=False)
 
 

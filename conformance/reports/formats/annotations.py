@@ -4,13 +4,13 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from pantocheck.conformance.reports.certificate.scope_page import prepare_results
 from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
 from pantocheck.conformance.reports.formats.graded_tests import GradedTest, list_case_tests, list_step_tests
-from pantocheck.conformance.results.criterion_format import is_drift
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
+from pantocheck.conformance.results.results_format import Results
 
 Severity = Literal["error", "warning"]
 
@@ -23,69 +23,55 @@ WORKSPACE_VARIABLES = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")
 
 @dataclass(frozen=True)
 class Annotation:
-    """Remark at a line of a file.
-
-    Parameters
-    ----------
-    severity : str
-        `error` or `warning`.
-    group : str
-        Id of the case, or step of the procedure.
-    name : str
-        Name of the criterion in its group.
-    text : str
-        Value, limits and reason.
-    place : FilePlace or None
-        File and line; None: not known.
-    """
+    """Remark at a line of a file."""
 
     severity: Severity
+    """`error` or `warning`."""
     group: str
+    """Id of the case, or step of the procedure."""
     name: str
+    """Name of the criterion in its group."""
     text: str
+    """Value, limits and reason."""
     place: FilePlace | None
+    """File and line; None: not known."""
 
 
-def list_annotations(results: dict[str, Any], places: ReportPlaces) -> list[Annotation]:
+def list_annotations(results: Results, places: ReportPlaces) -> list[Annotation]:
     """Annotations of a run, errors first.
 
-    Parameters
-    ----------
-    results : dict
-        results.json as a dictionary.
-    places : ReportPlaces
-        Places of the cases and limits in the files of the user.
+    Args:
+        results: Results of a run.
+        places: Places of the cases and limits in the files of the user.
 
-    Returns
-    -------
-    list of Annotation
+    Returns:
         One per criterion, case, record or step that keeps the run from passing. If there is none, and the run does not
         pass, one with the headline.
     """
     found = sorted(_list_unpassed(results, places), key=lambda annotation: annotation.severity == "warning")
-    if found or results["verdict"] == "pass":
+    if found or results.verdict == "pass":
         return found
     prepared = prepare_results(results)
-    return [Annotation("warning", "pantocheck", str(results["verdict"]), build_headline(prepared), places.default)]
+    return [Annotation("warning", "pantocheck", str(results.verdict), build_headline(prepared), places.default)]
 
 
-def _list_unpassed(results: dict[str, Any], places: ReportPlaces) -> Iterator[Annotation]:
+def _list_unpassed(results: Results, places: ReportPlaces) -> Iterator[Annotation]:
     prepared = prepare_results(results)
     for tests in list_step_tests(prepared):
         yield from (_annotate(test, places.default) for test in tests if test.verdict in SEVERITIES)
-    for stated, case in zip(results["cases"], prepared["cases"], strict=True):
+    for stated, case in zip(results.cases, prepared.cases, strict=True):
         for test in list_case_tests(case, prepared):
             if test.verdict in SEVERITIES:
-                yield _annotate(test, _find_place(test, stated["id"], places))
+                yield _annotate(test, _find_place(test, stated.id, places))
 
 
 def _find_place(test: GradedTest, case_id: str, places: ReportPlaces) -> FilePlace | None:
     row = test.criterion
-    if row is None or row["trust"] == "computed":
+    if row is None or row.trust == "computed":
         return places.find_case(case_id)
-    if is_drift(row):
+    if row.is_drift:
         return places.find_baseline(case_id)
-    return places.find_limit(case_id, row["quantity"], row["pantograph"], row["item"])
+    return places.find_limit(case_id, row.quantity, row.pantograph, row.item)
 
 
 def _annotate(test: GradedTest, place: FilePlace | None) -> Annotation:

@@ -1,12 +1,11 @@
 """A badge for a README as SVG."""
 
 from collections import Counter
-from typing import Any
 from xml.sax.saxutils import escape
 
 from pantocheck.conformance.reports.certificate.two_verdicts import select_criteria
 from pantocheck.conformance.reports.words import read_words
-from pantocheck.conformance.results.criterion_format import is_drift
+from pantocheck.conformance.results.results_format import Results
 
 LABEL = "EN 50318 style"
 COLOURS = {
@@ -21,32 +20,32 @@ LETTER, MARGIN = 6.6, 8
 """Width of a letter and margin beside the text [px]; every font is fitted to these widths."""
 
 
-def summarise_verdict(results: dict[str, Any]) -> str:
+def summarise_verdict(results: Results) -> str:
     """Verdict with the numbers of passed and of counted criteria; a drift and a modified library case are named.
 
     With a procedure, the numbers are those of its required steps.
     """
-    if "procedure" in results:
-        required = [step["verdict"] for step in results["procedure"]["steps"] if step["required"]]
-        word = read_words()["verdict"][results["verdict"]]["word"].lower()
+    if results.procedure is not None:
+        required = [step.verdict for step in results.procedure.steps if step.required]
+        word = read_words()["verdict"][results.verdict]["word"].lower()
         return f"{word} {required.count('pass')}/{len(required)} steps"
-    rows = [row for case in results["cases"] for row in select_criteria(results, case)]
-    verdicts = Counter(row["verdict"] for row in rows if not is_drift(row))
+    rows = [row for case in results.cases for row in select_criteria(results, case)]
+    verdicts = Counter(row.verdict for row in rows if not row.is_drift)
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
-    word = read_words()["verdict"][results["verdict"]]["word"].lower()
+    word = read_words()["verdict"][results.verdict]["word"].lower()
     text = f"{word} {verdicts['pass']}/{counted}" if counted else word
-    if (baseline := results.get("baseline_verdict", "pass")) != "pass":
+    if (baseline := results.baseline_verdict) not in (None, "pass"):
         text += f", baseline {read_words()['verdict'][baseline]['word'].lower()}"
-    return f"{text}, modified copy" if any(case["library"] == "modified" for case in results["cases"]) else text
+    return f"{text}, modified copy" if any(case.library == "modified" for case in results.cases) else text
 
 
-def render_badge(results: dict[str, Any]) -> str:
-    """SVG of the badge of results.json as a dictionary."""
+def render_badge(results: Results) -> str:
+    """SVG of the badge of a run."""
     texts = (LABEL, summarise_verdict(results))
     widths = [round(len(text) * LETTER + 2 * MARGIN) for text in texts]
     total = sum(widths)
     starts = (0, widths[0])
-    fills = ("#3b4249", COLOURS[results["verdict"]])
+    fills = ("#3b4249", COLOURS[results.verdict])
     name = escape(": ".join(texts))
     parts = [
         f'<rect x="{x}" width="{width}" height="20" fill="{fill}"/>'

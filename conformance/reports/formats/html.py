@@ -1,9 +1,9 @@
 """A document as one HTML file: complete without its script, nothing fetched, every text escaped."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from itertools import count
-from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
@@ -53,6 +53,6 @@ def _build_environment() -> Environment:
 
 
 @pass_context
-def _inline(context: Context, figure: dict[str, Any]) -> Markup:
+def _inline(context: Context, figure: Mapping[str, str]) -> Markup:
     """Markup of a figure, with a number of its own on the page."""
     return Markup(inline_figure(figure["svg"], figure["alternative"], f"figure-{next(context['figure_numbers'])}-"))

@@ -24,18 +24,12 @@ DEFAULTS = {"stroke-linejoin": "round", "stroke-linecap": "butt"}
 def inline_figure(svg: str, alternative: str, prefix: str) -> str:
     """Markup of a figure inside a page.
 
-    Parameters
-    ----------
-    svg : str
-        Figure of this project.
-    alternative : str
-        Alternative text.
-    prefix : str
-        Prefix of every id of the figure, not used by another figure of the page.
+    Args:
+        svg: Figure of this project.
+        alternative: Alternative text.
+        prefix: Prefix of every id of the figure, not used by another figure of the page.
 
-    Returns
-    -------
-    str
+    Returns:
         An element `svg` with the role of an image, without style attributes; ids that nothing refers to are left out.
     """
     drawing = STYLE_ELEMENT.sub("", svg)

@@ -2,34 +2,29 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
 from xml.etree import ElementTree
 
 from pantocheck.conformance.reports.certificate.case_facts import name_system
 from pantocheck.conformance.reports.certificate.scope_page import describe_origin, prepare_results
 from pantocheck.conformance.reports.formats.graded_tests import GradedTest, list_case_tests, list_step_tests
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 COUNTERS = ("tests", "failures", "errors", "skipped")
 """Attributes that count the tests of a suite."""
 
 
-def render_junit(results: dict[str, Any], certificates: Sequence[str] = ()) -> bytes:
+def render_junit(results: Results, certificates: Sequence[str] = ()) -> bytes:
     """JUnit XML of a run.
 
-    Parameters
-    ----------
-    results : dict
-        results.json as a dictionary.
-    certificates : sequence of str
-        Names of the certificates in the same folder, which the properties of each case name.
+    Args:
+        results: Results of a run.
+        certificates: Names of the certificates in the same folder, which the properties of each case name.
 
-    Returns
-    -------
-    bytes
+    Returns:
         Content of junit.xml.
     """
     results = prepare_results(results)
-    cases = (_case_suite(case, results, certificates) for case in results["cases"])
+    cases = (_case_suite(case, results, certificates) for case in results.cases)
     suites = [*map(_suite, list_step_tests(results)), *cases]
     total = {name: str(sum(int(suite.attrib[name]) for suite in suites)) for name in COUNTERS}
     root = ElementTree.Element("testsuites", {"name": "pantocheck", **total})
@@ -38,27 +33,27 @@ def render_junit(results: dict[str, Any], certificates: Sequence[str] = ()) -> b
     return bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def _case_suite(case: dict[str, Any], results: dict[str, Any], certificates: Sequence[str]) -> ElementTree.Element:
+def _case_suite(case: CaseResult, results: Results, certificates: Sequence[str]) -> ElementTree.Element:
     suite = _suite(list_case_tests(case, results))
-    if case["run"]["wall_s"] is not None:
-        suite.set("time", f"{case['run']['wall_s']:.3f}")
-    if results["started"]:
-        suite.set("timestamp", results["started"].removesuffix("Z"))
+    if case.run.wall_s is not None:
+        suite.set("time", f"{case.run.wall_s:.3f}")
+    if results.started:
+        suite.set("timestamp", results.started.removesuffix("Z"))
     properties = ElementTree.Element("properties")
     for name, value in {
-        "statement": results["statement"],
-        "suite_version": results["suite"]["version"],
-        "suite_commit": results["suite"]["commit"],
+        "statement": results.statement,
+        "suite_version": results.suite.version,
+        "suite_commit": results.suite.commit,
         "system": name_system(results),
-        "suite_digest": results["suite"]["digest"],
+        "suite_digest": results.suite.digest,
         "origin": describe_origin(case),
-        "input_digest": case["input_digest"],
-        "limits_digest": case["limits_digest"],
-        "limit_changes": "; ".join(case["limit_changes"]),
-        "changes": "; ".join(case["changes"]),
+        "input_digest": case.input_digest,
+        "limits_digest": case.limits_digest,
+        "limit_changes": "; ".join(case.limit_changes),
+        "changes": "; ".join(case.changes),
         "certificate": "; ".join(certificates),
-        **{f"administration_{key}": text for key, text in (results["administration"] or {}).items()},
-        **{f"platform_{name}": text for name, text in results["platform"].items()},
+        **{f"administration_{key}": text for key, text in (results.administration or ())},
+        **{f"platform_{name}": text for name, text in results.platform},
     }.items():
         if value:
             ElementTree.SubElement(properties, "property", {"name": name, "value": str(value)})

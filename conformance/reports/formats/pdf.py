@@ -48,10 +48,8 @@ def render_pdf(document: Document) -> bytes:
 def typeset(files: dict[str, bytes], **options: Any) -> bytes:
     """PDF of a source `main.typ` with its other files, with the fonts of the suite alone.
 
-    Raises
-    ------
-    InputError
-        The extra `pdf` is not installed.
+    Raises:
+        InputError: The extra `pdf` is not installed.
     """
     with refuse_missing_package("a report as PDF"):
         import typst

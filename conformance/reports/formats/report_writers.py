@@ -5,7 +5,7 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pantocheck.conformance.input_files.atomic_writing import write_atomically
 from pantocheck.conformance.input_files.extras import install_line, is_installed
@@ -31,10 +31,8 @@ NO_PDF = f"no PDF is written, because the package typst is not installed. Instal
 def write_report(document: Document, path: Path) -> None:
     """Write a document as HTML, PDF or Markdown, by the suffix of the file name.
 
-    Raises
-    ------
-    InputError
-        The file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds.
+    Raises:
+        InputError: The file cannot be written, or `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     match path.suffix:
         case ".html":
@@ -60,22 +58,15 @@ def remark_missing_formats(stated: Sequence[str] | None = None) -> tuple[str, ..
 def write_document(document: Document, stem: Path) -> list[Path]:
     """Write a document as HTML and PDF; without the extra `pdf` as HTML alone (`remark_missing_formats` says so).
 
-    Parameters
-    ----------
-    document : Document
-        Content of the pages.
-    stem : Path
-        Path of the files without their suffix.
+    Args:
+        document: Content of the pages.
+        stem: Path of the files without their suffix.
 
-    Returns
-    -------
-    list of Path
+    Returns:
         The written files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     suffixes = (".html", ".pdf") if is_installed("typst") else (".html",)
     files = [stem.with_name(f"{stem.name}{suffix}") for suffix in suffixes]
@@ -87,36 +78,25 @@ def write_document(document: Document, stem: Path) -> list[Path]:
 def write_all(results: "Results", folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> list[Path]:
     """Write results in several formats.
 
-    Parameters
-    ----------
-    results : Results
-        Results of a run.
-    folder : Path
-        Folder of the files.
-    formats : sequence of str
-        Names of formats, keys of `FILES`.
-    places : ReportPlaces
-        Places of cases and limits in the files of the user, for annotations.
+    Args:
+        results: Results of a run.
+        folder: Folder of the files.
+        formats: Names of formats, keys of `FILES`.
+        places: Places of cases and limits in the files of the user, for annotations.
 
-    Returns
-    -------
-    list of Path
+    Returns:
         The written files.
 
-    Raises
-    ------
-    InputError
-        A file cannot be written.
+    Raises:
+        InputError: A file cannot be written.
     """
     if "json" in formats:
         write_atomically(folder / FILES["json"], results.to_json())
-    write_pages(results.to_dict(), folder, formats, places)
+    write_pages(results, folder, formats, places)
     return [folder / FILES[name] for name in formats]
 
 
-def write_pages(
-    results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES
-) -> None:
+def write_pages(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats.
 
     If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
@@ -150,7 +130,7 @@ def write_pages(
         _write_annotations(results, folder, formats, places)
 
 
-def _write_annotations(results: dict[str, Any], folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
+def _write_annotations(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
     from pantocheck.conformance.reports.formats.annotations import list_annotations
     from pantocheck.conformance.reports.formats.code_quality import render_code_quality
     from pantocheck.conformance.reports.formats.workflow_commands import render_workflow_commands

@@ -2,7 +2,6 @@
 
 import os
 from datetime import UTC, datetime
-from typing import Any
 
 from pantocheck.conformance.input_files.input_error import InputError
 
@@ -13,10 +12,8 @@ LATEST = 253402300799
 def read_source_date() -> int | None:
     """`SOURCE_DATE_EPOCH` [s since 1970]; None if the environment does not set it.
 
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
+    Raises:
+        InputError: `SOURCE_DATE_EPOCH` is not a number of seconds.
     """
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     if epoch is None:
@@ -24,21 +21,6 @@ def read_source_date() -> int | None:
     if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
         raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
     return int(epoch)
-
-
-def find_date(results: dict[str, Any]) -> int:
-    """Date of a document [s since 1970]: `SOURCE_DATE_EPOCH`, else the start of the run, else 0.
-
-    Raises
-    ------
-    InputError
-        `SOURCE_DATE_EPOCH` is not a number of seconds.
-    """
-    date = read_source_date()
-    if date is not None:
-        return date
-    started = results.get("started")
-    return int(datetime.fromisoformat(started).timestamp()) if started else 0
 
 
 def format_date(seconds: int) -> str:

@@ -10,12 +10,9 @@ from pantocheck.conformance.reports.formats.pdf import replace_missing_glyphs, t
 def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:
     """PDF of one untagged page with lines of text in a frame.
 
-    Parameters
-    ----------
-    lines : sequence of str
-        Lines of text; each is shrunk to the width of the box.
-    width, height : int
-        Size of the box [points].
+    Args:
+        lines: Lines of text; each is shrunk to the width of the box.
+        width, height: Size of the box [points].
     """
     data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
     files = {

@@ -15,14 +15,10 @@ MOST_SHOWN = 10
 def render_workflow_commands(annotations: Sequence[Annotation]) -> bytes:
     """Lines of workflow commands; more annotations than the service shows end in a line with their number.
 
-    Parameters
-    ----------
-    annotations : sequence of Annotation
-        Annotations, errors first.
+    Args:
+        annotations: Annotations, errors first.
 
-    Returns
-    -------
-    bytes
+    Returns:
         One line per annotation in UTF-8; empty without annotations.
     """
     lines: list[str] = []

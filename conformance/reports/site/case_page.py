@@ -1,13 +1,15 @@
 """Page of a case on a site: its values and verdicts by system and version over time."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.reports.page_text import clean_text, format_value
 from pantocheck.conformance.reports.site.published_results import PublishedResults
 from pantocheck.conformance.reports.words import name_pantograph, quantity_label, quantity_unit
+from pantocheck.conformance.results.figure_data import Chart, Series
+from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_part import select_single
 
 HISTORY_QUANTITIES = (
     *("mean_force_N", "std_force_N", "std_force_50_N", "rms_20_50_N"),
@@ -18,28 +20,25 @@ HISTORY_QUANTITIES = (
 MOST_TICKS = 12
 """Largest number of runs whose dates stand below a figure."""
 
-Run = tuple[PublishedResults, dict[str, Any]]
+Run = tuple[PublishedResults, CaseResult]
 """A run, and its result of the case."""
 
 
 def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.Document:
     """Page of a case.
 
-    Parameters
-    ----------
-    case_id : str
-        Id of the case.
-    published : sequence of PublishedResults
-        Results from the oldest to the latest.
+    Args:
+        case_id: Id of the case.
+        published: Results from the oldest to the latest.
     """
-    runs = [(run, case) for run in published for case in run.results["cases"] if case["id"] == case_id]
-    titles = clean_text(runs[-1][1]["title"])
+    runs = [(run, case) for run in published for case in run.results.cases if case.id == case_id]
+    titles = clean_text(runs[-1][1].title)
     header = doc.PlainHeader(clean_text(case_id), titles)
     blocks: list[doc.Block] = [doc.Paragraph((doc.PageLink("All systems and cases", "../index.html"),))]
     blocks.append(doc.Section("Verdicts", (_build_verdict_table(runs),)))
     # One run per system has no history: the table shows its values.
     repeated = len(runs) > len({run.system for run, _ in runs})
-    for owner in sorted({owner for _, case in runs for owner in case["quantities"]}, key=int):
+    for owner in sorted({owner for _, case in runs for owner in case.quantities}, key=int):
         names = [name for name in HISTORY_QUANTITIES if any(_read(case, owner, name) is not None for _, case in runs)]
         if names:
             table = _build_value_table(runs, owner, names)
@@ -48,10 +47,10 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
     return doc.Document(header.heading, header, tuple(blocks))
 
 
-def _read(case: dict[str, Any], owner: str, name: str) -> float | None:
+def _read(case: CaseResult, owner: str, name: str) -> float | None:
     """Value of a quantity; None if it is not known."""
-    value = case["quantities"].get(owner, {}).get(name)
-    return value if isinstance(value, int | float) else None
+    value = case.quantities.get(owner, {}).get(name)
+    return select_single(value)
 
 
 def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:
@@ -61,8 +60,8 @@ def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:
             run.date[:10] or "not stated",
             clean_text(run.system),
             doc.PageLink(clean_text(run.version) or "certificate", f"../{run.folder}/certificate.html"),
-            doc.VerdictMark(run.verdict(case["verdict"])),
-            clean_text(run.discrepancies[0] if run.discrepancies else case["reason"] or ""),
+            doc.VerdictMark(run.verdict(case.verdict)),
+            clean_text(run.discrepancies[0] if run.discrepancies else case.reason or ""),
         )
         for run, case in reversed(runs)
     )
@@ -93,17 +92,13 @@ def _draw_history(runs: Sequence[Run], owner: str, name: str) -> doc.Figure:
             x, y = places.setdefault(clean_text(run.system), ([], []))
             x.append(float(place))
             y.append(value)
-    series = [{"label": system, "style": "points", "x": x, "y": y, "error": None} for system, (x, y) in places.items()]
     caption = f"{quantity_label(name)} by run, from the oldest to the latest."
-    data = {
-        "x_label": "run",
-        "y_label": f"{quantity_label(name)} [{quantity_unit(name)}]",
-        "x_scale": "linear",
-        "y_scale": "linear",
-        "ticks": [run.date[:10] or "no date" for run, _ in runs] if len(runs) <= MOST_TICKS else None,
-        "series": series,
-        "marks": [],
-        "wide": True,
-    }
-    svg = draw_chart(data, find_common_range([data]))
-    return doc.Figure(svg, f"{caption} The values are in the table.", caption)
+    chart = Chart(
+        caption=caption,
+        alternative=f"{caption} The values are in the table.",
+        x_label="run",
+        y_label=f"{quantity_label(name)} [{quantity_unit(name)}]",
+        ticks=[run.date[:10] or "no date" for run, _ in runs] if len(runs) <= MOST_TICKS else None,
+        series=[Series(label=system, style="points", x=x, y=y) for system, (x, y) in places.items()],
+    )
+    return doc.Figure(draw_chart(chart, find_common_range([chart])), chart.alternative, caption)

@@ -1,12 +1,12 @@
 """First page of a site: systems against cases, and all runs."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from pantocheck.conformance.counted_noun import count_noun
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.page_text import clean_text
 from pantocheck.conformance.reports.site.published_results import PublishedResults
+from pantocheck.conformance.results.results_format import CaseResult
 
 SITE_STATEMENT = (
     "Every verdict is self-declared, in the style of EN 50318. The site repeats results that were given to it; it does "
@@ -19,14 +19,10 @@ CONTRADICTION = "contradicts itself: {count} discrepancies, first: {first}"
 def build_site_index(title: str, published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Document:
     """First page of a site.
 
-    Parameters
-    ----------
-    title : str
-        Title of the site.
-    published : sequence of PublishedResults
-        Results from the oldest to the latest.
-    pages : mapping of str to str
-        Page of each case by its id.
+    Args:
+        title: Title of the site.
+        published: Results from the oldest to the latest.
+        pages: Page of each case by its id.
     """
     systems = list(dict.fromkeys(run.system for run in published))
     counted = ((systems, "system"), (pages, "case"), (published, "run"))
@@ -51,9 +47,9 @@ def name_run(run: PublishedResults) -> str:
 
 def find_latest_runs(
     published: Sequence[PublishedResults],
-) -> dict[tuple[str, str], tuple[PublishedResults, dict[str, Any]]]:
+) -> dict[tuple[str, str], tuple[PublishedResults, CaseResult]]:
     """Latest run of each system and case, with its result."""
-    return {(run.system, case["id"]): (run, case) for run in published for case in run.results["cases"]}
+    return {(run.system, case.id): (run, case) for run in published for case in run.results.cases}
 
 
 def _build_matrix(systems: Sequence[str], published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Table:
@@ -66,13 +62,13 @@ def _build_matrix(systems: Sequence[str], published: Sequence[PublishedResults],
     return doc.Table(columns, rows, "Verdict of the latest run of each system; the version leads to its certificate")
 
 
-def _describe_cell(found: tuple[PublishedResults, dict[str, Any]] | None) -> doc.RichText:
+def _describe_cell(found: tuple[PublishedResults, CaseResult] | None) -> doc.RichText:
     if found is None:
         return "–"
     run, case = found
-    copy: tuple[doc.Inline, ...] = (doc.Remark("modified copy"),) if case["library"] == "modified" else ()
+    copy: tuple[doc.Inline, ...] = (doc.Remark("modified copy"),) if case.library == "modified" else ()
     link = doc.PageLink(clean_text(run.version) or "certificate", f"{run.folder}/certificate.html")
-    return (doc.VerdictMark(run.verdict(case["verdict"])), " ", link, *copy)
+    return (doc.VerdictMark(run.verdict(case.verdict)), " ", link, *copy)
 
 
 def _build_run_table(published: Sequence[PublishedResults]) -> doc.Table:
@@ -86,13 +82,13 @@ def _build_run_table(published: Sequence[PublishedResults]) -> doc.Table:
 
 
 def _describe_run(run: PublishedResults) -> tuple[doc.RichText, ...]:
-    cases = run.results["cases"]
-    passed = sum(run.verdict(case["verdict"]) == "pass" for case in cases)
+    cases = run.results.cases
+    passed = sum(run.verdict(case.verdict) == "pass" for case in cases)
     texts = (run.date.replace("T", " ").rstrip("Z") or "not stated", run.system, run.version)
     return (
         *map(clean_text, texts),
-        clean_text(run.results["suite"]["version"]),
-        doc.VerdictMark(run.verdict(run.results["verdict"])),
+        clean_text(run.results.suite.version),
+        doc.VerdictMark(run.verdict(run.results.verdict)),
         f"{passed} of {len(cases)}",
         doc.PageLink("certificate", f"{run.folder}/certificate.html"),
     )

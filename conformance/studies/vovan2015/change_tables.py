@@ -12,12 +12,9 @@ from pantocheck.conformance.studies.vovan2015.force_changes import COMPARED_QUAN
 def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
     """Build a table of the computed and printed values under each damping model.
 
-    Parameters
-    ----------
-    values : mapping of str to ValuesByOwner
-        Computed values by damping model.
-    printed : PrintedValues
-        Printed values by damping model and pantograph.
+    Args:
+        values: Computed values by damping model.
+        printed: Printed values by damping model and pantograph.
     """
     pantographs = list_pantographs(values)
     rows = []
@@ -38,12 +35,9 @@ def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValu
 def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTable:
     """Build a table of the changes: printed, computed, and smallest and largest value over shifted sections.
 
-    Parameters
-    ----------
-    changes : ForceChanges
-        Computed changes.
-    printed : ValuesByOwner
-        Changes of the printed values.
+    Args:
+        changes: Computed changes.
+        printed: Changes of the printed values.
     """
     rows = []
     for owner, values in sorted(changes.values.items(), key=lambda item: (item[0] == LINE, item[0])):

@@ -30,18 +30,12 @@ from pantocheck.conformance.systems.system import System
 def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
     """Run a passage with the earlier damping and with that of the case, and compare the bands.
 
-    Parameters
-    ----------
-    case : Case
-        Passage with the damping after the change.
-    study : DampingChange
-        Damping before the change, and printed values.
-    system : System
-        System under test, which runs both passages.
+    Args:
+        case: Passage with the damping after the change.
+        study: Damping before the change, and printed values.
+        system: System under test, which runs both passages.
 
-    Returns
-    -------
-    Outcome
+    Returns:
         Delivered run with the damping of the case and the comparison; else the reason of the run without a record.
     """
     ((name, damping),) = case.dampings.items()

@@ -49,22 +49,15 @@ GRADED = "only the elastic force is compensated"
 def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     """Run the passage of a case once for every coefficient and compensation law.
 
-    Parameters
-    ----------
-    case : Case
-        Passage with stated uplift forces.
-    study : DropperDamping
-        Dropper and its stiffness coefficients.
+    Args:
+        case: Passage with stated uplift forces.
+        study: Dropper and its stiffness coefficients.
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Study with the record of the passage under the damping of the case.
 
-    Raises
-    ------
-    InputError
-        No dropper hangs at the position of the study, or a pantograph has no uplift force.
+    Raises:
+        InputError: No dropper hangs at the position of the study, or a pantograph has no uplift force.
     """
     begin = time.perf_counter()
     discretisation, line = case.file.discretisation, build_catenary(case.line)
@@ -106,18 +99,13 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
 def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value]:
     """Find the transition of the largest compensation force from its undamped value to locking.
 
-    Parameters
-    ----------
-    coefficient : (n,) ndarray
-        Stiffness coefficients in ascending order [s].
-    force : (n,) ndarray
-        Largest compensation force at each coefficient [N].
+    Args:
+        coefficient: Stiffness coefficients in ascending order, (n,) [s].
+        force: Largest compensation force at each coefficient, (n,) [N].
 
-    Returns
-    -------
-    dict of str to Value
-        Onset, middle and end of the transition [s] if reached, and force that remains at the largest coefficient
-        [%], by name of quantity; empty if the first force is zero.
+    Returns:
+        Onset, middle and end of the transition [s] if reached, and force that remains at the largest coefficient [%],
+        by name of quantity; empty if the first force is zero.
     """
     if force[0] == 0:
         return {}
@@ -135,14 +123,11 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
 def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Value]:
     """Largest change of the contact force in a band, of any pantograph, by small damping of the droppers.
 
-    Parameters
-    ----------
-    chosen, least : ValuesByOwner
-        Quantities with the damping of the case and with the smallest coefficient, by pantograph and name.
+    Args:
+        chosen, least: Quantities with the damping of the case and with the smallest coefficient, by pantograph and
+            name.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Change [%] by name of quantity; empty without a band.
     """
     pairs = [

@@ -36,22 +36,15 @@ CONTACT, MESSENGER = 0, 1
 def run_dropper_oscillation(case: Case, study: DropperOscillation) -> Delivered:
     """Simulate the first drop of a case once for every stiffness coefficient of the droppers.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a mass drop, and with sensors on contact and messenger wire at a dropper.
-    study : DropperOscillation
-        Stiffness coefficients, ascending.
+    Args:
+        case: Case with a mass drop, and with sensors on contact and messenger wire at a dropper.
+        study: Stiffness coefficients, ascending.
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Study without a record.
 
-    Raises
-    ------
-    InputError
-        The first two sensors are not on contact and messenger wire at one position.
+    Raises:
+        InputError: The first two sensors are not on contact and messenger wire at one position.
     """
     begin, line = time.perf_counter(), build_catenary(case.line)
     sensors = require_mass_drop(case).sensor
@@ -84,12 +77,9 @@ def run_dropper_oscillation(case: Case, study: DropperOscillation) -> Delivered:
 def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
     """High-frequency velocity of the extension of a dropper from the release on, (n,) [m/s].
 
-    Parameters
-    ----------
-    motion : (2, m) ndarray
-        Velocity of the contact wire and of the messenger wire at the dropper [m/s].
-    time : (m,) ndarray
-        Time after the release [s]; the mass still hangs before 0.
+    Args:
+        motion: Velocity of the contact wire and of the messenger wire at the dropper, (2, m) [m/s].
+        time: Time after the release, (m,) [s]; the mass still hangs before 0.
     """
     extension = motion[MESSENGER] - motion[CONTACT]
     low = LowPass(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
@@ -99,19 +89,13 @@ def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
 def compare_oscillations(oscillation: list[RealArray], velocity: list[RealArray], time: RealArray) -> dict[str, Value]:
     """Findings on the oscillation of a dropper.
 
-    Parameters
-    ----------
-    oscillation : list of (n,) ndarray
-        High-frequency velocity of its extension, one array per coefficient in ascending order, the first without
-        damping [m/s].
-    velocity : list of (n,) ndarray
-        Velocity of the contact wire at the dropper, in the same order [m/s].
-    time : (n,) ndarray
-        Time after the release [s].
+    Args:
+        oscillation: High-frequency velocity of its extension, one array per coefficient in ascending order, the first
+            without damping, each (n,) [m/s].
+        velocity: Velocity of the contact wire at the dropper, in the same order, each (n,) [m/s].
+        time: Time after the release, (n,) [s].
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity.
     """
     remaining = [_window_rms(signal, time, LATE_S) / _window_rms(signal, time, EARLY_S) for signal in oscillation]

@@ -24,16 +24,11 @@ SMALLEST_DRAWN_RATIO = 1e-3
 def build_fit_report(case: Case, identification: Identification) -> StudyResult:
     """Fit a damping model with coefficients of each wire, and report coefficients and their observability.
 
-    Parameters
-    ----------
-    case : Case
-        Case with the simulated drops.
-    identification : Identification
-        Modes identified from the drops.
+    Args:
+        case: Case with the simulated drops.
+        identification: Modes identified from the drops.
 
-    Returns
-    -------
-    StudyResult
+    Returns:
         Numbers of observable coefficients by name of quantity, table and chart; without enough modes, a table with the
         reason.
     """

@@ -17,18 +17,12 @@ CHANGES = {quantity: f"change_{quantity.removesuffix('_N')}_pct" for quantity in
 
 @dataclass(frozen=True)
 class ForceChanges:
-    """Changes between two runs, over the analysis section and over shifted sections.
-
-    Parameters
-    ----------
-    values : dict of int to dict of str to Value
-        Changes by pantograph (0: the line) and name.
-    shifted : tuple of dict
-        The same over each of the shifted sections.
-    """
+    """Changes between two runs, over the analysis section and over shifted sections."""
 
     values: dict[int, dict[str, Value]]
+    """Changes by pantograph (0: the line) and name."""
     shifted: tuple[dict[int, dict[str, Value]], ...] = field(default_factory=tuple)
+    """The same over each of the shifted sections."""
 
     @property
     def spread(self) -> dict[int, dict[str, float]]:
@@ -46,12 +40,9 @@ def compare_damping_runs(
 ) -> ForceChanges:
     """Changes between two runs of a case.
 
-    Parameters
-    ----------
-    before, after : RecordSignals
-        Signals with the earlier damping and with that of the case.
-    sections : sequence of tuple of float
-        Shifted analysis sections [m, m].
+    Args:
+        before, after: Signals with the earlier damping and with that of the case.
+        sections: Shifted analysis sections [m, m].
     """
     shifted = (
         force_changes(before.evaluate_section(section).values, after.evaluate_section(section).values)
@@ -63,14 +54,10 @@ def compare_damping_runs(
 def force_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
     """Changes of the statistics of the contact force [%].
 
-    Parameters
-    ----------
-    before, after : ValuesByOwner
-        Quantities by pantograph and name.
+    Args:
+        before, after: Quantities by pantograph and name.
 
-    Returns
-    -------
-    dict of int to dict of str to Value
+    Returns:
         Changes by pantograph and name, without those that one side lacks. The line holds the comparison of the first
         with the last pantograph.
     """

@@ -16,14 +16,10 @@ HIGHEST_HZ = 6.0
 def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     """Compute the quantities by which Vo Van, Balmes and Lorang (2015) describe groups of span modes.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes.
+    Args:
+        modes: Identified modes.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity. Lists start with group 1. Quantities that need more modes are left out.
     """
     vertical = [mode for mode in modes if not mode.lateral]
@@ -54,14 +50,10 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
 def compute_population_findings(population: PopulationFile) -> dict[str, Value]:
     """Quantities by which Vo Van, Balmes and Lorang (2015) describe all tests, each identified on its own.
 
-    Parameters
-    ----------
-    population : PopulationFile
-        Population of tests.
+    Args:
+        population: Population of tests.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity, without those that need more tests or an outlier.
     """
     variability = population.variability
@@ -76,16 +68,11 @@ def compute_population_findings(population: PopulationFile) -> dict[str, Value]:
 def compare_reference(modes: Sequence[Mode], frequency: RealArray, ratio: RealArray) -> tuple[float, ...]:
     """Damping ratio of a reference model over the identified one, median of each group of span modes.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-        Identified modes; only vertical modes with a certain damping ratio count.
-    frequency, ratio : (n,) ndarray
-        Frequencies [Hz], ascending, and damping ratios [-] of the reference model.
+    Args:
+        modes: Identified modes; only vertical modes with a certain damping ratio count.
+        frequency, ratio: Frequencies [Hz], ascending, and damping ratios [-] of the reference model, (n,).
 
-    Returns
-    -------
-    tuple of float
+    Returns:
         Ratios from group 1 to the last group before one without modes [-].
     """
     certain = [mode for mode in modes if mode.certain and not mode.lateral]

@@ -27,18 +27,12 @@ from pantocheck.model.modal.modes import Modes, damping_ratios
 
 @dataclass(frozen=True)
 class IdentifiedDrops:
-    """Simulated drops of a case and the modes identified from their records.
-
-    Parameters
-    ----------
-    drops : tuple of SimulatedDrop
-        Drops in the order of the case.
-    identification : Identification
-        Modes of all drops together.
-    """
+    """Simulated drops of a case and the modes identified from their records."""
 
     drops: tuple[SimulatedDrop, ...]
+    """Drops in the order of the case."""
     identification: Identification
+    """Modes of all drops together."""
 
     @property
     def certain_modes(self) -> list[Mode]:
@@ -93,19 +87,13 @@ def build_lines(case: Case) -> dict[str, Catenary]:
 def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> RealArray:
     """Damping ratios of the undamped modes of a line; inside a modal band, its ratio replaces Rayleigh damping.
 
-    Parameters
-    ----------
-    mesh : DiscretisedLine
-        Line in finite elements with any damping.
-    shapes : Modes
-        Undamped modes of this line.
-    line : Catenary
-        The same line with the damping model.
+    Args:
+        mesh: Line in finite elements with any damping.
+        shapes: Undamped modes of this line.
+        line: The same line with the damping model.
 
-    Returns
-    -------
-    (n,) ndarray
-        Damping ratio of every mode [-].
+    Returns:
+        Damping ratio of every mode, (n,) [-].
     """
     rayleigh = damping_ratios(with_damping(mesh, line.damping), shapes)
     return apply_modal_bands(rayleigh, shapes.frequency, line.modal_damping)

@@ -40,14 +40,10 @@ from pantocheck.model.modal.modes import compute_modes_below
 def run_mass_drop_study(case: Case) -> Delivered:
     """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a mass drop.
+    Args:
+        case: Case with a mass drop.
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Study without a record.
     """
     begin = time.perf_counter()

@@ -21,16 +21,11 @@ FITTED = "fitted"
 def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, printed: ValuesByOwner) -> TextTable:
     """Build a table with one row per limit: finding in words, printed and computed value, agreement.
 
-    Parameters
-    ----------
-    limits : sequence of Limit
-        Limits of the case; their notes are the findings in words.
-    computed, printed : ValuesByOwner
-        Values by pantograph and name.
+    Args:
+        limits: Limits of the case; their notes are the findings in words.
+        computed, printed: Values by pantograph and name.
 
-    Returns
-    -------
-    TextTable
+    Returns:
         Findings of the paper.
     """
     rows = []

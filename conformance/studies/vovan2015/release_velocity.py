@@ -35,38 +35,26 @@ MEDIUM = MOTION_BANDS[1]
 
 @dataclass(frozen=True)
 class VelocityWindow:
-    """Velocity of one sensor in a time window.
-
-    Parameters
-    ----------
-    time, velocity, medium : (n,) ndarray
-        Time after the release [s], velocity below 20 Hz, and its part in the medium frequencies [m/s].
-    """
+    """Velocity of one sensor in a time window."""
 
     time: RealArray
     velocity: RealArray
     medium: RealArray
+    """Time after the release [s], velocity below 20 Hz, and its part in the medium frequencies [m/s], (n,)."""
 
 
 def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     """Simulate the first drop of a case under each damping model and compare the velocity in every time window.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a mass drop.
-    study : ReleaseVelocity
-        Damping models, sensor and time windows.
+    Args:
+        case: Case with a mass drop.
+        study: Damping models, sensor and time windows.
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Study without a record.
 
-    Raises
-    ------
-    InputError
-        The sensor or the model in place of the record does not exist, or a window lies outside the record.
+    Raises:
+        InputError: The sensor or the model in place of the record does not exist, or a window lies outside the record.
     """
     begin, mass_drop = time.perf_counter(), require_mass_drop(case)
     if study.sensor > len(mass_drop.sensor):
@@ -123,15 +111,11 @@ def compare_velocities(
 ) -> dict[str, Value]:
     """Findings on the velocity in the first and in the last window.
 
-    Parameters
-    ----------
-    record, reference, rayleigh, modal : sequence of VelocityWindow
-        Velocity of the record, under the reference model, with the fitted Rayleigh damping, and with modal damping
-        besides.
+    Args:
+        record, reference, rayleigh, modal: Velocity of the record, under the reference model, with the fitted Rayleigh
+            damping, and with modal damping besides.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity.
     """
     first = rayleigh[0]

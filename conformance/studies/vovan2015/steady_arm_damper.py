@@ -28,16 +28,11 @@ FrequencyBands = tuple[tuple[float, float], ...]
 def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     """Simulate and identify the drops of a case without and with the dampers, and compare the bands.
 
-    Parameters
-    ----------
-    case : Case
-        Case with a mass drop.
-    study : SteadyArmDamper
-        Damper and frequency bands.
+    Args:
+        case: Case with a mass drop.
+        study: Damper and frequency bands.
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Study without a record.
     """
     begin = time.perf_counter()
@@ -68,14 +63,10 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
 def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]:
     """Gains of the median damping ratio by the dampers, band by band [%].
 
-    Parameters
-    ----------
-    without, damped : list of float
-        Median damping ratio of every band without and with the dampers; NaN for a band without modes.
+    Args:
+        without, damped: Median damping ratio of every band without and with the dampers; NaN for a band without modes.
 
-    Returns
-    -------
-    dict of str to Value
+    Returns:
         Values by name of quantity. The list of gains ends before the first band without modes.
     """
     gain = [100 * (z / z0 - 1) for z0, z in zip(without, damped, strict=True)]

@@ -16,10 +16,8 @@ def build_case_message(case: Case) -> dict[str, Any]:
 
     Notes and sources are left out, because they mention results.
 
-    Raises
-    ------
-    SimulationError
-        The line has no equilibrium at rest or at the start.
+    Raises:
+        SimulationError: The line has no equilibrium at rest or at the start.
     """
     file = case.file
     content: dict[str, Any] = {

@@ -35,25 +35,17 @@ RUN = 1
 
 @dataclass(frozen=True)
 class CommandSystem:
-    """Program that answers the messages of the protocol.
-
-    Parameters
-    ----------
-    arguments : tuple of str
-        Program and arguments.
-    timeout_s : float
-        Time limit of a case [s].
-    name, version : str
-        Name and version that the program states.
-    start_failure : str, optional
-        Reason why the program does not start; None if it starts.
-    """
+    """Program that answers the messages of the protocol."""
 
     arguments: tuple[str, ...]
+    """Program and arguments."""
     timeout_s: float
+    """Time limit of a case [s]."""
     name: str
     version: str
+    """Name and version that the program states."""
     start_failure: str | None = None
+    """Reason why the program does not start; None if it starts."""
     kind: Literal["command"] = "command"
 
     def run(self, case: Case) -> Outcome:
@@ -127,24 +119,16 @@ def _start_program(program: Program, limit: float) -> Started:
 def parse_command(text: str, base: Path, timeout: float) -> CommandSystem:
     """Build the system of a command; the program is started once for its name.
 
-    Parameters
-    ----------
-    text : str
-        Text after `command:`.
-    base : Path
-        Base folder of relative file names.
-    timeout : float
-        Time limit of a case [s].
+    Args:
+        text: Text after `command:`.
+        base: Base folder of relative file names.
+        timeout: Time limit of a case [s].
 
-    Returns
-    -------
-    CommandSystem
+    Returns:
         The program as a system under test.
 
-    Raises
-    ------
-    InputError
-        There is no such program.
+    Raises:
+        InputError: There is no such program.
     """
     parts = split_arguments(text, base)
     name = Path(parts[0]).name

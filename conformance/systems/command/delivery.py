@@ -18,28 +18,18 @@ class DeliveryRefused(ValueError):
 def read_delivery(case: Case, answer: DeliveredAnswer, folder: Path, wall: float) -> Delivered:
     """Read the delivered files, after the program has ended and cannot change them any more.
 
-    Parameters
-    ----------
-    case : Case
-        Requested case.
-    answer : DeliveredAnswer
-        Answer of the program.
-    folder : Path
-        Folder of the run.
-    wall : float
-        Time from request to answer [s].
+    Args:
+        case: Requested case.
+        answer: Answer of the program.
+        folder: Folder of the run.
+        wall: Time from request to answer [s].
 
-    Returns
-    -------
-    Delivered
+    Returns:
         Record, static quantities and run facts.
 
-    Raises
-    ------
-    DeliveryRefused
-        A file does not agree with the answer.
-    InputError
-        The record is invalid.
+    Raises:
+        DeliveryRefused: A file does not agree with the answer.
+        InputError: The record is invalid.
     """
     if answer.record is None:
         return Delivered(static=dict(answer.static), run=RunTable(wall_s=wall), notes=answer.notes)

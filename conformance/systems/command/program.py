@@ -34,17 +34,12 @@ class ProgramFailed(Exception):
 class Program:
     """Running program; the end of its context ends it with all its children.
 
-    Parameters
-    ----------
-    arguments : sequence of str
-        Program and arguments; no shell interprets them.
-    folder : Path
-        Working folder.
+    Args:
+        arguments: Program and arguments; no shell interprets them.
+        folder: Working folder.
 
-    Raises
-    ------
-    ProgramFailed
-        The program cannot be started.
+    Raises:
+        ProgramFailed: The program cannot be started.
     """
 
     def __init__(self, arguments: Sequence[str], folder: Path) -> None:
@@ -99,15 +94,11 @@ class Program:
     def read_line(self, limit: float) -> bytes:
         """Read the next line of the standard output.
 
-        Parameters
-        ----------
-        limit : float
-            Time limit [s].
+        Args:
+            limit: Time limit [s].
 
-        Raises
-        ------
-        ProgramFailed
-            No line within the time limit.
+        Raises:
+            ProgramFailed: No line within the time limit.
         """
         try:
             line = self._lines.get(timeout=limit)
@@ -122,10 +113,8 @@ class Program:
     def refuse_late_failure(self) -> None:
         """Refuse the answer of a program that fails after it.
 
-        Raises
-        ------
-        ProgramFailed
-            It ended with an exit code that is not 0, or by a signal.
+        Raises:
+            ProgramFailed: It ended with an exit code that is not 0, or by a signal.
         """
         if self._process.returncode:
             raise ProgramFailed(f"{self._describe_end()} after its answer 'delivered'{self._quote_errors()}")

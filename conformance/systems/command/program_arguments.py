@@ -16,22 +16,12 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
 
     An argument that names an existing file becomes an absolute path, because the program runs in a new working folder.
 
-    Parameters
-    ----------
-    text : str
-        Text after `command:`.
-    base : Path
-        Base folder of relative file names.
+    Args:
+        text: Text after `command:`.
+        base: Base folder of relative file names.
 
-    Returns
-    -------
-    tuple of str
-        Program and arguments.
-
-    Raises
-    ------
-    InputError
-        There is no command, a quote is not closed, or there is no such program.
+    Raises:
+        InputError: There is no command, a quote is not closed, or there is no such program.
     """
     where, hint = f"system 'command:{text}'", "Write e.g. --system 'command:python3 adapter.py'."
     try:

@@ -6,11 +6,12 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import Field, TypeAdapter, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 
-from pantocheck.conformance.cases.case_file import Discretisation, Filter
+from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.force_law import PointOfForce
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.cases.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, is_absent
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.simulation.derived_format import Derived
 
 PROTOCOL: Final = "pantocheck.command/1"
@@ -27,15 +28,19 @@ class Start(InputTable):
     """First message."""
 
     message: Literal["start"] = "start"
-    protocol: Annotated[Literal["pantocheck.command/1"], Field(description="version of the protocol")] = PROTOCOL
-    suite_version: Annotated[str, Field(description="version of Pantocheck")]
+    protocol: Literal["pantocheck.command/1"] = PROTOCOL
+    """Version of the protocol."""
+    suite_version: str
+    """Version of Pantocheck."""
 
 
 class RequestedAppliedForces(InputTable):
     """Applied forces from the force law of a pantograph at the speed of the case; their sum is the uplift force."""
 
-    static_force_N: Annotated[float, Field(description="static force, at uplift_force_on of the model [N]")]
-    aerodynamic_force_N: Annotated[float, Field(description="mean aerodynamic force [N]")]
+    static_force_N: float
+    """Static force, at uplift_force_on of the model [N]."""
+    aerodynamic_force_N: float
+    """Mean aerodynamic force [N]."""
     aerodynamic_force_on: PointOfForce
 
 
@@ -46,53 +51,52 @@ class RequestedPantograph(InputTable):
     matrices: MatricesTable | None
     modes: ModesTable | None
     contact: ContactTable
-    uplift_force_N: Annotated[
-        float | None, Field(description="constant uplift force, or start value of the tuning [N]")
-    ]
-    target_mean_force_N: Annotated[
-        float | None,
-        Field(description="mean contact force over the analysis section for the tuning [N]; null: no tuning"),
-    ]
-    applied_forces: Annotated[
-        RequestedAppliedForces | None,
-        Field(
-            exclude_if=is_absent,
-            description="parts of the uplift force with different points of application; default: one point",
-        ),
-    ] = None
-    start_m: Annotated[float, Field(description="position at the start of the run [m]")]
-    end_m: Annotated[float, Field(description="position at the end of the run [m]")]
+    uplift_force_N: float | None
+    """Constant uplift force, or start value of the tuning [N]."""
+    target_mean_force_N: float | None
+    """Mean contact force over the analysis section for the tuning [N]; null: no tuning."""
+    applied_forces: Annotated[RequestedAppliedForces | None, Field(exclude_if=is_absent)] = None
+    """Parts of the uplift force with different points of application; default: one point."""
+    start_m: float
+    """Position at the start of the run [m]."""
+    end_m: float
+    """Position at the end of the run [m]."""
 
 
 class RequestedCase(InputTable):
     """Case without limits: all numbers, defaults included."""
 
-    id: Annotated[str, Field(description="id of the case, to be repeated in the sidecar of the record")]
-    case_digest: Annotated[
-        str, Field(description="digest of the inputs of the case, to be repeated in the sidecar of the record")
-    ]
+    id: str
+    """Id of the case, to be repeated in the sidecar of the record."""
+    case_digest: str
+    """Digest of the inputs of the case, to be repeated in the sidecar of the record."""
     title: str
-    features: Annotated[
-        tuple[str, ...], Field(strict=False, description="features that the case uses, in alphabetic order")
-    ]
-    speed_km_h: Annotated[float | None, Field(description="speed of the train; null: check of the line at rest")]
-    evaluated_m: Annotated[tuple[float, float], Field(description="start and end of the analysis section [m]")]
-    filter: Annotated[Filter, Field(description="filter of the graded force; deliver the force unfiltered if possible")]
-    discretisation: Annotated[
-        Discretisation, Field(description="discretisation of the reference simulator, for information")
-    ]
+    features: Annotated[tuple[str, ...], Field(strict=False)]
+    """Features that the case uses, in alphabetic order."""
+    speed_km_h: float | None
+    """Speed of the train; null: check of the line at rest."""
+    evaluated_m: tuple[float, float]
+    """Start and end of the analysis section [m]."""
+    filter: Filter
+    """Filter of the graded force; deliver the force unfiltered if possible."""
+    discretisation: Discretisation
+    """Discretisation of the reference simulator, for information."""
     line: LineFile
     pantographs: tuple[RequestedPantograph, ...]
-    derived: Annotated[Derived, Field(description="values that follow from the inputs by the conventions of the suite")]
+    derived: Derived
+    """Values that follow from the inputs by the conventions of the suite."""
 
 
 class RunRequest(InputTable):
     """Request to run a case."""
 
     message: Literal["run"] = "run"
-    id: Annotated[int, Field(ge=1, description="number of the run, to be repeated in the answer")]
-    folder: Annotated[str, Field(description="folder for record files: the working folder of the program")]
-    time_limit_s: Annotated[float, Field(gt=0, description="time limit of the answer [s]")]
+    id: Annotated[int, Field(ge=1)]
+    """Number of the run, to be repeated in the answer."""
+    folder: str
+    """Folder for record files: the working folder of the program."""
+    time_limit_s: Annotated[float, Field(gt=0)]
+    """Time limit of the answer [s]."""
     case: RequestedCase
 
 
@@ -106,29 +110,27 @@ class Started(InputTable):
     """Answer to `start`."""
 
     message: Literal["started"]
-    protocol: Annotated[
-        str, Field(max_length=100, description='version of the protocol of the program: "pantocheck.command/1"')
-    ]
-    name: Annotated[str, Field(min_length=1, max_length=200, description="name of the simulator in reports")]
-    version: Annotated[str, Field(max_length=200, description="version of the simulator")]
+    protocol: Annotated[str, Field(max_length=100)]
+    """Version of the protocol of the program: "pantocheck.command/1"."""
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    """Name of the simulator in reports."""
+    version: Annotated[str, Field(max_length=200)]
+    """Version of the simulator."""
     features: Annotated[
-        tuple[Annotated[str, Field(max_length=100)], ...] | None,
-        Field(
-            strict=False,
-            max_length=1000,
-            description="features that the program simulates; a case that uses another one is skipped, and without "
-            "this list every case",
-        ),
+        tuple[Annotated[str, Field(max_length=100)], ...] | None, Field(strict=False, max_length=1000)
     ] = None
+    """Features that the program simulates; a case that uses another one is skipped, and without this list every
+    case.
+    """
 
 
 class File(InputTable):
     """Delivered file."""
 
-    file: Annotated[
-        str, Field(min_length=1, max_length=500, description="path of the file, relative to the folder of the run")
-    ]
-    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="digest of the content")]
+    file: Annotated[str, Field(min_length=1, max_length=500)]
+    """Path of the file, relative to the folder of the run."""
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    """Digest of the content."""
 
 
 class RecordFiles(InputTable):
@@ -143,20 +145,15 @@ class DeliveredAnswer(InputTable):
 
     message: Literal["delivered"]
     id: int
-    record: Annotated[
-        RecordFiles | None, Field(description="files of the record; null for a check of the line at rest")
-    ] = None
+    record: RecordFiles | None = None
+    """Files of the record; null for a check of the line at rest."""
     static: Annotated[
         dict[str, float | Annotated[tuple[float, ...], Field(strict=False, max_length=1000)]],
-        Field(
-            default_factory=dict,
-            max_length=100,
-            description="quantities of the line at rest, by name; lists have a value per dropper",
-        ),
+        Field(default_factory=dict, max_length=100),
     ]
-    notes: Annotated[
-        tuple[Text, ...], Field(strict=False, max_length=20, description="notes for the reader of the report")
-    ] = ()
+    """Quantities of the line at rest, by name; lists have a value per dropper."""
+    notes: Annotated[tuple[Text, ...], Field(strict=False, max_length=20)] = ()
+    """Notes for the reader of the report."""
 
 
 class SkippedAnswer(InputTable):
@@ -191,10 +188,8 @@ def encode_message(message: str, **content: object) -> bytes:
 def parse_message(line: bytes) -> Answer:
     """Parse a line of a program as a message.
 
-    Raises
-    ------
-    AnswerRefused
-        The line is not a valid message.
+    Raises:
+        AnswerRefused: The line is not a valid message.
     """
     try:
         return _ANSWER.validate_python(json.loads(line))

@@ -23,6 +23,7 @@ from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats import pdf
 from pantocheck.conformance.results import results_reading as results_file
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runner import run_cases
 
 
@@ -45,7 +46,7 @@ def test_results_of_the_runner_are_consistent(wave: Any, case_250: Case) -> None
     """Results of the suite's own grading, spectrum and thinned traces included, contradict themselves nowhere."""
     results = run_cases([case_250], wave(), "secondary").to_dict()
     assert len(results["cases"][0]["criteria"]) == 8
-    assert find_discrepancies(results) == []
+    assert find_discrepancies(Results.model_validate(results)) == []
 
 
 def row(results: dict[str, Any], case: int = 0, number: int = 0) -> dict[str, Any]:
@@ -144,16 +145,16 @@ def set_extreme(results: dict[str, Any], extreme: Callable[[list[float]], float]
 
 @pytest.mark.parametrize("name", TAMPERINGS)
 def test_tampering_is_reported(results: dict[str, Any], name: str) -> None:
-    assert find_discrepancies(results) == []
+    assert find_discrepancies(Results.model_validate(results)) == []
     tamper, expected = TAMPERINGS[name]
     tamper(results)
-    assert any(expected in text for text in find_discrepancies(results))
+    assert any(expected in text for text in find_discrepancies(Results.model_validate(results)))
 
 
 def test_certificate_made_from_changed_results(results: dict[str, Any], tmp_path: Path) -> None:
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
     found = verify_document(tmp_path / "a.pdf")
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
@@ -163,8 +164,8 @@ def test_pages_that_contradict_the_embedded_results(
 ) -> None:
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
     encode_attachment = pdf.encode_attachment
-    monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(passing))
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
+    monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(Results.model_validate(passing)))
+    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
     found = verify_document(tmp_path / "a.pdf")
     assert found.verdict == "pass"
     assert len(found.discrepancies) == 2
@@ -281,7 +282,7 @@ def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_pat
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (1, "consistent in part")
     row(results, 1, 1)["margin"] = 0.5
-    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(build_certificate(results)))
+    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
     assert bad.exit_code == 1
     assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in " ".join(bad.stdout.split())

@@ -118,7 +118,7 @@ def test_tornado_has_both_signs_of_every_input_the_largest_first() -> None:
     larger, smaller = tornado.series
     assert larger.y == pytest.approx([-3 * inputs[:, 1].std(), inputs[:, 0].std()])
     assert smaller.y == pytest.approx([-change for change in larger.y])
-    assert draw_tornado(tornado.model_dump(mode="json")).startswith("<svg")
+    assert draw_tornado(tornado).startswith("<svg")
 
 
 def test_map_has_a_cell_per_run(columns: CampaignColumns) -> None:
@@ -179,7 +179,7 @@ def test_report_has_facts_statistics_maps_and_charts(columns: CampaignColumns) -
         maps=list(build_maps(columns, [REAR], GRID)),
         statistics=list(build_statistics(columns, [FRONT], [])),
     )
-    text = render_html(build_campaign_report(results.model_dump(mode="json")))
+    text = render_html(build_campaign_report(results))
     assert "10 of 12 runs are finished, 1 of them failed. It stopped at the end of its time budget." in text
     assert "Map &lt;b&gt;" in text
     assert "1 run: SimulationError: diverged" in text
@@ -201,7 +201,7 @@ def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
     assert (results.total, results.finished, results.failed) == (3, 3, 3)
     assert results.reasons == {"no power": 3}
     assert (results.charts, results.maps, results.statistics) == ([], [], [])
-    assert "3 runs: no power" in render_html(build_campaign_report(results.model_dump(mode="json")))
+    assert "3 runs: no power" in render_html(build_campaign_report(results))
 
 
 def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:

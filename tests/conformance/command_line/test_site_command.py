@@ -14,6 +14,8 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.reports.site.published_results import name_file, publish_results
+from pantocheck.conformance.results.results_building import build_results
+from pantocheck.conformance.results.results_format import SystemIdentity
 from pantocheck.conformance.runner import run_cases
 
 RUNS = (
@@ -158,9 +160,9 @@ def test_links_and_folders_named_as_results_are_left_out(results: Path, tmp_path
 
 
 def test_runs_are_ordered_by_date_and_named_safely() -> None:
-    systems = [{"name": "../../etc", "version": ""}, {"name": "Ω", "version": ""}]
+    systems = [SystemIdentity(name=name, version="", kind="record") for name in ("../../etc", "Ω")]
     contents = [
-        ({"system": system, "started": started}, ())
+        (build_results([], system, "secondary", "").model_copy(update={"started": started}), ())
         for system, started in zip(systems, ("2026-02-01", None), strict=True)
     ]
     assert [run.folder for run in publish_results(contents)] == ["runs/0001-unnamed", "runs/0002-etc"]

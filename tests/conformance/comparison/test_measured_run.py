@@ -18,6 +18,7 @@ from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
 from pantocheck.conformance.reports.figures.overlay_figure import force_difference, spectrum_difference
+from pantocheck.conformance.results.figure_data import Spectrum
 
 SPAN = 60.0
 SUPPORTS = np.arange(0.0, 601.0, SPAN)
@@ -57,7 +58,7 @@ def test_forces_stand_at_the_same_positions(run: Run, pantograph: str) -> None:
     assert comparison is not None
     part = comparison.pantographs[pantograph]
     assert (part.position_m[0], len(part.spans)) == (pytest.approx(180.0, abs=0.3), 4)
-    assert force_difference(part.model_dump()) == pytest.approx([5.0] * len(part.position_m), abs=1.0)
+    assert force_difference(part) == pytest.approx([5.0] * len(part.position_m), abs=1.0)
 
 
 def test_each_span_has_its_own_statistics(run: Run) -> None:
@@ -86,9 +87,9 @@ def test_runs_without_common_track_have_no_common_curves(run: Run) -> None:
 
 def test_certificate_shows_both_runs(run: Run) -> None:
     """Overlay, spectra and spans of both pantographs; the results follow from their numbers."""
-    results = assess_record(run("simulated"), load_profile("line-test"), "provisional", run("measured", 1.0)).to_dict()
+    results = assess_record(run("simulated"), load_profile("line-test"), "provisional", run("measured", 1.0))
     assert find_discrepancies(results) == []
-    (section,) = comparison_blocks(results["cases"][0], 0, "case-1")
+    (section,) = comparison_blocks(results.cases[0], 0, "case-1")
     assert isinstance(section, doc.Section)
     values, figures, *spans = section.blocks[1:]
     assert isinstance(values, doc.Table)
@@ -100,6 +101,6 @@ def test_certificate_shows_both_runs(run: Run) -> None:
 
 
 def test_spectra_differ_where_both_are_known() -> None:
-    simulated = {"frequency_Hz": [0.0, 1.0, 2.0, 3.0], "amplitude_N": [1.0, 2.0, 3.0, 4.0]}
-    measured = {"frequency_Hz": [0.5, 2.5], "amplitude_N": [1.0, 3.0]}
+    simulated = Spectrum(frequency_Hz=[0.0, 1.0, 2.0, 3.0], amplitude_N=[1.0, 2.0, 3.0, 4.0])
+    measured = Spectrum(frequency_Hz=[0.5, 2.5], amplitude_N=[1.0, 3.0])
     assert spectrum_difference(simulated, measured) == ([1.0, 2.0], [0.5, 0.5])

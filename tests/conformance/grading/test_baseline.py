@@ -75,8 +75,8 @@ def test_value_that_drifts_fails_within_its_limits(results: Results, was: float,
         assert "% from the baseline of" in finding.reason
         # To a hundredth of the drift of 0.54 N: four decimals, not twelve.
         assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
-        assert find_discrepancies(compared.to_dict()) == []
-        assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared.to_dict())
+        assert find_discrepancies(compared) == []
+        assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared)
         assert compared.cases[1].verdict == "unverified"
 
 
@@ -149,22 +149,26 @@ FORGERIES: dict[str, Callable[[dict[str, Any]], None]] = {
 @pytest.mark.parametrize("forgery", FORGERIES)
 def test_hidden_drift_is_found(results: Results, forgery: str) -> None:
     compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
-    assert find_discrepancies(compared) == []
+    assert find_discrepancies(Results.model_validate(compared)) == []
     FORGERIES[forgery](compared["cases"][0])
-    assert find_discrepancies(compared)
+    assert find_discrepancies(Results.model_validate(compared))
 
 
 def test_hidden_verdict_of_the_run_by_the_baseline_is_found(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
-    assert any(text.startswith("baseline: ") for text in find_discrepancies(compared | {"baseline_verdict": "pass"}))
+    assert any(
+        text.startswith("baseline: ")
+        for text in find_discrepancies(Results.model_validate(compared | {"baseline_verdict": "pass"}))
+    )
     del compared["baseline_verdict"]
-    assert any(text.startswith("baseline: ") for text in find_discrepancies(compared))
+    assert any(text.startswith("baseline: ") for text in find_discrepancies(Results.model_validate(compared)))
 
 
 def test_drift_without_its_comparison_is_a_contradiction(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
     del compared["baseline_verdict"], compared["cases"][0]["baseline"], compared["cases"][1]["baseline"]
-    assert any("drift without a comparison with a baseline" in text for text in find_discrepancies(compared))
+    found = find_discrepancies(Results.model_validate(compared))
+    assert any("drift without a comparison with a baseline" in text for text in found)
 
 
 def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
@@ -179,7 +183,7 @@ def test_missing_value_is_skipped(results: Results) -> None:
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
     assert finding.reason == "the baseline has 20 N; now: the summary does not state this quantity"
     assert compared.verdict == "skip"
-    assert find_discrepancies(compared.to_dict()) == []
+    assert find_discrepancies(compared) == []
 
 
 @pytest.mark.parametrize(
@@ -202,7 +206,7 @@ def test_baseline_of_another_case_is_no_pass(results: Results, change: dict[str,
     assert finding.reason == f"baseline b.json has other {difference}; renew the baseline"
     assert [case.verdict for case in compared.cases] == ["skip", "unverified"]
     assert compared.verdict == "skip"
-    assert find_discrepancies(compared.to_dict()) == []
+    assert find_discrepancies(compared) == []
 
 
 def test_changed_inputs_are_named(results: Results) -> None:
@@ -226,8 +230,8 @@ def test_case_without_values_is_no_pass_of_the_baseline(results: Results) -> Non
         verdict="pass", name="b.json", drift_pct=1.0, values=8, drifted=0
     )
     assert compared.baseline_verdict == "skip"
-    assert find_discrepancies(compared.to_dict()) == []
-    text = render_markdown(build_summary(compared.to_dict()))
+    assert find_discrepancies(compared) == []
+    text = render_markdown(build_summary(compared))
     assert "| Drift from the baseline | SKIP | decides | 1 of 1 case passes. 0 of 8 values drifted" in text
     assert "1 case was not compared." in text
 
@@ -262,7 +266,7 @@ def test_case_that_the_baseline_lacks_is_skipped(results: Results) -> None:
     lacking = compared.cases[1]
     assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
     assert compared.verdict == "skip"
-    assert find_discrepancies(compared.to_dict()) == []
+    assert find_discrepancies(compared) == []
 
 
 def test_ungraded_case_keeps_its_verdict(results: Results) -> None:

@@ -121,24 +121,26 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
     first = passing["cases"][0]
     informative = [first | {"id": str(i), "verdict": "info", "criteria": []} for i in range(4)]
     results = passing | {"verdict": "info", "cases": [first, *informative]}
-    assert build_headline(results) == "1 of 5 cases passes, 4 have no limit that counts."
+    assert build_headline(Results.model_validate(results)) == "1 of 5 cases passes, 4 have no limit that counts."
     shown = results | {"verdict": "pass", "information": ["0", "1", "2", "3"]}
-    assert build_headline(shown) == (
+    assert build_headline(Results.model_validate(shown)) == (
         "All 16 counted criteria in 1 case lie inside their limits. "
         "For information, not part of the verdict: 0, 1, 2, 3."
     )
     unverified = passing | {"cases": [first | {"verdict": "unverified"}]}
-    assert build_headline(unverified) == "0 of 1 case passes, 1 has an unverified record."
+    assert build_headline(Results.model_validate(unverified)) == "0 of 1 case passes, 1 has an unverified record."
     name = passing["system"]["name"]
-    accepted = build_headline(unverified | {"accepted_unverified": [name]})
+    accepted = build_headline(Results.model_validate(unverified | {"accepted_unverified": [name]}))
     assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")
 
 
 def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None:
     """A limit that does not count is skipped; so is a failure in a case for information."""
-    root = ElementTree.fromstring(render_junit(results))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     assert "provisional limit does not count" in "".join(e.get("message", "") for e in root.iter("skipped"))
-    shown = ElementTree.fromstring(render_junit(results | {"information": ["en50318-2002/300"]}))
+    shown = ElementTree.fromstring(
+        render_junit(Results.model_validate(results | {"information": ["en50318-2002/300"]}))
+    )
     assert (root.get("failures"), shown.get("failures")) == ("1", "0")
     assert any(e.get("message", "").startswith("for information: failure: ") for e in shown.iter("skipped"))
 

@@ -94,7 +94,7 @@ def test_permitted_exclusion_leaves_the_overlap_out_and_is_stated(sidecar: Path,
     assert fact.end_m == pytest.approx(1260, abs=0.2)
     (warning,) = [text for text in case.warnings if "left out" in text]
     assert warning.startswith("5.4")
-    page = str(build_certificate(results.to_dict()).blocks)
+    page = str(build_certificate(results).blocks)
     assert "stretches of the analysis section are left out" in page
     assert "Events of the line" in page
 

@@ -18,7 +18,7 @@ from pantocheck.conformance.reports.certificate.verdict_reasons import build_hea
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.results.outcome import Delivered, StudyResult
 from pantocheck.conformance.results.results_building import build_results
-from pantocheck.conformance.results.results_format import CaseResult, SystemIdentity
+from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 
 SYSTEM = SystemIdentity(name="test", version="1", kind="builtin")
 QUANTITIES = ("damping_gain_fading_pct", "dropper_locked_force_pct", "damping_rise_pct", "damping_decrease_pct")
@@ -78,13 +78,13 @@ def results() -> dict[str, Any]:
 def test_findings_are_counted_by_outcome(results: dict[str, Any]) -> None:
     assert results["findings"] == {"imposed": 1, "reproduced": 1, "not_reproduced": 1, "not_evaluated": 1}
     sentence = "Findings: 1 imposed, 1 reproduced, 1 not reproduced, 1 not evaluated."
-    assert sentence in build_headline(results)
-    assert find_discrepancies(results) == []
+    assert sentence in build_headline(Results.model_validate(results))
+    assert find_discrepancies(Results.model_validate(results)) == []
 
 
 def test_pages_list_every_finding_with_the_reason_of_a_contradiction(results: dict[str, Any]) -> None:
     """The sensitivity explains a contradicted finding only."""
-    pages = (shown_certificate(results), render_markdown(build_summary(results)))
+    pages = (shown_certificate(results), render_markdown(build_summary(Results.model_validate(results))))
     for page in pages:
         assert page.count("it depends on the speed") == 1
         assert page.count("not reproduced") >= 2  # in the headline and in the table
@@ -108,7 +108,7 @@ def test_contradicted_imposed_finding_keeps_its_role_on_the_page(results: dict[s
 )
 def test_falsified_finding_is_found(results: dict[str, Any], change: Any, found: str) -> None:
     change(results["cases"][0]["criteria"][0])
-    assert any(found in text for text in find_discrepancies(results))
+    assert any(found in text for text in find_discrepancies(Results.model_validate(results)))
 
 
 def test_limit_without_a_finding_keeps_its_digest() -> None:

@@ -159,7 +159,7 @@ def test_good_line_is_accepted_with_its_uncertainty(train: Train) -> None:
     assert rows["max_uplift_at_support_mm"].value == pytest.approx(55, abs=0.1)
     assert 0 < rows["cov_20"].uncertainty < 0.02
     assert results.cases[0].uncertainty["1"]["cov_20"] == rows["cov_20"].uncertainty
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
     jsonschema.validate(results.to_dict(), build_schema("results"))
 
 
@@ -179,8 +179,8 @@ def test_profile_decides_whether_an_unverified_record_passes(
     assert (results.verdict, record.state, record.demanded) == (verdict, "unverified", verification == "demanded")
     assert "need the pantograph and the line of a case, and a profile has none" in record.reason
     assert {row.verdict for row in results.cases[0].criteria} == {"pass"}
-    assert find_discrepancies(results.to_dict()) == []
-    test = ElementTree.fromstring(render_junit(results.to_dict())).find(".//testcase[@name='record']")
+    assert find_discrepancies(results) == []
+    test = ElementTree.fromstring(render_junit(results)).find(".//testcase[@name='record']")
     assert test is not None
     assert test[0].tag == junit
     accepted = graded(train(), str(profile), participation=Participation(accepted_unverified=("train",)))
@@ -226,7 +226,7 @@ def test_rule_outside_its_speed_range_is_skipped(train: Train) -> None:
         by_quantity(results)["mean_force_N"].reason
         == "the speed of the record is 180 km/h; the rule is valid above 200 km/h"
     )
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 def test_rule_without_its_fact_of_the_line_is_skipped(train: Train) -> None:
@@ -239,7 +239,7 @@ def test_rule_without_its_fact_of_the_line_is_skipped(train: Train) -> None:
         "max_uplift_at_support_mm": "the record does not state span_m, the length of the longest span, so that the "
         "supports of the analysis section are not known; the record does not state uplift_space_mm in its table [line]",
     }
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 def test_uplift_rule_without_an_uplift_is_skipped(train: Train) -> None:
@@ -302,7 +302,7 @@ def test_record_without_a_section_is_skipped(train: Train) -> None:
     assert results.verdict == "skip"
     reason = "the analysis section is not stated: add evaluated_m to the sidecar"
     assert by_quantity(results)["cov_20"].reason == reason
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 def test_record_without_a_speed_is_skipped(train: Train) -> None:

@@ -71,7 +71,7 @@ def test_stated_difference_can_make_a_verified_value_close(
     (row,) = result.verification.criteria
     assert (bool(row.close), "start" in row.components, row.verdict) == (close, close, "pass")
     assert_allclose((row.lower, row.upper), (119.0 - 1.309, 119.0 + 1.309), rtol=1e-12)
-    assert find_discrepancies(build_results([result], IDENTITY, "secondary", utc_now()).to_dict()) == []
+    assert find_discrepancies(build_results([result], IDENTITY, "secondary", utc_now())) == []
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,8 @@ from pantocheck.conformance.reports.certificate.summary_page import build_summar
 from pantocheck.conformance.reports.formats.badge import render_badge
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.results_format import Results
 
 STEPS = [
@@ -53,7 +55,7 @@ def count_figures(section: doc.Section) -> int:
 
 def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     """Each step has its section in order, the sections of its cases behind it, and a figure or a drawing."""
-    document = build_certificate(content)
+    document = build_certificate(Results.model_validate(content))
     headings = [block.heading for block in document.blocks if isinstance(block, doc.Section)]
     assert [heading for heading in headings if heading in STEPS] == STEPS
     assert headings.index("EN 50318:2002 reference model, 250 km/h") == headings.index(STEPS[3]) + 1
@@ -66,20 +68,26 @@ def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     assert "certified" not in render_markdown(document).lower()
 
 
+def headline(content: dict[str, Any]) -> str:
+    results = Results.model_validate(content)
+    assert results.procedure is not None
+    return build_procedure_headline(results, results.procedure)
+
+
 def test_headline_names_steps_that_are_missing_or_for_information(content: dict[str, Any]) -> None:
-    assert build_procedure_headline(content) == "6 of 6 required steps pass."
+    assert headline(content) == "6 of 6 required steps pass."
     changed = copy.deepcopy(content)
     steps = changed["procedure"]["steps"]
     change_keys(steps, {"0.state": "not done", "0.verdict": "skip", "4.verdict": "fail", "5.required": False})
     changed["accepted_unverified"] = [changed["system"]["name"]]
-    assert build_procedure_headline(changed) == (
+    assert headline(changed) == (
         "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
         "Limits of validity (PASS). Accepted by the user: unverified records of Pantocheck reference simulator."
     )
 
 
 def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, Any]) -> None:
-    assert list_step_reasons(content) == ()
+    assert list_step_reasons(Procedure.model_validate(content["procedure"])) == ()
     changed = copy.deepcopy(content)
     change_keys(
         changed["procedure"],
@@ -90,7 +98,7 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
             "claims.2.reason": "the runs that passed cover 160 to 180 km/h",
         },
     )
-    (section,) = list_step_reasons(changed)
+    (section,) = list_step_reasons(Procedure.model_validate(changed["procedure"]))
     (block,) = section.blocks
     assert isinstance(block, doc.BulletList)
     assert block.items == (
@@ -103,22 +111,24 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
 
 
 def test_junit_has_a_suite_for_every_step_and_case(content: dict[str, Any]) -> None:
-    root = ElementTree.fromstring(render_junit(content))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(content)))
     names = [suite.attrib["name"] for suite in root]
     assert names[:2] == ["step/pantograph_model", "step/static_check"]
     assert names[6:] == ["en50318-2002/250", "pair/160-up", "pair/200-up", "pair/200-up-two"]
     assert (root.attrib["failures"], root.attrib["errors"]) == ("0", "0")
     changed = copy.deepcopy(content)
     change_keys(changed["procedure"], {"steps.1.verdict": "fail", "steps.2.required": False, "steps.2.verdict": "fail"})
-    suites = {suite.attrib["name"]: suite for suite in ElementTree.fromstring(render_junit(changed))}
+    suites = {
+        suite.attrib["name"]: suite for suite in ElementTree.fromstring(render_junit(Results.model_validate(changed)))
+    }
     assert suites["step/static_check"].attrib["failures"] == "1"
     assert suites["step/simulation_parameters"].attrib["failures"] == "0"
     assert len(suites["step/limits_of_validity"]) == 1 + len(content["procedure"]["claims"])
 
 
 def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
-    assert "pass 6/6 steps" in render_badge(content)
-    text = render_markdown(build_summary(content))
+    assert "pass 6/6 steps" in render_badge(Results.model_validate(content))
+    text = render_markdown(build_summary(Results.model_validate(content)))
     assert text.startswith("# PASS: 6 of 6 required steps pass")
     assert "| 5 Line tests | done | PASS |" in text.replace("&#8203;", "")
 
@@ -140,7 +150,7 @@ def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
 def test_changed_number_is_found(content: dict[str, Any], key: str, value: Any, found: str) -> None:
     changed = copy.deepcopy(content)
     change_keys(changed, {key: value})
-    assert any(found in text for text in find_discrepancies(changed)), key
+    assert any(found in text for text in find_discrepancies(Results.model_validate(changed))), key
 
 
 def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
@@ -152,10 +162,10 @@ def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
     claimed = {claim["name"] for claim in changed["procedure"]["claims"] if claim["kind"] == "line"}
     own = [item for item in evidence if item["line"] in claimed]
     assert own
-    charts: list[dict[str, Any]] = []
+    charts: list[Chart] = []
     monkeypatch.setattr(step_sections, "draw_chart", lambda chart: charts.append(chart) or "<svg/>")
     changed["procedure"]["evidence"] = [own[0] | {"line": "a line without a claim", "speed_km_h": 999.0}, *own]
-    build_certificate(changed)
-    points = {series["label"]: series["y"] for series in charts[-1]["series"]}
+    build_certificate(Results.model_validate(changed))
+    points = {series.label: series.y for series in charts[-1].series}
     assert points.pop("another line") == [999.0]
     assert sorted(speed for speeds in points.values() for speed in speeds) == sorted(item["speed_km_h"] for item in own)

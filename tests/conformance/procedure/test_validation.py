@@ -80,7 +80,7 @@ def test_complete_dossier_passes(system: CachedSimulator, tmp_path: Path, change
     results = validate_example(path, system, tmp_path / "out")
     assert list_verdicts(results) == ALL_PASS
     assert results.verdict == "pass"
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
     assert results.procedure is not None
     assert [step.step for step in results.procedure.steps] == list(STEP_NAMES)
     assert all(case.record is not None and case.record.state == "verified" for case in results.cases)
@@ -251,4 +251,4 @@ def test_variant_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: 
     assert list_verdicts(results) == ALL_PASS | rest_claims_on(variant.expected) | variant.expected
     worst = min(variant.expected.values(), key=ORDER.index)
     assert results.verdict == worst
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []

@@ -47,7 +47,7 @@ def test_interrupted_validation_keeps_the_finished_part(system: CachedSimulator,
         "reference_models": "pass", "line_test": "skip", "limits_of_validity": "skip",
     }  # fmt: skip
     assert results.verdict == "skip"
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 def test_steps_that_are_not_required_decide_nothing(system: CachedSimulator, tmp_path: Path) -> None:
@@ -56,7 +56,7 @@ def test_steps_that_are_not_required_decide_nothing(system: CachedSimulator, tmp
     results = validate_example(copy_example(tmp_path / "in", changes), system, tmp_path / "out")
     assert (list_verdicts(results)["line_test"], results.verdict) == ("fail", "pass")
     assert results.information == ["pair/160-up", "pair/200-up", "pair/200-up-two"]
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def test_record_without_a_case_is_unverified(system: CachedSimulator, tmp_path: 
     assert {claim.verdict for claim in results.procedure.claims} == {"skip"}
     assert {tuple(claim.evidence) for claim in results.procedure.claims} == {("pair/160-up",) if accepted else ()}
     assert results.cases[0].verdict == "unverified"
-    assert find_discrepancies(results.to_dict()) == []
+    assert find_discrepancies(results) == []
 
 
 def test_same_samples_in_another_file_are_refused(system: CachedSimulator, tmp_path: Path) -> None:

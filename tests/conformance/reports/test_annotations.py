@@ -18,6 +18,7 @@ from pantocheck.conformance.reports.formats.annotations import list_annotations,
 from pantocheck.conformance.reports.formats.code_quality import render_code_quality
 from pantocheck.conformance.reports.formats.workflow_commands import MOST_SHOWN, render_workflow_commands
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
+from pantocheck.conformance.results.results_format import Results
 
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 ACCEPTED = "published passing code (Wang et al.)"
@@ -163,7 +164,7 @@ def test_texts_of_other_people_stay_in_their_field(results: dict[str, Any], tmp_
     case |= {"id": HOSTILE, "title": HOSTILE}
     case["criteria"][0] |= {"verdict": "fail", "quantity": HOSTILE, "reason": HOSTILE, "unit": HOSTILE}
     path = tmp_path / "a,line=9::b%0A:c.toml"
-    annotations = list_annotations(results, ReportPlaces(FilePlace(path, 3)))
+    annotations = list_annotations(Results.model_validate(results), ReportPlaces(FilePlace(path, 3)))
     text = render_workflow_commands(annotations).decode()
     lines = re.split("[\r\n\v\f\x1c-\x1e\x85\u2028\u2029]", text.removesuffix("\n"))
     assert len(lines) == len(annotations) > 1
@@ -181,7 +182,7 @@ def test_texts_of_other_people_stay_in_their_field(results: dict[str, Any], tmp_
 def test_more_errors_than_the_service_shows_end_in_their_number(results: dict[str, Any]) -> None:
     rows = results["cases"][0]["criteria"]
     results["cases"][0]["criteria"] = [rows[0] | {"verdict": "fail", "item": i + 1} for i in range(25)]
-    annotations = list_annotations(results, ReportPlaces())
+    annotations = list_annotations(Results.model_validate(results), ReportPlaces())
     errors = [line for line in render_workflow_commands(annotations).decode().splitlines() if line[:7] == "::error"]
     total = sum(annotation.severity == "error" for annotation in annotations)
     assert len(errors) == MOST_SHOWN
@@ -192,7 +193,7 @@ def test_run_without_a_limit_that_counts_has_one_warning(passing: dict[str, Any]
     case = passing["cases"][0]
     case |= {"verdict": "info", "criteria": [row | {"verdict": "info"} for row in case["criteria"]]}
     passing |= {"verdict": "info", "cases": [case]}
-    [annotation] = list_annotations(passing, ReportPlaces())
+    [annotation] = list_annotations(Results.model_validate(passing), ReportPlaces())
     assert (annotation.severity, annotation.text) == ("warning", "0 of 1 case passes, 1 has no limit that counts.")
 
 

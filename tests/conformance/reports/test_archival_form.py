@@ -18,6 +18,7 @@ from helpers.signer_fixtures import Signers
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.reports.formats.report_writers import write_pages
+from pantocheck.conformance.results.results_format import Results
 
 pytestmark = pytest.mark.thorough
 
@@ -29,7 +30,7 @@ def test_certificate(certificate: bytes) -> None:
 
 
 def test_certificate_with_hostile_text(hostile: dict[str, Any]) -> None:
-    assert find_violations(render_pdf(build_certificate(hostile))) == []
+    assert find_violations(render_pdf(build_certificate(Results.model_validate(hostile)))) == []
 
 
 def test_signed_certificate(certificate: bytes, signers: Signers, tmp_path: Path) -> None:
@@ -129,7 +130,7 @@ def test_equal_inputs_give_equal_bytes(
     later["cases"][0]["run"] |= {"wall_s": 99.0}
     formats = ("html", "pdf", "md", "junit", "csv", "badge")
     for name, results in (("now", passing), ("later", later)):
-        write_pages(results, tmp_path / name, formats)
+        write_pages(Results.model_validate(results), tmp_path / name, formats)
     files = sorted(path.name for path in (tmp_path / "now").iterdir())
     assert len(files) == len(formats)
     different = [

@@ -27,7 +27,8 @@ from pantocheck.conformance.reports.document import (
 )
 from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.page_text import format_value
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
 def case_section(document: Document, number: int) -> dict[str, Section]:
@@ -55,15 +56,18 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
     row = case["criteria"][0] | {"value": 118.2, "margin": 0.36, "uncertainty": 0.1234}
     case["criteria"] = [row | {"source": "another"}, row]
-    texts = describe_criterion(row)
+    texts = describe_criterion(Criterion.model_validate(row))
     assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
-    table, note, sources = criteria_blocks(case, "case-1", "case-1-source")
+    result = CaseResult.model_validate(case)
+    table, note, sources = criteria_blocks(result.criteria, "case-1", "case-1-source", result)
     assert note == SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
     assert isinstance(table, Table)
     assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
     assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
-    line = describe_criterion(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
+    line = describe_criterion(
+        Criterion.model_validate(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
+    )
     assert (line.pantograph, line.error) == ("line, no. 3", "–")
 
 
@@ -71,14 +75,14 @@ def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict
     remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
     row = passing["cases"][0]["criteria"][0]
     row |= {"value": 119.9, "uncertainty": 0.2, "margin": 0.02, "close": [remark]}
-    assert describe_criterion(row).remarks == (remark,)
-    headings = [section.heading for section in list_reasons(passing)]
+    assert describe_criterion(Criterion.model_validate(row)).remarks == (remark,)
+    headings = [section.heading for section in list_reasons(Results.model_validate(passing))]
     assert headings == ["Closer to a limit than the uncertainty", "Smallest margins"]
-    sentences = list_reasons(passing)[0].blocks[0].items
+    sentences = list_reasons(Results.model_validate(passing))[0].blocks[0].items
     assert [
         "119.9 N" in sentence and sentence.endswith("margin +0.02, uncertainty ± 0.20* N.") for sentence in sentences
     ] == [True]
-    assert describe_criterion(row | {"verdict": "info"}).remarks == ()
+    assert describe_criterion(Criterion.model_validate(row | {"verdict": "info"})).remarks == ()
 
 
 def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[str, Any]) -> None:
@@ -86,16 +90,19 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     case = passing["cases"][0]
     row, unknown = case["criteria"][0] | {"uncertainty": 0.1234}, case["uncertainty_basis"]
     known = dict.fromkeys(unknown, "known")
-    assert describe_criterion(row, unknown).error == "± 0.12*"
-    assert describe_criterion(row | {"uncertainty": 0.0}, unknown).error == "not known"
-    assert describe_criterion(row | {"uncertainty": 0.0}, known).error == "± 0"
-    assert describe_criterion(row | {"trust": "computed"}, unknown).error == "± 0.12"
-    assert describe_criterion(row | {"uncertainty": None}, unknown).error.startswith("± ")
+    assert describe_criterion(Criterion.model_validate(row), unknown).error == "± 0.12*"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": 0.0}), unknown).error == "not known"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": 0.0}), known).error == "± 0"
+    assert describe_criterion(Criterion.model_validate(row | {"trust": "computed"}), unknown).error == "± 0.12"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": None}), unknown).error.startswith("± ")
     marked = shown_certificate(passing)
     page_1 = marked[: marked.index('id="cases"')]
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
     assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
-    for text in (render_markdown(build_summary(passing)), render_markdown(build_certificate(passing))):
+    for text in (
+        render_markdown(build_summary(Results.model_validate(passing))),
+        render_markdown(build_certificate(Results.model_validate(passing))),
+    ):
         assert "Uncertainty without section and length, which are not known: it is too small" in text
     for other in passing["cases"]:
         other["uncertainty_basis"] = dict.fromkeys(unknown, "known")
@@ -119,14 +126,14 @@ def test_margin_beside_a_limit_of_zero_is_a_distance_and_not_ranked(passing: dic
     """A distance in newtons is no relative margin: it is not compared with those of other criteria."""
     row = passing["cases"][0]["criteria"][0]
     row |= {"value": 0.004, "lower": 0.0, "upper": None, "margin": 0.004, "close": [], "unit": "N"}
-    assert describe_criterion(row).margin == "+0.004 N"
-    ranked = "".join(sentences(list_reasons(passing)[-1]))
-    assert list_reasons(passing)[-1].heading == "Smallest margins"
+    assert describe_criterion(Criterion.model_validate(row)).margin == "+0.004 N"
+    ranked = "".join(sentences(list_reasons(Results.model_validate(passing))[-1]))
+    assert list_reasons(Results.model_validate(passing))[-1].heading == "Smallest margins"
     assert "+0.004" not in ranked
 
 
 def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
-    groups = {section.heading: sentences(section) for section in list_reasons(results)}
+    groups = {section.heading: sentences(section) for section in list_reasons(Results.model_validate(results))}
     assert list(groups) == ["Failed", "Not evaluated", "Smallest margins"]
     assert len(groups["Failed"]) == 1
     assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
@@ -135,7 +142,9 @@ def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
 
 
 def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]) -> None:
-    front, rear = ([str(row[2]) for row in build_band_table(case).rows] for case in results["cases"][:2])
+    front, rear = (
+        [str(row[2]) for row in build_band_table(CaseResult.model_validate(case)).rows] for case in results["cases"][:2]
+    )
     assert front[0].endswith("(PASS)")
     assert front[6].endswith("(no published limit)")
     assert rear[0].endswith("(FAIL)")
@@ -146,17 +155,17 @@ def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]
 def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any]) -> None:
     """Of the shown quantities only."""
     case = results["cases"][0]
-    texts = {name.text: text for name, text in list_definitions([case])}
+    texts = {name.text: text for name, text in list_definitions([CaseResult.model_validate(case)])}
     assert texts["min_force_N"] == (
         ": smallest contact force, 0-20 Hz; a causal filter of the same order changes it by up to 15 %."
     )
     assert "mean_force_N" not in texts
-    without = {"quantities": {"1": {"mean_force_N": 118.0}}}
+    without = CaseResult.model_validate(case | {"quantities": {"1": {"mean_force_N": 118.0}}})
     assert list_definitions([without]) == ()
 
 
 def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
-    facts = list_case_facts(passing["cases"][0])
+    facts = list_case_facts(CaseResult.model_validate(passing["cases"][0]))
     assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
     assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
 
@@ -172,7 +181,7 @@ def test_case_facts_state_the_forces_of_the_force_laws(passing: dict[str, Any]) 
     case = Results.model_validate(
         passing | {"cases": [case | {"run": case["run"] | {"law_forces": forces}}]}
     ).to_dict()["cases"][0]
-    facts = dict(list_case_facts(case).pairs)
+    facts = dict(list_case_facts(CaseResult.model_validate(case)).pairs)
     assert facts["Force law of pantograph 1"] == (
         "applied forces of 155.81 N: static force 70.00 N, aerodynamic force 85.81 N; not tuned, the mean contact "
         "force is a result"
@@ -187,7 +196,7 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     case["quantities"]["0"] = {"dropper_length_m": [1.017, 0.896]}
     case["run"] |= dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m"))
     Results.model_validate(passing)
-    sections = case_section(build_certificate(passing), 1)
+    sections = case_section(build_certificate(Results.model_validate(passing)), 1)
     [figures] = sections["Figures"].blocks
     assert isinstance(figures, Figures)
     assert [figure.caption.split(":")[0] for figure in figures.figures] == [
@@ -206,6 +215,6 @@ def test_caption_of_many_supports_has_their_number_ends_and_largest_uplift(passi
     support = case["uplift"][0]
     case["uplift"] = [support | {"support_m": 60.0 * n, "uplift_mm": [0.0, 40.0 + n]} for n in range(5)]
     case["uplift"] = [item | {"time_s": [0.0, 1.0]} for item in case["uplift"]]
-    *_, figure = draw_case_figures(case, 0, "case")
+    *_, figure = draw_case_figures(CaseResult.model_validate(case), 0, "case")
     assert figure.caption == "Uplift at 5 supports from 0 m to 240 m. Largest: 44 mm at 240 m."
     assert figure.alternative.count(" mm at ") == 5

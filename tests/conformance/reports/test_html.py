@@ -14,6 +14,7 @@ from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
 from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.reports.document import Document, PlainHeader
 from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.results.results_format import Results
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br", "use"}
 
@@ -46,7 +47,7 @@ class Outline(HTMLParser):
 
 
 def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
-    assert render_html(build_certificate(results)) == page_text
+    assert render_html(build_certificate(Results.model_validate(results))) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
@@ -110,7 +111,7 @@ def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], 
 def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequest) -> None:
     """The data block has every key in the order of the results; hostile text cannot end it."""
     results = request.getfixturevalue(name)
-    page = render_html(build_certificate(results))
+    page = render_html(build_certificate(Results.model_validate(results)))
     [block] = re.findall('<script type="application/json" id="pantocheck-results">(.*?)</script>', page)
     assert not set("<>&") & set(block)
     assert block.isascii()

@@ -32,10 +32,11 @@ from pantocheck.conformance.reports.formats.markdown import render_markdown
 from pantocheck.conformance.reports.formats.quantity_list import render_quantity_list
 from pantocheck.conformance.reports.formats.report_writers import write_pages
 from pantocheck.conformance.results.report_files import FILES
+from pantocheck.conformance.results.results_format import Results
 
 
 def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
-    root = ElementTree.fromstring(render_junit(results))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     suites = root.findall("testsuite")
     assert [suite.get("name") for suite in suites] == [case["id"] for case in results["cases"]]
     assert [root.get(name) for name in ("tests", "failures", "errors", "skipped")] == [
@@ -57,13 +58,13 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
 
 def test_junit_holds_an_error_of_a_case(passing: dict[str, Any]) -> None:
     passing["cases"][0] |= {"verdict": "error", "reason": "the solver diverged", "criteria": []}
-    root = ElementTree.fromstring(render_junit(passing))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(passing)))
     assert root.get("errors") == "1"
     assert next(root.iter("error")).get("message") == "the solver diverged"
 
 
 def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
-    root = ElementTree.fromstring(render_junit(hostile))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(hostile)))
     assert root.find("testsuite[2]").get("name") == "en50318-2002/300a|b `c` *d* [e](f) \\ _g_"
     assert all("\n" not in value for element in root.iter() for value in element.attrib.values())
 
@@ -71,27 +72,35 @@ def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", ["results", "hostile"])
 def test_summary_tables_keep_their_columns(name: str, request: pytest.FixtureRequest) -> None:
     results = request.getfixturevalue(name)
-    rows = [line for line in render_markdown(build_summary(results)).splitlines() if line.startswith("|")]
+    rows = [
+        line
+        for line in render_markdown(build_summary(Results.model_validate(results))).splitlines()
+        if line.startswith("|")
+    ]
     assert len(rows) == 2 * 2 + 22
     assert {len(re.findall(r"(?<!\\)\|", row)) for row in rows} == {9}
 
 
 def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], hostile: dict[str, Any]) -> None:
-    assert render_markdown(build_summary(results)).startswith(
+    assert render_markdown(build_summary(Results.model_validate(results))).startswith(
         "# FAIL: 1 of 3 cases passes, 1 fails \\(1 of 21 counted criteria outside their limits\\), "
         "1 could not be evaluated completely.\n"
     )
-    text = render_markdown(build_summary(hostile))
+    text = render_markdown(build_summary(Results.model_validate(hostile)))
     assert "<script" not in text
     assert "`c`" not in text.replace(r"\`c\`", "")
     assert "https://" not in render_markdown(
-        build_summary(results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}})
+        build_summary(
+            Results.model_validate(
+                results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}}
+            )
+        )
     )
 
 
 def read_rows(results: dict[str, Any]) -> dict[tuple[str, ...], dict[str, str]]:
     """Rows of the list of quantities by case, pantograph, quantity and item."""
-    rows = csv.DictReader(render_quantity_list(results).splitlines())
+    rows = csv.DictReader(render_quantity_list(Results.model_validate(results)).splitlines())
     return {(row["case"], row["pantograph"], row["quantity"], row["item"]): row for row in rows}
 
 
@@ -128,7 +137,7 @@ def test_list_of_quantities_has_a_row_for_each_item(passing: dict[str, Any]) -> 
 
 
 def test_badge(results: dict[str, Any]) -> None:
-    root = ElementTree.fromstring(render_badge(results))
+    root = ElementTree.fromstring(render_badge(Results.model_validate(results)))
     assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
 
@@ -136,16 +145,16 @@ def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None
     """A wider limit under the id of a library case must not look like the library case."""
     passing["cases"][0]["library"] = "modified"
     name = f"modified copy of {passing['cases'][0]['id']}"
-    badge = ElementTree.fromstring(render_badge(passing)).get("aria-label") or ""
+    badge = ElementTree.fromstring(render_badge(Results.model_validate(passing))).get("aria-label") or ""
     assert re.fullmatch(r"EN 50318 style: pass \d+/\d+, modified copy", badge)
-    suite = next(ElementTree.fromstring(render_junit(passing)).iter("testsuite"))
+    suite = next(ElementTree.fromstring(render_junit(Results.model_validate(passing))).iter("testsuite"))
     assert suite.get("name") == name
     assert {test.get("classname") for test in suite.iter("testcase")} == {name}
-    assert name in render_markdown(build_summary(passing))
+    assert name in render_markdown(build_summary(Results.model_validate(passing)))
 
 
 def test_write_pages_leaves_one_file_per_format(passing: dict[str, Any], tmp_path: Path) -> None:
-    write_pages(passing, tmp_path, list(FILES))
+    write_pages(Results.model_validate(passing), tmp_path, list(FILES))
     assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
 
 

@@ -21,6 +21,8 @@ from pantocheck.conformance.reports.formats.embedded_results import strip_times
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.results.results_format import Results
 
 
 def squeeze_text(content: bytes) -> str:
@@ -33,10 +35,10 @@ def test_pdf_does_not_depend_on_the_time_of_the_run(
     passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    write_report(build_certificate(passing), tmp_path / "a.pdf")
+    write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
     later = passing | {"started": "2031-01-01T00:00:00Z"}
     later["cases"][0]["run"] |= {"wall_s": 99.0}
-    write_report(build_certificate(later), tmp_path / "b.pdf")
+    write_report(build_certificate(Results.model_validate(later)), tmp_path / "b.pdf")
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
@@ -45,13 +47,14 @@ def test_html_and_pdf_do_not_depend_on_the_process(passing: dict[str, Any], tmp_
     """Another interpreter with another hash seed and time zone writes the same HTML and PDF."""
     source = tmp_path / "results.json"
     source.write_text(json.dumps(passing))
-    document = build_certificate(passing)
+    document = build_certificate(Results.model_validate(passing))
     program = (
         "import hashlib, json, sys;"
         "from pantocheck.conformance.reports.certificate.certificate_page import build_certificate;"
         "from pantocheck.conformance.reports.formats.html import render_html;"
         "from pantocheck.conformance.reports.formats.pdf import render_pdf;"
-        "document = build_certificate(json.load(open(sys.argv[1])));"
+        "from pantocheck.conformance.results.results_format import Results;"
+        "document = build_certificate(Results.model_validate(json.load(open(sys.argv[1]))));"
         "print(hashlib.sha256(render_html(document).encode() + render_pdf(document)).hexdigest())"
     )
     other = subprocess.run(
@@ -69,7 +72,7 @@ def test_pdf_date_is_the_start_of_the_run(
     passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    write_report(build_certificate(passing), tmp_path / "a.pdf")
+    write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
     assert PdfReader(tmp_path / "a.pdf").metadata["/CreationDate"] == "D:20261120235000Z"
 
 
@@ -79,14 +82,16 @@ def test_pdf_refuses_a_wrong_source_date(
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
     with pytest.raises(InputError, match="SOURCE_DATE_EPOCH"):
-        write_report(build_certificate(passing), tmp_path / "a.pdf")
+        write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_pdf_attachment_is_the_results_without_times(results: dict[str, Any], certificate: bytes) -> None:
     reader = PdfReader(io.BytesIO(certificate))
     [content] = reader.attachments["results.json"]
-    assert json.dumps(json.loads(content)) == json.dumps(strip_times(results))  # the order of the rows, too
+    assert json.dumps(json.loads(content)) == json.dumps(
+        strip_times(Results.model_validate(results)).to_dict()
+    )  # the order of the rows, too
     assert b'"started": null' in content
     assert b"wall_s" in content
     assert not re.search(rb'"wall_s": [0-9]', content)
@@ -115,7 +120,7 @@ def test_pdf_prints_every_criterion(results: dict[str, Any], certificate: bytes)
     text = squeeze_text(certificate)
     for case in results["cases"]:
         for row in case["criteria"]:
-            shown = describe_criterion(row, case["uncertainty_basis"])
+            shown = describe_criterion(Criterion.model_validate(row), case["uncertainty_basis"])
             assert f"{shown.label}{row['quantity']}".replace(" ", "") in text
             expected = f"{shown.pantograph}{shown.value}{shown.error}{shown.limits}{shown.margin}"
             assert expected.replace(" ", "") in text
@@ -129,7 +134,7 @@ def test_explanations_are_paragraphs(certificate: bytes) -> None:
 
 
 def test_pdf_prints_hostile_text_literally(hostile: dict[str, Any]) -> None:
-    text = squeeze_text(render_pdf(build_certificate(hostile)))
+    text = squeeze_text(render_pdf(build_certificate(Results.model_validate(hostile))))
     assert '#import"x.typ":*"])#panic()' in text
     assert "<script>alert(1)</script>" in text
     assert "x" * 300 in text
@@ -148,7 +153,7 @@ def test_pdf_embeds_its_fonts(certificate: bytes) -> None:
 def test_write_report_into_an_unwritable_folder_is_an_input_error(passing: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError):
-        write_report(build_certificate(passing), Path(tmp_path, "file", "a.pdf"))
+        write_report(build_certificate(Results.model_validate(passing)), Path(tmp_path, "file", "a.pdf"))
 
 
 def _page_texts(document: Document) -> list[str]:
@@ -221,6 +226,8 @@ def test_note_on_the_attachment_stands_below_the_last_section(passing: dict[str,
     """Some of these documents have no room for the note on their first page."""
     last = Section("Last section", (Paragraph("Closing words"),))
     filler = tuple(Paragraph(f"line {line}") for line in range(lines))
-    pages = _page_texts(Document("Note", PlainHeader("Note", "Text"), (*filler, last), results=passing, date=1))
+    pages = _page_texts(
+        Document("Note", PlainHeader("Note", "Text"), (*filler, last), results=Results.model_validate(passing), date=1)
+    )
     assert "Last section" in pages[-1]
     assert "Attached results" in pages[-1]

@@ -24,7 +24,7 @@ RATIOS = {"A": (0.0050, 0.0030), "B": (0.0051, 0.0031), "C": (0.0049, 0.0029), "
 """Damping ratio of each test in groups 1 and 2."""
 
 
-def build_population(tests: int) -> dict[str, Any]:
+def build_population(tests: int) -> PopulationFile:
     """population.json of tests with the values of `RATIOS`, by turns; those of the rope are outliers."""
     names = [list(RATIOS)[t % 4] for t in range(tests)]
     records = tuple(
@@ -81,7 +81,7 @@ def build_population(tests: int) -> dict[str, Any]:
         levels=(PooledLevel(factor="mass", level="40 kg", tests=tests, medians={1: 0.005}),),
         warnings=("check the rope",),
     )
-    return content.model_dump(mode="json", by_alias=True)
+    return content
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +109,7 @@ def test_page_states_agreement_variability_and_outliers(document: Document) -> N
 def test_outliers_are_dots_on_their_group() -> None:
     """One outlier of the rope in each group; the joint median is a line over the width of its box."""
     population = build_population(4)
-    axes = paint(draw_test_boxes, population["groups"], population["records"])
+    axes = paint(draw_test_boxes, population.groups, population.records)
     dots = [line for line in axes.lines if line.get_marker() == "o"]
     assert [tuple(line.get_xydata()[0]) for line in dots] == [(1, pytest.approx(0.80)), (2, pytest.approx(0.45))]
     joint = [line for line in axes.lines if line.get_linestyle() == "--"]
@@ -119,8 +119,8 @@ def test_outliers_are_dots_on_their_group() -> None:
 def test_many_tests_have_numbers_and_different_markers() -> None:
     """Twelve tests with long names: numbers in the legend, which leaves the axes their size."""
     population = build_population(12)
-    axes = paint(draw_test_ratios, population["records"])
+    axes = paint(draw_test_ratios, population.records)
     styles = {(line.get_marker(), line.get_color()) for line in axes.lines}
     assert len(styles) == 12
     assert [text.get_text() for text in axes.get_legend().get_texts()] == [str(n) for n in range(1, 13)]
-    assert draw_test_ratios(population["records"]).startswith("<svg")
+    assert draw_test_ratios(population.records).startswith("<svg")

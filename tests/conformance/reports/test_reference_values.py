@@ -13,6 +13,8 @@ from pantocheck.conformance.reports.certificate.reference_values import find_ref
 from pantocheck.conformance.reports.figures.force_figures import draw_force
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.results.figure_data import Traces
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
 @pytest.fixture
@@ -31,7 +33,8 @@ def case(passing: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_criteria_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
-    table = criteria_blocks(case, "case-1", "case-1-source")[0]
+    result = CaseResult.model_validate(case)
+    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[0]
     assert isinstance(table, doc.Table)
     assert [column.heading for column in table.columns][3:6] == ["Uncertainty (95 %)", "Reference", "Limits"]
     expected = 1.01 * case["criteria"][0]["value"]
@@ -41,14 +44,15 @@ def test_criteria_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
 
 def test_item_of_a_list_is_found_by_its_number(case: dict[str, Any]) -> None:
     case["reference"]["quantities"]["0"]["presag_mm"] = [10.0, 20.0]
-    row = {"quantity": "presag_mm", "pantograph": 0, "item": 2}
-    assert find_reference(case, row) == 20.0
-    assert find_reference(case, row | {"item": 3}) is None
-    assert find_reference(case, row | {"quantity": "elasticity_mm_N", "item": None}) is None
+    result = CaseResult.model_validate(case)
+    row = result.criteria[0].model_copy(update={"quantity": "presag_mm", "pantograph": 0, "item": 2})
+    assert find_reference(result, row) == 20.0
+    assert find_reference(result, row.model_copy(update={"item": 3})) is None
+    assert find_reference(result, row.model_copy(update={"quantity": "elasticity_mm_N", "item": None})) is None
 
 
 def test_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
-    table = build_quantity_table(case)
+    table = build_quantity_table(CaseResult.model_validate(case))
     headings = [column.heading for column in table.columns]
     assert headings[2:4] == ["Pantograph 1", "Reference, pantograph 1"]
     mean = next(row for row in table.rows if "mean_force_N" in str(row[0]))
@@ -56,7 +60,7 @@ def test_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None
 
 
 def test_force_of_the_reference_is_drawn_behind(case: dict[str, Any]) -> None:
-    trace, force = case["traces"]["1"], case["reference"]["force_20_N"]["1"]
+    trace, force = Traces.model_validate(case["traces"]["1"]), case["reference"]["force_20_N"]["1"]
     for reference, count in ((force, 1), ([], 0)):
         figure = draw_force.__wrapped__(trace, [], reference)  # type: ignore[attr-defined]
         assert isinstance(figure, Figure)
@@ -69,18 +73,21 @@ def test_force_of_the_reference_is_drawn_behind(case: dict[str, Any]) -> None:
 def test_certificate_names_the_reference_and_the_reason_without_values(
     passing: dict[str, Any], case: dict[str, Any]
 ) -> None:
-    page = render_html(build_certificate(passing))
+    page = render_html(build_certificate(Results.model_validate(passing)))
     assert "Reference: values of the Reference 3, for information." in page
     assert "Behind: the reference simulator." in page
-    assert render_pdf(build_certificate(passing)).startswith(b"%PDF")
+    assert render_pdf(build_certificate(Results.model_validate(passing))).startswith(b"%PDF")
     case["reference"] |= {"reason": "no solution", "quantities": {}, "uncertainty": {}, "force_20_N": {}}
-    assert reference_note(case) == (doc.Paragraph("Reference 3: no values for comparison, no solution."),)
-    table = criteria_blocks(case, "case-1", "case-1-source")[0]
+    assert reference_note(CaseResult.model_validate(case)) == (
+        doc.Paragraph("Reference 3: no values for comparison, no solution."),
+    )
+    result = CaseResult.model_validate(case)
+    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[0]
     assert isinstance(table, doc.Table)
     assert "Reference" not in [column.heading for column in table.columns]
 
 
 def test_certificate_without_a_reference_does_not_name_it(passing: dict[str, Any]) -> None:
-    page = render_html(build_certificate(passing))
+    page = render_html(build_certificate(Results.model_validate(passing)))
     assert "Reference:" not in page
     assert "Behind: the reference" not in page

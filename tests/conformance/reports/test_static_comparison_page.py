@@ -43,7 +43,8 @@ def build_results(spans: int = 12, **changes: Any) -> StaticComparison:
         "close": ["lies near"],
     }  # fmt: skip
     content = {
-        "suite": {"version": "1", "commit": None, "digest": "sha256:c"}, "model": {"name": "My line", "digest": "sha256:a"},
+        "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
+        "model": {"name": "My line", "digest": "sha256:a"},
         "record": {"name": "measured.csv", "digest": "sha256:b"}, "record_state": "unverified", "verdict": "fail",
         "element_m": 0.5, "force_N": [60.0, 120.0], "evaluated_spans": [2, 11], "evaluated_m": [60.0, 660.0],
         "largest_distance_m": None, "values": [values], "criteria": [criterion], "note": None,

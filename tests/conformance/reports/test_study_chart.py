@@ -15,6 +15,7 @@ from pantocheck.conformance.reports.document import Section
 from pantocheck.conformance.reports.figures.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.results.figure_data import Chart, Mark, Series, TextTable
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
 
@@ -22,9 +23,9 @@ LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 
 POINTS = LINE.model_copy(update={"style": "points"})
 
 
-def data(**parts: Any) -> dict[str, Any]:
+def data(**parts: Any) -> Chart:
     default = {"caption": "c", "alternative": "a", "x_label": "x [s]", "y_label": "y [N]", "series": [LINE]}
-    return Chart.model_validate(default | parts).model_dump()
+    return Chart.model_validate(default | parts)
 
 
 def draw(**parts: Any) -> str:
@@ -79,7 +80,7 @@ def test_charts_side_by_side_have_one_scale(results: dict[str, Any]) -> None:
     narrow, other = data(wide=False), data(wide=False, y_label="z [mm]")
     higher = data(wide=False, series=[LINE.model_copy(update={"y": [9.0, 2.0, 1.0]})])
     case = results["cases"][0] | {"charts": [narrow, higher, other, data()], "traces": {}, "uplift": []}
-    figures = list(draw_case_figures(case, 0, "case-1"))
+    figures = list(draw_case_figures(CaseResult.model_validate(case), 0, "case-1"))
     assert [figure.wide for figure in figures] == [False, False, False, True]
     common = (0.0, 1.05 * 9.0)
     expected = [draw_chart(narrow, common), draw_chart(higher, common), draw_chart(other), draw_chart(data())]
@@ -108,7 +109,7 @@ def test_certificate_shows_tables_and_charts_of_a_study_escaped(results: dict[st
                             series=[LINE]).model_dump()]  # fmt: skip
     table = TextTable(caption="Findings", columns=["Finding", "Verdict"], rows=[["<b>less</b> in front", "reproduced"]])
     case["tables"] = [table.model_dump()]
-    document = build_certificate(results)
+    document = build_certificate(Results.model_validate(results))
     text = render_html(document)
     assert "Figure of a study" in text
     assert "&lt;b&gt;less&lt;/b&gt; in front" in text

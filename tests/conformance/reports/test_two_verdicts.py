@@ -17,7 +17,7 @@ from pantocheck.conformance.reports.document import Code
 from pantocheck.conformance.reports.formats.badge import summarise_verdict
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.markdown import render_markdown
-from pantocheck.conformance.results.results_format import Results, VerdictName
+from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 
 BOTH: tuple[VerdictName, ...] = ("criteria", "verification")
 BAND = "rms_20_50_N"
@@ -57,13 +57,13 @@ def failing(passing: dict[str, Any]) -> Results:
 
 
 def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
-    shown = build_headline(decide(failing, "criteria"))
+    shown = build_headline(Results.model_validate(decide(failing, "criteria")))
     assert "All 16 counted criteria in 1 case lie inside their limits." in shown
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL (for information)." in shown
-    decided = build_headline(decide(failing, *BOTH))
+    decided = build_headline(Results.model_validate(decide(failing, *BOTH)))
     assert "0 of 1 case passes, 1 fails (1 of 17 counted criteria outside their limits)." in decided
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL." in decided
-    alone = build_headline(decide(failing, "verification"))
+    alone = build_headline(Results.model_validate(decide(failing, "verification")))
     assert "(1 of 1 counted criteria outside their limits)" in alone
     assert "EN 50318 criteria: PASS (for information); Verification up to 50 Hz: FAIL." in alone
 
@@ -72,26 +72,30 @@ def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str,
     results = decide(add_verification(passing, 60.0), *BOTH)
     remark = "1 N above the upper limit without the stated start, which is not checked"
     results["cases"][0]["verification"]["criteria"][0]["reason"] = remark
-    sections = {section.heading: section for section in list_reasons(results)}
-    page = render_markdown(build_certificate(results))
+    sections = {section.heading: section for section in list_reasons(Results.model_validate(results))}
+    page = render_markdown(build_certificate(Results.model_validate(results)))
     assert "Inside the limits only with the stated start" in sections
     assert page.count(remark) == 2  # page 1 and the table of the case
-    assert find_discrepancies(results) == []
+    assert find_discrepancies(Results.model_validate(results)) == []
 
 
 def test_band_table_shows_the_verification_where_no_limit_is_published(failing: Results) -> None:
     """A value that the verification fails is not called informative beside it."""
-    (row,) = (row for row in build_band_table(decide(failing)["cases"][0]).rows if Code(BAND) in row[0])
+    (row,) = (
+        row
+        for row in build_band_table(CaseResult.model_validate(decide(failing)["cases"][0])).rows
+        if Code(BAND) in row[0]
+    )
     assert str(row[2]).endswith("(no published limit; verification FAIL)")
 
 
 def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any]) -> None:
-    assert "Verification" not in build_headline(passing)
+    assert "Verification" not in build_headline(Results.model_validate(passing))
 
 
 @pytest.mark.parametrize("build", [build_certificate, build_summary])
 def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: Any) -> None:
-    text = render_markdown(build(decide(failing, "criteria")))
+    text = render_markdown(build(Results.model_validate(decide(failing, "criteria"))))
     assert "## Two verdicts" in text
     assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes." in text
     assert "| Verification against the converged solution, up to 50 Hz | FAIL | for information |" in text
@@ -103,7 +107,7 @@ def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -
     """A case that only the verification judges has not failed the criteria."""
     results = decide(failing, *BOTH)
     results["criteria_verdict"] = results["cases"][0]["criteria_verdict"] = "info"
-    text = render_markdown(build_summary(results))
+    text = render_markdown(build_summary(Results.model_validate(results)))
     assert "| EN 50318 criteria | INFO | decides | No case has a limit that counts." in text
     assert "0 of 1 case passes." in text  # the verification fails
 
@@ -115,7 +119,10 @@ def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
 
 
 def test_reasons_name_the_failed_verification_only_where_it_decides(failing: Results) -> None:
-    shown, decided = (render_markdown(build_summary(decide(failing, *names))) for names in (("criteria",), BOTH))
+    shown, decided = (
+        render_markdown(build_summary(Results.model_validate(decide(failing, *names))))
+        for names in (("criteria",), BOTH)
+    )
     assert "## Failed" in decided
     assert ", verification: " in decided
     assert "## Failed" not in shown
@@ -128,15 +135,15 @@ def test_junit_skips_the_verdict_that_does_not_decide(
     failing: Results, requested: tuple[VerdictName, ...], failures: int, skipped: int
 ) -> None:
     """The example has 16 criteria, a verified record, and one criterion of the verification."""
-    root = ElementTree.fromstring(render_junit(decide(failing, *requested)))
+    root = ElementTree.fromstring(render_junit(Results.model_validate(decide(failing, *requested))))
     assert (int(root.get("failures", "")), int(root.get("skipped", ""))) == (failures, skipped)
     assert any(test.get("name", "").startswith(f"verification: {BAND}") for test in root.iter("testcase"))
 
 
 def test_badge_counts_the_criteria_that_decide(failing: Results) -> None:
-    assert summarise_verdict(decide(failing, "criteria")) == "pass 16/16"
-    assert summarise_verdict(decide(failing, *BOTH)) == "fail 16/17"
-    assert summarise_verdict(decide(failing, "verification")) == "fail 0/1"
+    assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
+    assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
+    assert summarise_verdict(Results.model_validate(decide(failing, "verification"))) == "fail 0/1"
 
 
 @pytest.mark.parametrize("requested", [("criteria",), BOTH, ("verification",)])
@@ -144,7 +151,7 @@ def test_badge_counts_the_criteria_that_decide(failing: Results) -> None:
 def test_decided_results_are_consistent(
     passing: dict[str, Any], upper: float, requested: tuple[VerdictName, ...]
 ) -> None:
-    assert find_discrepancies(decide(add_verification(passing, upper), *requested)) == []
+    assert find_discrepancies(Results.model_validate(decide(add_verification(passing, upper), *requested))) == []
 
 
 def test_changed_verification_is_found(failing: Results) -> None:
@@ -168,7 +175,7 @@ def test_changed_verification_is_found(failing: Results) -> None:
                 forged["verdict"] = "pass"
             case "verification of the run":
                 forged["verification_verdict"] = "pass"
-        assert find_discrepancies(forged), change
+        assert find_discrepancies(Results.model_validate(forged)), change
 
 
 def test_computed_limit_among_the_criteria_does_not_count(passing: dict[str, Any]) -> None:

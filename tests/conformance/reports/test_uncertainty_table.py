@@ -9,12 +9,13 @@ from pantocheck.conformance.reports.certificate.uncertainty_table import uncerta
 from pantocheck.conformance.reports.document import BulletList, Code, Section, Table
 from pantocheck.conformance.reports.figures.spark_line import draw_spark_line
 from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
 def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) -> None:
     """Both pantographs; an unknown component is a dash, and its reason stands above the table."""
     case = passing["cases"][0]
-    basis, table = uncertainty_blocks(case)
+    basis, table = uncertainty_blocks(CaseResult.model_validate(case))
     assert isinstance(table, Table)
     assert isinstance(basis, BulletList)
     assert basis.items[1].startswith("Start: 7 runs with other starts and ramps")
@@ -32,9 +33,9 @@ def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) ->
 
 def test_model_uncertainty_stands_below_the_components_and_changes_no_width(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
-    _, table = uncertainty_blocks(case)
+    _, table = uncertainty_blocks(CaseResult.model_validate(case))
     case["model_uncertainty"] = ["Constant tension. Maximum of the 20 Hz force: 0.8 %."]
-    basis, same = uncertainty_blocks(case)
+    basis, same = uncertainty_blocks(CaseResult.model_validate(case))
     assert isinstance(basis, BulletList)
     assert len(basis.items) == 5
     assert basis.items[4] == (
@@ -48,10 +49,10 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
     case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
-    _, table = uncertainty_blocks(case)
+    _, table = uncertainty_blocks(CaseResult.model_validate(case))
     assert isinstance(table, Table)
     assert table.rows[-1][1:] == ("line", "mm", "0.50*", "0.50", "–", "–", "–")
-    cells = {row[0][1]: row for row in build_quantity_table(case).rows}
+    cells = {row[0][1]: row for row in build_quantity_table(CaseResult.model_validate(case)).rows}
     assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
 
 
@@ -62,7 +63,7 @@ def test_long_list_is_drawn_with_its_range(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
     case["quantities"]["0"] = {"presag_mm": [0.5] * 10, "elasticity_along_span_mm_N": [0.25, *[0.5] * 23]}
     case["uncertainty"]["0"] = {}
-    cells = {row[0][1]: row[-1] for row in build_quantity_table(case).rows}
+    cells = {row[0][1]: row[-1] for row in build_quantity_table(CaseResult.model_validate(case)).rows}
     assert cells[Code("presag_mm")].count("0.50000") == 10
     drawing, text = cells[Code("elasticity_along_span_mm_N")]
     assert drawing.svg == draw_spark_line([0.25, *[0.5] * 23])
@@ -70,7 +71,9 @@ def test_long_list_is_drawn_with_its_range(passing: dict[str, Any]) -> None:
 
 
 def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
-    sections = [block for block in build_certificate(results).blocks if isinstance(block, Section)]
+    sections = [
+        block for block in build_certificate(Results.model_validate(results)).blocks if isinstance(block, Section)
+    ]
     found = {
         section.heading: [part.heading for part in section.blocks if isinstance(part, Section)] for section in sections
     }

@@ -20,6 +20,7 @@ from pantocheck.conformance.reports.document import (
 )
 from pantocheck.conformance.reports.formats.html import render_html
 from pantocheck.conformance.reports.unit_spaces import bind_page_units, bind_units
+from pantocheck.conformance.results.results_format import Results
 
 GAP = "\N{NO-BREAK SPACE}"
 
@@ -60,7 +61,7 @@ def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
 
 
 def test_page_binds_escaped_text_too(passing: dict[str, Any]) -> None:
-    document = build_certificate(passing)
+    document = build_certificate(Results.model_validate(passing))
     first = Paragraph("<b> 31 N & 32 m")
     page = render_html(replace(document, blocks=(first, *document.blocks)))
     assert f"&lt;b&gt; 31{GAP}N &amp; 32{GAP}m" in page

@@ -17,12 +17,15 @@ from pantocheck.conformance.reports.document import Facts, Section
 from pantocheck.conformance.reports.formats.junit import render_junit
 from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.results.administration import read_administration
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 
 
 def document_facts(results: dict[str, Any]) -> dict[str, str]:
     """Facts of the section on the document."""
-    sections = [block for block in build_certificate(results).blocks if isinstance(block, Section)]
+    sections = [
+        block for block in build_certificate(Results.model_validate(results)).blocks if isinstance(block, Section)
+    ]
     [section] = [section for section in sections if section.anchor == "document"]
     [facts] = section.blocks
     assert isinstance(facts, Facts)
@@ -84,8 +87,10 @@ def test_page_1_states_data_date_and_digest(results: dict[str, Any], monkeypatch
         "Remarks": "one two",
         "Date of this document": "2023-11-14 22:13:20 UTC",
     }
-    content = render_pdf(build_certificate(results))
-    assert content == render_pdf(build_certificate(results | {"started": "2026-11-21T00:00:00Z"}))
+    content = render_pdf(build_certificate(Results.model_validate(results)))
+    assert content == render_pdf(
+        build_certificate(Results.model_validate(results | {"started": "2026-11-21T00:00:00Z"}))
+    )
     reader = PdfReader(io.BytesIO(content))
     [attachment] = reader.attachments["results.json"]
     assert facts["Digest of the results"] == f"sha256:{hashlib.sha256(attachment).hexdigest()}"
@@ -99,5 +104,5 @@ def test_issuer_is_named_as_missing_without_data(results: dict[str, Any]) -> Non
 
 
 def test_junit_has_the_data_as_properties(hostile: dict[str, Any]) -> None:
-    text = render_junit(hostile).decode()
+    text = render_junit(Results.model_validate(hostile)).decode()
     assert 'name="administration_report_number" value="&lt;script&gt;alert(1)&lt;/script&gt;"' in text

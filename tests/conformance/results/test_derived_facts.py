@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.reports.certificate.derived_table import derived_blocks
 from pantocheck.conformance.reports.document import Table
+from pantocheck.conformance.results.case_facts_format import DerivedFact
 from pantocheck.conformance.results.derived_facts import list_derived_facts
 from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_building import build_results, utc_now
@@ -61,10 +62,12 @@ def test_static_case_has_no_doppler_factor() -> None:
 
 def test_table_shows_five_digits_and_is_left_out_without_values() -> None:
     fact = {"name": "Uplift force of pantograph 1", "value": 163.456789, "unit": "N", "basis": "tuned"}
-    table, _ = derived_blocks({"derived": [fact]})
+    *_, case = select_cases(["en50318-2018/ac-simple/320-twin"])
+    result = build_ungraded(case, "skip", "not run")
+    table, _ = derived_blocks(result.model_copy(update={"derived": [DerivedFact.model_validate(fact)]}))
     assert isinstance(table, Table)
     assert table.rows == (("Uplift force of pantograph 1", "163.46", "N", "tuned"),)
-    assert derived_blocks({"derived": []}) == ()
+    assert derived_blocks(result.model_copy(update={"derived": []})) == ()
 
 
 def test_changed_derived_value_contradicts_the_library() -> None:

@@ -12,8 +12,9 @@ from helpers.section_lines import section_line
 from pantocheck.conformance.cases.geometry import Geometry, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.command_line.line_draw_command import list_marks
 from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drawing_marks import DrawnMark, list_marks
+from pantocheck.conformance.simulation.drawing_marks import DrawnMark
 from pantocheck.conformance.simulation.drawing_rows import ROW_LENGTH, divide_into_pages, divide_into_rows
 from pantocheck.conformance.simulation.line_drawing import (
     LABEL_SPACE,

@@ -6,6 +6,7 @@ import pytest
 
 from pantocheck.conformance.reports.figures import study_chart
 from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.results.figure_data import Chart
 from verification.guide.guide_building import list_deviations
 from verification.guide.guide_format import Guide
 from verification.guide.guide_values import count_results, list_guide_values
@@ -122,14 +123,14 @@ def test_scatter_plot_marks_and_names_the_values_outside_their_range(
 ) -> None:
     """Three ranges of 10 N to 30 N: only the value of 31 N lies outside."""
     data["library"][0]["published"] = [_published(20.3), _published(31.0), _published(25.0)]
-    charts: list[dict[str, Any]] = []
+    charts: list[Chart] = []
 
-    def keep_chart(chart: dict[str, Any], y_range: tuple[float, float]) -> str:
+    def keep_chart(chart: Chart, y_range: tuple[float, float]) -> str:
         charts.append(chart)
         return study_chart.draw_chart(chart, y_range)
 
     monkeypatch.setattr(validation_section, "draw_chart", keep_chart)
     text = render_markdown(build_guide_page(data)).replace("\\", "")
-    [crosses] = [series for series in charts[-1]["series"] if series["style"] == "crosses"]
-    assert (crosses["x"], crosses["y"]) == ([31.0], [20.0])
+    [crosses] = [series for series in charts[-1].series if series.style == "crosses"]
+    assert (crosses.x, crosses.y) == ([31.0], [20.0])
     assert "Outside their range: own/twin: " in text

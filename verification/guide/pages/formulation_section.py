@@ -6,6 +6,7 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_plain, format_value
 from pantocheck.conformance.reports.words import quantity_label, quantity_unit
+from pantocheck.conformance.results.figure_data import Chart
 
 FORMULATION_SCOPE = (
     "Two formulations of the equations share no code: finite elements with the method of Fox and Goodwin, and explicit "
@@ -115,7 +116,7 @@ def _draw_differences(cases: list[dict[str, Any]]) -> doc.Figure:
         f"{name}: {format_value(max(one['y'][k] for one in series), 2)} %" for k, name in enumerate(names)
     )
     return doc.Figure(
-        draw_chart(chart),
+        draw_chart(Chart.model_validate({"caption": "", "alternative": ""} | chart)),
         f"Largest difference of each case over the pantographs and bands: {largest}.",
         "Largest difference of this version from the second formulation, of the pantographs of each case.",
     )

@@ -5,6 +5,7 @@ from typing import Any
 from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_value
+from pantocheck.conformance.results.figure_data import Chart
 from verification.guide.pages.convergence_chart import draw_convergence
 
 AGREEMENT = {True: "yes", False: "NO"}
@@ -19,7 +20,10 @@ def build_topic_section(name: str, topic: dict[str, Any]) -> doc.Section:
     if topic["convergence"]:
         blocks += [_build_orders(topic["convergence"]), list_tolerance_reasons(topic["convergence"])]
     figures = [_draw_study(study) for study in topic["convergence"]]
-    figures += [doc.Figure(draw_chart(chart), chart["alternative"], chart["caption"]) for chart in topic["charts"]]
+    figures += [
+        doc.Figure(draw_chart(Chart.model_validate(chart)), chart["alternative"], chart["caption"])
+        for chart in topic["charts"]
+    ]
     if figures:
         blocks.append(doc.Figures(tuple(figures)))
     return doc.Section(topic["title"], tuple(blocks), anchor=f"verification-{name}")

@@ -7,6 +7,7 @@ from pantocheck.conformance.reports import document as doc
 from pantocheck.conformance.reports.figures.study_chart import draw_chart
 from pantocheck.conformance.reports.page_text import format_beside_limits, format_value
 from pantocheck.conformance.reports.words import quantity_label, quantity_unit
+from pantocheck.conformance.results.figure_data import Chart
 
 VALIDATION_SCOPE = (
     "Every library case with published limits runs on the reference simulator of this version. The limits stand with "
@@ -158,7 +159,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
     }
     inside = sum(row["inside"] is True for row in rows)
     return doc.Figure(
-        draw_chart(chart, (low - margin, high + margin)),
+        draw_chart(Chart.model_validate({"caption": "", "alternative": ""} | chart), (low - margin, high + margin)),
         f"{inside} of {len(rows)} published ranges in {unit} contain the computed value, from {format_value(low, 3)} "
         f"to {format_value(high, 3)} {unit}.{_list_outside(outside)}",
         f"Published against computed values [{unit}].{_list_outside(outside)}",

@@ -32,12 +32,9 @@ from pantocheck.model.fem.residual_flexibility import residual_flexibility
 class DroppersAndContact:
     """Nonlinear forces of line and pantographs, and their tangent.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line with one contact wire.
-    passage : Passage
-        Pantographs, their positions and speed.
+    Args:
+        line: Line with one contact wire.
+        passage: Pantographs, their positions and speed.
     """
 
     def __init__(self, line: DiscretisedLine, passage: Passage) -> None:
@@ -131,17 +128,12 @@ class DroppersAndContact:
 def run_exudyn(line: DiscretisedLine, passage: Passage) -> tuple[RealArray, float, float]:
     """Simulate a passage with Exudyn's implicit Newmark solver, sparse matrices and Newton's method.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line in the vertical plane with one contact wire.
-    passage : Passage
-        Pantographs, speed, duration.
+    Args:
+        line: Line in the vertical plane with one contact wire.
+        passage: Pantographs, speed, duration.
 
-    Returns
-    -------
-    (P, T) ndarray
-        Contact force [N], process time of the solver [s], part of it in user functions [s].
+    Returns:
+        Contact force [N], process time of the solver [s], part of it in user functions [s], (P, T).
     """
     model = DroppersAndContact(line, passage)
     forces: list[RealArray] = []

@@ -9,22 +9,15 @@ from verification.guide.guide_format import CheckedValue, PeerComparison
 
 @dataclass(frozen=True)
 class Peer:
-    """Comparison with an optional package.
-
-    Parameters
-    ----------
-    package : str
-        Name of the package in its registry.
-    title, setting : str
-        Subject of the comparison; computation, and parts that both programs share.
-    compare : callable
-        Comparison; it imports the package.
-    """
+    """Comparison with an optional package."""
 
     package: str
+    """Name of the package in its registry."""
     title: str
     setting: str
+    """Subject of the comparison; computation, and parts that both programs share."""
     compare: Callable[[], list[CheckedValue]]
+    """Comparison; it imports the package."""
 
 
 def find_version(package: str) -> str | None:

@@ -47,12 +47,9 @@ def compare_frequencies() -> list[CheckedValue]:
 def solve_with_scikit_fem(catenary: Catenary, line: DiscretisedLine) -> RealArray:
     """Natural frequencies of the vertical motion of a line [Hz]; springs of connectors are added by hand.
 
-    Parameters
-    ----------
-    catenary : Catenary
-        Contact wire and messenger wire with droppers of given stiffness.
-    line : DiscretisedLine
-        Its elements, which are refined.
+    Args:
+        catenary: Contact wire and messenger wire with droppers of given stiffness.
+        line: Its elements, which are refined.
     """
     from skfem import Basis, ElementLineHermite, MeshLine
 

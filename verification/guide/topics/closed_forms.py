@@ -9,17 +9,13 @@ from pantocheck.model.catenary import GRAVITY
 def wire_sag(x: RealArray, length: float, tension: float, mass: float, bending_stiffness: float) -> RealArray:
     """Deflection of a pinned tensioned beam under its weight [m].
 
-    Parameters
-    ----------
-    x : (n,) ndarray
-        Positions [m].
-    length, tension, mass, bending_stiffness : float
-        Length [m], tension T [N], mass per length [kg/m] and bending stiffness EI [N m2].
+    Args:
+        x: Positions, (n,) [m].
+        length, tension, mass, bending_stiffness: Length [m], tension T [N], mass per length [kg/m] and bending
+            stiffness EI [N m2].
 
-    Returns
-    -------
-    (n,) ndarray
-        Deflection of the solution of EI w'''' - T w'' = -m g; the cosh term is the bending near the ends.
+    Returns:
+        Deflection of the solution of EI w'''' - T w'' = -m g, (n,); the cosh term is the bending near the ends.
     """
     weight, decay = mass * GRAVITY, np.sqrt(tension / bending_stiffness)
     ends = np.cosh(decay * (x - length / 2)) / np.cosh(decay * length / 2)
@@ -38,19 +34,13 @@ def point_flexibility(x: RealArray, length: float, tension: float, bending_stiff
 def moving_load_deflection(times: RealArray, speed: float, wire: tuple[float, float, float, float]) -> RealArray:
     """Deflection under a constant unit force that moves along a pinned beam and enters at one end at t = 0.
 
-    Parameters
-    ----------
-    times : (n,) ndarray
-        Times [s].
-    speed : float
-        Speed of the force [m/s].
-    wire : tuple of float
-        Length [m], tension [N], mass per length [kg/m] and bending stiffness [N m2].
+    Args:
+        times: Times, (n,) [s].
+        speed: Speed of the force [m/s].
+        wire: Length [m], tension [N], mass per length [kg/m] and bending stiffness [N m2].
 
-    Returns
-    -------
-    (n,) ndarray
-        Deflection per force [m/N], summed over 4000 modes (Fryba, Vibration of solids and structures, chapter 1).
+    Returns:
+        Deflection per force, (n,) [m/N], summed over 4000 modes (Fryba, Vibration of solids and structures, chapter 1).
     """
     length, tension, mass, bending_stiffness = wire
     k = np.arange(1, 4001) * np.pi / length
@@ -69,21 +59,14 @@ def travelling_pulse(
 ) -> RealArray:
     """Pulse of 10 mm that travels to the right on a long wire, each wave with its own speed.
 
-    Parameters
-    ----------
-    x : (n,) ndarray
-        Equally spaced positions; the pulse stays away from their ends [m].
-    pulse : (float, float)
-        Centre at t = 0 and standard deviation of the pulse [m, m].
-    wire : tuple of float
-        Tension [N], mass per length [kg/m] and bending stiffness [N m2].
-    times : (t,) ndarray
-        Times [s].
+    Args:
+        x: Equally spaced positions, (n,); the pulse stays away from their ends [m].
+        pulse: Centre at t = 0 and standard deviation of the pulse [m, m].
+        wire: Tension [N], mass per length [kg/m] and bending stiffness [N m2].
+        times: Times, (t,) [s].
 
-    Returns
-    -------
-    (t, 3, 2, n) ndarray
-        Deflection, velocity and acceleration; value and slope of each.
+    Returns:
+        Deflection, velocity and acceleration, (t, 3, 2, n); value and slope of each.
     """
     (centre, width), (tension, mass, bending_stiffness) = pulse, wire
     k = 2 * np.pi * np.fft.rfftfreq(x.size - 1, x[1] - x[0])

@@ -94,15 +94,11 @@ def _average(times: RealArray, force: RealArray) -> RealArray:
 def simulate_heads(speed: float, element: float, time_step: float) -> tuple[RealArray, RealArray]:
     """Contact forces of both heads on the reference simulator.
 
-    Parameters
-    ----------
-    speed, element, time_step : float
-        Speed [m/s], element length [m] and time step [s].
+    Args:
+        speed, element, time_step: Speed [m/s], element length [m] and time step [s].
 
-    Returns
-    -------
-    (T,) ndarray, (2, T) ndarray
-        Times [s] and contact forces [N].
+    Returns:
+        Times [s] and contact forces [N], (T,) and (2, T).
     """
     line = discretise(build_wire(_LENGTH, bending_stiffness=0.0), element)
     level = replace(line, state=replace(line.state, deflection=np.zeros_like(line.state.deflection)))
@@ -113,12 +109,9 @@ def simulate_heads(speed: float, element: float, time_step: float) -> tuple[Real
 def solve_delay_equations(speed: float, times: RealArray) -> RealArray:
     """Contact forces of both heads on an infinite string (2, T) [N].
 
-    Parameters
-    ----------
-    speed : float
-        Speed of the heads [m/s].
-    times : (T,) ndarray
-        Times [s].
+    Args:
+        speed: Speed of the heads [m/s].
+        times: Times, (T,) [s].
     """
     c = wave_speed(WIRE_TENSION, WIRE_MASS)
     distance = _PLACES[0] - _PLACES[1]

@@ -30,25 +30,18 @@ _HEAD = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.
 
 @dataclass(frozen=True)
 class PassageBalance:
-    """Largest differences of the balances of a passage without damping.
-
-    Parameters
-    ----------
-    energy : float
-        Largest difference between the change of the energy and the work of the forces, over the work on the line [-].
-    momentum : float
-        Largest difference between the change of the vertical momentum and the impulse of the forces, over the largest
-        impulse of the contact forces [-].
-    work : float
-        Sum of the work on the line in both directions [J].
-    touched : tuple of bool
-        Whether a head touched each contact wire.
-    """
+    """Largest differences of the balances of a passage without damping."""
 
     energy: float
+    """Largest difference between the change of the energy and the work of the forces, over the work on the line [-]."""
     momentum: float
+    """Largest difference between the change of the vertical momentum and the impulse of the forces, over the largest
+    impulse of the contact forces [-].
+    """
     work: float
+    """Sum of the work on the line in both directions [J]."""
     touched: tuple[bool, ...]
+    """Whether a head touched each contact wire."""
 
 
 def study_balances() -> Topic:
@@ -86,12 +79,9 @@ def study_balances() -> Topic:
 def measure_balances(line: DiscretisedLine, passage: Passage) -> PassageBalance:
     """Balances of a passage on a line without damping and with bilateral droppers, step by step.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line without lateral field and without damping.
-    passage : Passage
-        Pantographs without dampers.
+    Args:
+        line: Line without lateral field and without damping.
+        passage: Pantographs without dampers.
     """
     kernel = build_kernel_arrays(line, passage.time_step)
     motion, train = start_motion(line, kernel, passage)

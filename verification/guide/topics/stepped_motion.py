@@ -15,23 +15,15 @@ def advance_freely(
 ) -> RealArray:
     """Deflection of the first row in free motion from a given state.
 
-    Parameters
-    ----------
-    line : DiscretisedLine
-        Line without lateral field.
-    time_step : float
-        Time step [s].
-    steps : int
-        Number of time steps.
-    fields : tuple of (3, B, S) ndarray
-        Displacement, velocity and acceleration at the start: deflections, and slopes.
-    every : int
-        Steps between two rows of the result.
+    Args:
+        line: Line without lateral field.
+        time_step: Time step [s].
+        steps: Number of time steps.
+        fields: Displacement, velocity and acceleration at the start, each (3, B, S): deflections, and slopes.
+        every: Steps between two rows of the result.
 
-    Returns
-    -------
-    (steps // every, S) ndarray
-        Deflection after every `every` steps [m].
+    Returns:
+        Deflection after every `every` steps, (steps // every, S) [m].
     """
     kernel = build_kernel_arrays(line, time_step)
     train = build_empty_train(1)

@@ -20,7 +20,12 @@ from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.identification.damping.damping_format import Coefficient, Matching, Observability
+from pantocheck.conformance.identification.damping.damping_format import (
+    Coefficient,
+    DampingResults,
+    Matching,
+    Observability,
+)
 from pantocheck.conformance.identification.damping.damping_results import build_damping_results
 from pantocheck.conformance.identification.damping.damping_toml import write_damping_toml
 from pantocheck.conformance.identification.damping.line_comparison import compare_line, refuse_other_line
@@ -309,7 +314,7 @@ def test_permitted_other_line_is_marked_in_every_file(tmp_path: Path, measured: 
     for text in (" ".join(page.split()), " ".join(paper.split())):
         assert "The line of the fit is NOT the line of the record." in text
         assert difference in text
-    box = build_damping_document(results, "").blocks[0]
+    box = build_damping_document(DampingResults.model_validate(results), "").blocks[0]
     assert isinstance(box, WarningBox)
     assert box.sentences[: len(results["warnings"])] == tuple(results["warnings"])
     for name in ("damping.toml", "damping_with_modal.toml"):

@@ -111,7 +111,7 @@ def test_page_and_warning_name_the_modes_that_are_left_out(results: DampingResul
     overlapping = [pair for pair in results.pairs if pair.overlapping]
     warning = results.warnings[1]
     assert warning.startswith(f"{len(overlapping)} modes left out of the fit: {overlapping[0].measured_Hz:.3f}, ")
-    document = build_damping_document(results.model_dump(mode="json", by_alias=True), "")
+    document = build_damping_document(results, "")
     assert f"fitted to {len(results.pairs) - len(overlapping)} modes" in document.header.headline
     assert str(document).count("no: overlaps another mode") == len(overlapping)
 

@@ -88,7 +88,7 @@ def test_arc_share_is_graded_and_contact_losses_are_listed(sidecar: Path) -> Non
     assert "1" not in case.contact_losses
     loss = case.contact_losses["2"][0]
     assert (loss.position_m, loss.lowest_force_N) == (pytest.approx(360.0, abs=0.2), 0.0)
-    page = str(build_certificate(results.to_dict()).blocks)
+    page = str(build_certificate(results).blocks)
     assert "20 contact losses in the unfiltered force" in page
 
 

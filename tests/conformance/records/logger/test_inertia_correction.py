@@ -12,8 +12,8 @@ from scipy.interpolate import CubicSpline
 from helpers.short_cases import shorten_case
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_signals import RecordSignals

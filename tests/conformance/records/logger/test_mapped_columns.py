@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from helpers.foreign_tables import FOREIGN_WRITERS
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.case_file import Filter
 from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record, read_samples
 from pantocheck.conformance.records.record_signals import RecordSignals

@@ -67,13 +67,13 @@ def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart:
 
 def test_drawn_thresholds_are_those_of_the_fit(chart: Chart) -> None:
     assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
-    rows, thresholds = [row.model_dump() for row in OBSERVED], observability.THRESHOLDS.model_dump()
+    rows, thresholds = OBSERVED, observability.THRESHOLDS
     left, right = draw_observability.__wrapped__(rows, thresholds).axes
-    assert set(left.lines[0].get_xdata()) == {100 * thresholds["largest_share"]}
-    assert set(right.lines[0].get_xdata()) == {thresholds["plausible_over_std"]}
+    assert set(left.lines[0].get_xdata()) == {100 * thresholds.largest_share}
+    assert set(right.lines[0].get_xdata()) == {thresholds.plausible_over_std}
     description = describe_observability(thresholds)
-    assert f"at least {100 * thresholds['largest_share']:g} % of the damping of some mode" in description
-    assert f"at least {thresholds['plausible_over_std']:g} times its standard deviation" in description
+    assert f"at least {100 * thresholds.largest_share:g} % of the damping of some mode" in description
+    assert f"at least {thresholds.plausible_over_std:g} times its standard deviation" in description
 
 
 def test_caption_names_the_smallest_drawn_ratio(chart: Chart) -> None:
