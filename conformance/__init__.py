@@ -7,31 +7,29 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.input_files.input_error import InputError
-    from pantocheck.conformance.interface.built_case import build_case
-    from pantocheck.conformance.interface.campaign_session import read_traces, run_campaign
-    from pantocheck.conformance.interface.compared_runs import ComparedRuns, compare_runs
-    from pantocheck.conformance.interface.fitted_damping import FittedDamping
-    from pantocheck.conformance.interface.fitted_pantograph import FittedPantograph, fit_pantograph
-    from pantocheck.conformance.interface.graded_results import (
+    from pantocheck.conformance.app.notebook.campaign_session import read_traces, run_campaign
+    from pantocheck.conformance.app.notebook.compared_runs import ComparedRuns, compare_runs
+    from pantocheck.conformance.app.notebook.fitted_damping import FittedDamping
+    from pantocheck.conformance.app.notebook.fitted_pantograph import FittedPantograph, fit_pantograph
+    from pantocheck.conformance.app.notebook.graded_results import (
         GradedResults,
         assess_run,
         grade_cases,
         open_results,
         validate_dossier,
     )
-    from pantocheck.conformance.interface.identified_lines import (
+    from pantocheck.conformance.app.notebook.identified_lines import (
         IdentifiedLines,
         IdentifiedRecords,
         identify_line,
         open_modes,
     )
-    from pantocheck.conformance.interface.opened_case import OpenedCase, list_cases, open_case
-    from pantocheck.conformance.interface.opened_drop import OpenedDrop, open_drop
-    from pantocheck.conformance.interface.opened_line import OpenedLine, open_line
-    from pantocheck.conformance.interface.opened_pantograph import OpenedPantograph, open_pantograph
-    from pantocheck.conformance.interface.opened_run import OpenedRun, SimulatedRun, open_run
-    from pantocheck.conformance.interface.verified_report import VerifiedReport, verify_report
+    from pantocheck.conformance.app.notebook.opened_case import OpenedCase, build_case, list_cases, open_case
+    from pantocheck.conformance.app.notebook.opened_drop import OpenedDrop, open_drop
+    from pantocheck.conformance.app.notebook.opened_line import OpenedLine, OpenedPantograph, open_line, open_pantograph
+    from pantocheck.conformance.app.notebook.opened_run import OpenedRun, SimulatedRun, open_run
+    from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
+    from pantocheck.conformance.core.input_error import InputError
 
 __all__ = [
     "ComparedRuns",
@@ -69,38 +67,38 @@ __all__ = [
 ]
 
 _MODULES = {
-    "ComparedRuns": "interface.compared_runs",
-    "FittedDamping": "interface.fitted_damping",
-    "FittedPantograph": "interface.fitted_pantograph",
-    "GradedResults": "interface.graded_results",
-    "IdentifiedLines": "interface.identified_lines",
-    "IdentifiedRecords": "interface.identified_lines",
-    "InputError": "input_files.input_error",
-    "OpenedCase": "interface.opened_case",
-    "OpenedDrop": "interface.opened_drop",
-    "OpenedLine": "interface.opened_line",
-    "OpenedPantograph": "interface.opened_pantograph",
-    "OpenedRun": "interface.opened_run",
-    "SimulatedRun": "interface.opened_run",
-    "VerifiedReport": "interface.verified_report",
-    "assess_run": "interface.graded_results",
-    "build_case": "interface.built_case",
-    "compare_runs": "interface.compared_runs",
-    "fit_pantograph": "interface.fitted_pantograph",
-    "grade_cases": "interface.graded_results",
-    "identify_line": "interface.identified_lines",
-    "list_cases": "interface.opened_case",
-    "open_case": "interface.opened_case",
-    "open_drop": "interface.opened_drop",
-    "open_line": "interface.opened_line",
-    "open_modes": "interface.identified_lines",
-    "open_pantograph": "interface.opened_pantograph",
-    "open_results": "interface.graded_results",
-    "open_run": "interface.opened_run",
-    "read_traces": "interface.campaign_session",
-    "run_campaign": "interface.campaign_session",
-    "validate_dossier": "interface.graded_results",
-    "verify_report": "interface.verified_report",
+    "ComparedRuns": "app.notebook.compared_runs",
+    "FittedDamping": "app.notebook.fitted_damping",
+    "FittedPantograph": "app.notebook.fitted_pantograph",
+    "GradedResults": "app.notebook.graded_results",
+    "IdentifiedLines": "app.notebook.identified_lines",
+    "IdentifiedRecords": "app.notebook.identified_lines",
+    "InputError": "core.input_error",
+    "OpenedCase": "app.notebook.opened_case",
+    "OpenedDrop": "app.notebook.opened_drop",
+    "OpenedLine": "app.notebook.opened_line",
+    "OpenedPantograph": "app.notebook.opened_line",
+    "OpenedRun": "app.notebook.opened_run",
+    "SimulatedRun": "app.notebook.opened_run",
+    "VerifiedReport": "app.notebook.verified_report",
+    "assess_run": "app.notebook.graded_results",
+    "build_case": "app.notebook.opened_case",
+    "compare_runs": "app.notebook.compared_runs",
+    "fit_pantograph": "app.notebook.fitted_pantograph",
+    "grade_cases": "app.notebook.graded_results",
+    "identify_line": "app.notebook.identified_lines",
+    "list_cases": "app.notebook.opened_case",
+    "open_case": "app.notebook.opened_case",
+    "open_drop": "app.notebook.opened_drop",
+    "open_line": "app.notebook.opened_line",
+    "open_modes": "app.notebook.identified_lines",
+    "open_pantograph": "app.notebook.opened_line",
+    "open_results": "app.notebook.graded_results",
+    "open_run": "app.notebook.opened_run",
+    "read_traces": "app.notebook.campaign_session",
+    "run_campaign": "app.notebook.campaign_session",
+    "validate_dossier": "app.notebook.graded_results",
+    "verify_report": "app.notebook.verified_report",
 }
 """Modules of the public names."""
 

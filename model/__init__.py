@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pantocheck.model.catenary import (
+    from pantocheck.model.description.catenary import (
         Catenary,
         Clamp,
         Dropper,
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
         TensionChange,
         Wire,
     )
-    from pantocheck.model.curves import TrackCurve
-    from pantocheck.model.discretised_line import DiscretisedLine, discretise, make_droppers_bilateral
+    from pantocheck.model.description.curves import TrackCurve
+    from pantocheck.model.description.failures import SimulationError
+    from pantocheck.model.description.irregularity import Irregularity, SpectralDensity, realise_irregularity
+    from pantocheck.model.description.pantograph import Pantograph, chain
+    from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise, make_droppers_bilateral
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
-    from pantocheck.model.failures import SimulationError
     from pantocheck.model.fem.beam import wave_speed
-    from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
     from pantocheck.model.modal.modes import Modes, compute_modes, damping_ratios
-    from pantocheck.model.pantograph import Pantograph, chain
     from pantocheck.model.statics.elasticity import rest_height, static_uplift
     from pantocheck.model.statics.wave_factors import doppler_factor, reflection_coefficient
 
@@ -72,22 +72,22 @@ __all__ = [
 ]
 
 _MODULES = {
-    "TrackCurve": "curves",
-    "DiscretisedLine": "discretised_line",
+    "TrackCurve": "description.curves",
+    "DiscretisedLine": "discretisation.discretised_line",
     "History": "dynamics.passage",
-    "Irregularity": "irregularity",
-    "Pantograph": "pantograph",
+    "Irregularity": "description.irregularity",
+    "Pantograph": "description.pantograph",
     "Modes": "modal.modes",
     "Passage": "dynamics.passage",
-    "SimulationError": "failures",
-    "SpectralDensity": "irregularity",
-    "chain": "pantograph",
+    "SimulationError": "description.failures",
+    "SpectralDensity": "description.irregularity",
+    "chain": "description.pantograph",
     "compute_modes": "modal.modes",
     "damping_ratios": "modal.modes",
-    "discretise": "discretised_line",
+    "discretise": "discretisation.discretised_line",
     "doppler_factor": "statics.wave_factors",
-    "make_droppers_bilateral": "discretised_line",
-    "realise_irregularity": "irregularity",
+    "make_droppers_bilateral": "discretisation.discretised_line",
+    "realise_irregularity": "description.irregularity",
     "reflection_coefficient": "statics.wave_factors",
     "rest_height": "statics.elasticity",
     "simulate_passage": "dynamics.simulation",
@@ -102,7 +102,7 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module 'pantocheck.model' has no attribute {name!r}")
     try:
-        module = import_module(f"pantocheck.model.{_MODULES.get(name, 'catenary')}")
+        module = import_module(f"pantocheck.model.{_MODULES.get(name, 'description.catenary')}")
     except ModuleNotFoundError as error:
         error.add_note("The compiled simulations need an extra: pip install 'pantocheck[simulator]'")
         raise

@@ -1,1 +1,1 @@
-"""Campaigns: many runs of cases with varied inputs, from a file or from the command line."""
+"""Campaigns: many runs with varied inputs."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
-from pantocheck.conformance.campaigns.run_executor import Execute, RunExecutor
+from pantocheck.conformance.campaigns.local_workers import Execute, RunExecutor
 from pantocheck.conformance.results.campaign_format import CampaignEnding
 
 FEWEST_JUDGED = 20

@@ -7,29 +7,25 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.campaigns.campaign_design import CampaignDesign
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, parse_condition
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
-from pantocheck.conformance.campaigns.campaign_run import RunExecution, name_column, vary_inputs
+from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, name_column, vary_inputs
 from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
-from pantocheck.conformance.campaigns.design_conditions import parse_condition
-from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
-from pantocheck.conformance.cases.case import Case, drop_keys, json_digest
-from pantocheck.conformance.cases.case_origin import CaseOrigin
+from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
+from pantocheck.conformance.cases.case_source import repeated_id
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
-from pantocheck.conformance.cases.claimed_names import repeated_id
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_entries, load_entry, overlay_limits, read_limits
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.extras import require_package
+from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.core.sourced_table import PROVENANCE
+from pantocheck.conformance.core.suite_identity import suite_digest
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.execution.plan import place_cases, place_system
 from pantocheck.conformance.grading.case_identity import limits_digest
-from pantocheck.conformance.input_files.extras import require_package
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.plan import place_cases, place_system
-from pantocheck.conformance.results.suite_identity import suite_digest
-from pantocheck.conformance.systems.system_choice import choose_system
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.runs.system_choice import choose_system
 
 OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
 """Keys of a campaign file on which its results do not depend, or whose content has its own digest."""

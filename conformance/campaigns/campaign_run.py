@@ -8,20 +8,57 @@ from pathlib import Path
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.design_axes import Inputs
-from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
 from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
-from pantocheck.conformance.cases.library import load_case, overlay_limits
-from pantocheck.conformance.cases.limits import LimitOverride
-from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.cases.library import load_case, overlay_limits, source_text
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, spread_limits
+from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, resolve_bounds
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.results_part import Number
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.results.results_format import CaseResult
-from pantocheck.conformance.results.results_part import Number
-from pantocheck.conformance.runner import run_case
-from pantocheck.conformance.systems.system import System
-from pantocheck.conformance.systems.system_choice import choose_system
+from pantocheck.conformance.runs.system import System
+from pantocheck.conformance.runs.system_choice import choose_system
+
+
+# Limits of a run from the rules of a profile, at the speed of the run.
+@dataclass(frozen=True)
+class ProfileLimits:
+    """Rules of a profile with the values of the line that they need."""
+
+    profile: Profile
+    """Profile without rules that compare with a measured record."""
+    uplift_space_mm: float | None
+    """Space for the uplift of the contact wire at the supports [mm]."""
+
+    def resolve(self, case: Case) -> tuple[tuple[Limit, ...], tuple[str, ...]]:
+        """Limits of a case, and the reason of each rule that has no bound for it.
+
+        Raises:
+            InputError: The rules do not apply to the case.
+        """
+        where = f"profile '{self.profile.name}'"
+        if self.profile.compares:
+            raise InputError(where, "compares with a measured record", "Choose another profile.")
+        if case.file.speed_km_h is None:
+            raise InputError(where, f"needs a train, but {case.id} is a static case", "Choose cases with a speed.")
+        if self.profile.filter != case.file.filter:
+            raise InputError(where, f"has another filter than {case.id}", "Set the filter of the cases with `set`.")
+        limits, missing = [], []
+        for rule in self.profile.rule:
+            try:
+                values = {"uplift_space_mm": self.uplift_space_mm}
+                lower, upper = resolve_bounds(rule, case.file.speed_km_h, values, None)
+            except BoundMissing as reason:
+                missing.append(f"{rule.quantity}: {reason}")
+                continue
+            stated = {"quantity": rule.quantity, "lower": lower, "upper": upper, "trust": rule.trust, "note": rule.note}
+            limits.append(Limit.model_validate({**stated, "source": source_text(rule.source)}))
+        return spread_limits(limits, len(case.pantographs)), tuple(missing)
+
 
 FAILED: Verdict = "error"
 """Verdict of a run without a result."""
@@ -118,7 +155,7 @@ def build_failed_row(run: PlannedRun, reason: str, wall_s: float) -> RunRow:
 @cache
 def _choose_system(text: str, refined: bool, timeout_s: float) -> System:
     if text == "builtin" and not refined:
-        from pantocheck.conformance.systems.reference_simulator import UnrefinedSimulator
+        from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
 
         return UnrefinedSimulator()
     return choose_system(text, timeout_s)

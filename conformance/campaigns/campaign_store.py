@@ -11,8 +11,8 @@ from filelock import FileLock, Timeout
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_run import FAILED, RunRow
-from pantocheck.conformance.input_files.atomic_writing import check_writable
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.files import check_writable
+from pantocheck.conformance.core.input_error import InputError
 
 STORE_NAME = "campaign.sqlite"
 

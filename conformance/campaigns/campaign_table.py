@@ -10,8 +10,8 @@ import numpy as np
 
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
-from pantocheck.conformance.input_files.atomic_writing import produce_atomically
-from pantocheck.conformance.input_files.extras import is_installed
+from pantocheck.conformance.core.extras import is_installed
+from pantocheck.conformance.core.files import produce_atomically
 
 RUN_COLUMNS = ("run", "design", "case", "system")
 UNCERTAINTY = ".uncertainty"

@@ -7,9 +7,9 @@ from typing import Any
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import ClusterKind
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
-from pantocheck.conformance.campaigns.run_executor import MOST_ATTEMPTS, PROCESS_ENDED, Execute
-from pantocheck.conformance.input_files.extras import refuse_missing_package
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.campaigns.local_workers import MOST_ATTEMPTS, PROCESS_ENDED, Execute
+from pantocheck.conformance.core.extras import refuse_missing_package
+from pantocheck.conformance.core.input_error import InputError
 
 RUNS_PER_THREAD = 2
 """Runs in flight per thread of the cluster: one is computed while the next one waits at the worker."""

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.campaigns.campaign_file import (
     ColumnVariation,
     InputSampling,
@@ -20,7 +19,8 @@ from pantocheck.conformance.campaigns.campaign_file import (
 )
 from pantocheck.conformance.campaigns.distributions import Discrete, Distribution, Seed
 from pantocheck.conformance.cases.input_changes import parse_value
-from pantocheck.conformance.input_files.spreadsheet import read_spreadsheet
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.spreadsheet import read_spreadsheet
 
 Inputs = dict[str, Any]
 """Values by key."""

@@ -6,9 +6,15 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr, ndtri
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, PositiveList, validation_problem
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    Positive,
+    PositiveList,
+    Problems,
+    cross_check,
+    validation_problem,
+)
 
 SMALLEST_PROBABILITY = 2.0**-40
 """Distance of a probability from 0 and 1: a sampler may return 0, whose normal quantile is infinite."""

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from pantocheck.conformance.campaigns.campaign_file import Execution
-from pantocheck.conformance.campaigns.local_workers import LocalWorkers
-from pantocheck.conformance.campaigns.run_executor import RunExecutor
+from pantocheck.conformance.campaigns.local_workers import LocalWorkers, RunExecutor
 
 
 @contextmanager

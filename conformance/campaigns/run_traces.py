@@ -3,10 +3,10 @@
 import zlib
 from typing import Literal
 
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.results.figure_data import Traces, UpliftTrace
+from pantocheck.conformance.core.figure_data import Traces, UpliftTrace
+from pantocheck.conformance.core.results_part import Owner, ResultsPart
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.results_format import CaseResult
-from pantocheck.conformance.results.results_part import Owner, ResultsPart
 
 StoredTraces = Literal["none", "failing", "all"]
 """Runs whose traces are stored: none, those with the verdict `fail`, or all that have traces."""

@@ -1,1 +1,1 @@
-"""Case files: line, pantographs, analysis section and limits, each number with its source."""
+"""Cases, limits, profiles and the library."""

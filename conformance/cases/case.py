@@ -2,21 +2,43 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw
-from pantocheck.conformance.cases.case_origin import CaseOrigin
-from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
-from pantocheck.conformance.cases.lift_force import LiftForce, resolve_lift_force
+from pantocheck.conformance.cases.lift_force import AppliedForces, LiftForce, resolve_lift_force
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE, InputTable, SourcedTable
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.core.features import list_features
+from pantocheck.conformance.core.sourced_table import PROVENANCE, InputTable, SourcedTable
+from pantocheck.conformance.core.texts import DocumentationPage
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.line.elements.damping import Damping, overlay_damping
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.records.sidecar_tables import StartTable
+
+# Origin of a case from outside the library: a file, a folder of the user, or an installed distribution.
+OriginKind = Literal["file", "folder", "distribution"]
+"""Case file named by its path, folder given with `--cases`, or installed distribution."""
+
+
+class CaseOrigin(InputTable):
+    """File, folder or installed distribution that holds the case file, without its path on this machine."""
+
+    kind: OriginKind
+    name: str
+    version: str
+    """Version of the distribution; empty for a file or folder."""
+    digest: str
+    """SHA-256 of the case file, or of all TOML files of the folder or distribution."""
+
+    @property
+    def text(self) -> str:
+        """Origin in messages, such as `distribution acme-lines 1.0`."""
+        return f"{self.kind} {self.name} {self.version}".strip()
 
 
 @dataclass(frozen=True)
@@ -257,3 +279,33 @@ def drop_keys(tree: object, keys: frozenset[str]) -> object:
     if isinstance(tree, list):
         return [drop_keys(value, keys) for value in tree]
     return tree
+
+
+# Features of a case: the parts of its line, pantographs and run that a simulator must not neglect.
+RUN_FEATURES: dict[str, Callable[[Case], bool]] = {
+    "applied_forces": lambda case: any(isinstance(force, AppliedForces) for force in case.law_forces.values()),
+    "line_at_rest": lambda case: case.is_static,
+    "mass_drop": lambda case: case.file.mass_drop is not None,
+    "several_pantographs": lambda case: len(case.pantographs) > 1,
+    "uplift_force_tuning": lambda case: any(force.target_mean_force is not None for force in case.lift_forces),
+}
+"""Features of the run of a case, and whether a case uses them."""
+
+
+def list_case_features(case: Case) -> list[str]:
+    """Features that a case uses, in alphabetic order: of its line, its pantographs and its run."""
+    features = {name for table in (case.line, *case.pantographs) for name in list_features(table)}
+    return sorted(features | {name for name, is_used in RUN_FEATURES.items() if is_used(case)})
+
+
+def find_missing_features(case: Case, simulated: Collection[str] | None) -> str | None:
+    """Reason to skip a case because a simulator neglects a feature of it; None if it simulates all of them.
+
+    Args:
+        case: Case to be simulated.
+        simulated: Features that the simulator states; None: it states none.
+    """
+    if simulated is None:
+        return f"the system does not list the features that it simulates, see {DocumentationPage.SYSTEMS}"
+    missing = [name for name in list_case_features(case) if name not in simulated]
+    return f"the system does not simulate {', '.join(missing)}" if missing else None

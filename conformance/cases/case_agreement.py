@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.force_law import LawInvalid
 from pantocheck.conformance.cases.lift_force import resolve_lift_force
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.pantograph.force_law import LawInvalid
 
 
 def find_disagreements(case: Case, where: str) -> Iterator[InputError]:

@@ -4,21 +4,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.drop_test import MassDrop
-from pantocheck.conformance.cases.force_law import FASTEST_KM_H, LARGEST_FORCE_N
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.study_tables import Study
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.cases.study_tables import MassDrop, Study
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
     Positive,
     PositiveList,
+    Problems,
     SourcedTable,
+    cross_check,
     is_absent,
     validation_problem,
 )
+from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.pantograph.force_law import FASTEST_KM_H, LARGEST_FORCE_N
 from pantocheck.conformance.quantities.filters import Filter
 
 FileName = Annotated[str, Field(min_length=1, max_length=500)]

@@ -1,7 +1,9 @@
 """Files of a case: case file, line, pantographs and damping models, with changes of the command line."""
 
+import copy
+import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,16 +12,18 @@ from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.changed_content import change_case, change_tree
-from pantocheck.conformance.cases.damping_file import Damping, DampingFile, overlay_damping
-from pantocheck.conformance.cases.force_rules import resolve_rule
 from pantocheck.conformance.cases.input_changes import InputChange
+from pantocheck.conformance.cases.lift_force import resolve_rule
 from pantocheck.conformance.cases.limits import spread_limits
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.named_parts import locate_part
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_model, read_toml, validate_model
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.key_paths import find_holders, follow_path
+from pantocheck.conformance.core.sourced_table import SourcedTable
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.toml_file import read_model, read_toml, validate_model
+from pantocheck.conformance.line.elements.damping import Damping, DampingFile, overlay_damping
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 
 T = TypeVar("T", bound=BaseModel)
 
@@ -140,3 +144,98 @@ def _read_damping(case_path: Path, name: str, key: str) -> Damping:
 
 def _locate(case_path: Path, name: str, key: str) -> Path:
     return locate_part(name, case_path.parent, f"case '{case_path.name}', key {key}")
+
+
+# Content of the files of a case with inputs that were changed on the command line.
+def change_case(tree: dict[str, Any], changes: Sequence[InputChange]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Apply changes to the content of a case file; returns and errors as in `change_tree`."""
+    uses = tree.get("pantograph")
+    count = len(uses) if isinstance(uses, list) else 0
+    assigned: list[InputChange] = []
+    for change in changes:
+        if change.part == "case":
+            assigned.append(change)
+        elif change.part != "line" and (count == 0 or (change.pantograph or 0) >= count):
+            hint = "Pantographs are numbered from 1 in running order."
+            raise InputError(change.where, f"the case has {count_noun(count, 'pantograph')}", hint)
+        elif change.part == "use":
+            numbers = range(count) if change.pantograph is None else (change.pantograph,)
+            assigned += [replace(change, part="case", path=("pantograph", i, *change.path)) for i in numbers]
+    return change_tree(tree, CaseFile, assigned)
+
+
+def change_tree(
+    tree: dict[str, Any], model: type[BaseModel], changes: Sequence[InputChange]
+) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Apply changes to the content of a file.
+
+    Args:
+        tree: Content of the file.
+        model: Model of the file.
+        changes: Changes of this file.
+
+    Returns:
+        tree: Changed content. Changed keys count as `provisional`, because the source of their table does not state
+            them.
+        descriptions: One text per value that differs, with the value of the file.
+
+    Raises:
+        InputError: A table or a list item does not exist.
+    """
+    if not changes:
+        return tree, ()
+    changed = copy.deepcopy(tree)
+    descriptions = []
+    for change in changes:
+        holder, part, before = follow_path(changed, change.path, change.where)
+        if before == change.value and isinstance(before, bool) == isinstance(change.value, bool):
+            continue
+        holder[part] = change.value
+        _mark_provisional(changed, model, change)
+        stated = "not in the file" if before is None else f"file: {_show(before)}"
+        descriptions.append(f"{change.key} = {_show(change.value)} ({stated})")
+    return changed, tuple(dict.fromkeys(descriptions))
+
+
+def _mark_provisional(tree: dict[str, Any], model: type[BaseModel], change: InputChange) -> None:
+    """Add a changed key to the key `provisional` of its sourced table."""
+    holders = find_holders(model, change.path)
+    sourced = [i for i, table in enumerate(holders) if table is not None and issubclass(table, SourcedTable)]
+    if sourced:
+        table, key, _ = follow_path(tree, change.path[: sourced[-1] + 1], change.where)
+        marked = table.get("provisional", [])
+        table["provisional"] = list(dict.fromkeys([*marked, key])) if isinstance(marked, list) else marked
+
+
+def _show(value: object) -> str:
+    text = json.dumps(value, default=str)
+    return text if len(text) <= 200 else text[:197] + "..."
+
+
+# Files of lines and pantographs that another file names: beside it, or in the library.
+def locate_part(name: str, folder: Path, where: str) -> Path:
+    """Path of a named file: relative to a folder, or else to the library.
+
+    Args:
+        name: Name of the file.
+        folder: Folder of the file that contains the name.
+        where: Place of the name in messages.
+
+    Raises:
+        InputError: There is no such file.
+    """
+    for place in (folder, library_folder()):
+        if (place / name).is_file():
+            return place / name
+    hint = f"Name a file relative to {folder} or to the library, e.g. en50318-2002/line.toml ."
+    raise InputError(where, f"there is no file {name!r}", hint)
+
+
+def read_line_file(path: Path) -> LineFile:
+    """Read a line file; InputError if it is invalid."""
+    return read_model(path, LineFile, "line")
+
+
+def read_pantograph_file(path: Path) -> PantographFile:
+    """Read a pantograph file and resolve its force rule; InputError if it is invalid."""
+    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")

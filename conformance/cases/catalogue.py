@@ -6,14 +6,18 @@ from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
 
-from pantocheck.conformance.cases.case_origin import CaseOrigin
-from pantocheck.conformance.cases.case_source import CaseSource, list_case_sources, open_case_folder
-from pantocheck.conformance.cases.claimed_names import OUTSIDE_PREFIX, repeated_id
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.library_list import list_library
-from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.cases.case import CaseOrigin
+from pantocheck.conformance.cases.case_source import (
+    OUTSIDE_PREFIX,
+    CaseSource,
+    list_case_sources,
+    list_library,
+    open_case_folder,
+    repeated_id,
+)
+from pantocheck.conformance.core.files import file_digest
+from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.line.library_folder import library_folder
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,18 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import FiniteBound, QuantityName
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, PositiveList, validation_problem
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.trust import Computed
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    NonNegative,
+    PositiveList,
+    Problems,
+    cross_check,
+    validation_problem,
+)
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.trust import Computed
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 FOLDER = "converged"

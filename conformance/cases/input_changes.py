@@ -13,18 +13,18 @@ from typing import Literal
 from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw, PantographUse
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.key_paths import (
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.key_paths import (
     KeyPath,
     check_path,
+    find_field,
     holds_list,
     list_dotted_keys,
     parse_key,
 )
-from pantocheck.conformance.input_files.sourced_table import PROVENANCE
-from pantocheck.conformance.input_files.table_models import find_field
+from pantocheck.conformance.core.sourced_table import PROVENANCE
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 
 ChangedPart = Literal["case", "use", "line", "pantograph"]
 """Case file, [[pantograph]] table of the case file, line file or pantograph file."""

@@ -1,24 +1,26 @@
 """Library of reference cases, and reading of case files by id, pattern or path."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
 
-from pantocheck.conformance.cases.case import Case
+from pydantic import BaseModel
+
+from pantocheck.conformance.cases.case import Case, CaseOrigin
 from pantocheck.conformance.cases.case_agreement import find_disagreements
-from pantocheck.conformance.cases.case_origin import CaseOrigin
+from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.case_parts import CaseFiles
+from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import LIBRARY, CaseEntry, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, spread_limits
-from pantocheck.conformance.cases.named_files import recognise_named_file
-from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.toml_file import read_model, read_toml
+from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
+from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 
 
 def select_cases(
@@ -157,3 +159,23 @@ def source_text(source: str | Sequence[str]) -> str:
     """Text of sources: the bibliographic reference for a source key, free text unchanged."""
     keys = (source,) if isinstance(source, str) else source
     return "; ".join(read_bibliography().get(key, key) for key in keys)
+
+
+# Recognition of a line or a pantograph in the place of a case.
+FORMATS: dict[str, type[BaseModel]] = {"line": LineFile, "pantograph": PantographFile}
+"""Files that a case names."""
+
+
+def recognise_named_file(keys: Collection[str]) -> str | None:
+    """Kind of a file that a case names, a key of `FORMATS`; None for a case and for unknown keys.
+
+    Args:
+        keys: Keys of the file. A case is recognised by `id` or `line`.
+    """
+    if {"id", "line"} & {*keys}:
+        return None
+    shares = {
+        kind: len(({*model.model_fields} - {*CaseFile.model_fields}) & {*keys}) for kind, model in FORMATS.items()
+    }
+    best = max(shares, key=lambda kind: shares[kind])
+    return best if shares[best] else None

@@ -5,18 +5,19 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
-from pantocheck.conformance.cases.finding import PublishedFinding
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.findings import PublishedFinding
+from pantocheck.conformance.core.input_error import suggest_names
+from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
     InputTable,
+    Problems,
+    cross_check,
     find_missing_source,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]

@@ -6,24 +6,24 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import QuantityName
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
     NO_TRUST,
     InputTable,
+    Problems,
+    cross_check,
     find_missing_source,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.logger.event_tables import EventKind
+from pantocheck.conformance.records.sidecar_tables import EventKind
 
 
 class SpeedFormula(InputTable):

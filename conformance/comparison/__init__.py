@@ -1,1 +1,1 @@
-"""Measured values of a line beside those of its model."""
+"""Comparisons of two sources over one axis."""

@@ -7,18 +7,17 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.figure_data import Traces
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, ValuesByOwner
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.figure_data import Traces
-from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import CaseResult, Results
-from pantocheck.conformance.results.results_part import Number
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.systems.system import System
+from pantocheck.conformance.runs.system import Delivered, System
 
 RECORD_PROFILE = "line-test"
 """Profile whose filter and speed tolerance hold for records that are compared."""

@@ -7,21 +7,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.comparison.motion_bands import MOTION_BANDS
-from pantocheck.conformance.grading.near_limit import ValueErrors
-from pantocheck.conformance.grading.value_grade import grade_value
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.comparison.drop_motion import MOTION_BANDS
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.near_limit import ValueErrors, grade_value
+from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
     InputTable,
     NonNegative,
     NonNegativeList,
     NumberList,
     Positive,
+    Problems,
+    cross_check,
     validation_problem,
 )
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.results.comparison_format import (
     DROP_QUANTITIES,
     RESPONSE_QUANTITIES,

@@ -5,21 +5,29 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import json_digest
-from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow
 from pantocheck.conformance.comparison.drop_criteria import grade_drop
-from pantocheck.conformance.comparison.drop_motion import DropMotion, DropSimulation, simulate_models
+from pantocheck.conformance.comparison.drop_motion import (
+    MOTION_BANDS,
+    DropMotion,
+    DropSimulation,
+    MotionBand,
+    simulate_models,
+)
 from pantocheck.conformance.comparison.drop_statistics import compute_energies, compute_statistics, sample_curves
-from pantocheck.conformance.comparison.motion_bands import MOTION_BANDS, MotionBand
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop, locate_drop
-from pantocheck.conformance.grading.verdicts import Verdict, worst_verdict
-from pantocheck.conformance.identification.damping.line_comparison import warn_about_line
-from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.clipping import find_clipping
-from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.core.files import file_digest
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.step_log import ShareCallback, follow_part, ignore_progress
+from pantocheck.conformance.core.verdicts import Verdict, worst_verdict
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.line_comparison import warn_about_line
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.elements.damping import Damping, overlay_damping
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
+from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.results.comparison_format import ComparedSource, ComparisonCriterion
 from pantocheck.conformance.results.drop_comparison_format import (
     ComparedDrop,
@@ -28,9 +36,6 @@ from pantocheck.conformance.results.drop_comparison_format import (
     DropComparison,
     WindowStatistics,
 )
-from pantocheck.conformance.results.results_building import build_suite
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.step_log import ShareCallback, follow_part, ignore_progress
 from pantocheck.model import Catenary
 
 LEAST_CORRELATION = 0.7

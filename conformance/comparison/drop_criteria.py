@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow, build_comparison_criterion
+from pantocheck.conformance.comparison.drop_motion import MotionBand
 from pantocheck.conformance.comparison.drop_statistics import is_buried
-from pantocheck.conformance.comparison.motion_bands import MotionBand
-from pantocheck.conformance.input_files.sourced_table import NO_SOURCE
+from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparisonCriterion, CriterionPlace
 from pantocheck.conformance.results.drop_comparison_format import WindowStatistics
 

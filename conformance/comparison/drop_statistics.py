@@ -4,11 +4,10 @@ from typing import get_args
 
 import numpy as np
 
-from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.comparison.comparison_limits import TimeWindow
-from pantocheck.conformance.comparison.drop_motion import DropMotion
-from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand
-from pantocheck.conformance.identification.repeatability import round_curve
+from pantocheck.conformance.comparison.drop_motion import GRAPHIC_BAND, DropMotion, MotionBand
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.drops.repeatability import round_curve
 from pantocheck.conformance.results.comparison_format import ComparedMotion
 from pantocheck.conformance.results.drop_comparison_format import (
     EnergyCurve,

@@ -4,13 +4,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.compared_run import ComparedRun
-from pantocheck.conformance.comparison.force_difference import coherence, compare_spans, span_profile
-from pantocheck.conformance.comparison.paired_forces import PairedForces
+from pantocheck.conformance.comparison.force_difference import PairedForces, coherence, compare_spans, span_profile
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.results.figure_data import Chart, Mark, Series
-from pantocheck.conformance.results.traces import thin_series
+from pantocheck.conformance.records.traces import thin_series
 
 FORCE_LABEL = "contact force [N]"
 POSITION_LABEL = "position along the track [m]"

@@ -5,20 +5,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.comparison.paired_forces import pair_forces
+from pantocheck.conformance.comparison.force_difference import pair_forces
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
+from pantocheck.conformance.grading.results_building import key_by_owner, select_finite
 from pantocheck.conformance.quantities.line_signals import supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.traces import build_spectrum, thin_series
 from pantocheck.conformance.results.measured_run_format import (
     ForceStatistics,
     MeasuredPantograph,
     MeasuredRun,
     SpanStatistics,
 )
-from pantocheck.conformance.results.results_building import key_by_owner, select_finite
-from pantocheck.conformance.results.traces import build_spectrum, thin_series
 
 
 def list_run_supports(record: AssessedRecord) -> tuple[float, ...]:

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from pantocheck.conformance.identification.damping.damping_format import LineComparison
-from pantocheck.conformance.identification.damping.line_comparison import compare_record_line, list_differences
-from pantocheck.conformance.identification.damping.mode_pairing import KIND_OF_WIRE, find_wire
-from pantocheck.conformance.identification.mode_building import describe_line
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropRecord
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import DropChannel, DropRecord
+from pantocheck.conformance.drops.line_comparison import compare_record_line, list_differences
+from pantocheck.conformance.drops.mode_building import describe_line
+from pantocheck.conformance.drops.mode_matching import KIND_OF_WIRE, find_wire
+from pantocheck.conformance.results.damping_format import LineComparison
 from pantocheck.model import Catenary
 
 

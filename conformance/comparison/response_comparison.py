@@ -5,9 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.cases.case import json_digest
-from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_deviation import (
     BandStatistics,
@@ -16,12 +14,15 @@ from pantocheck.conformance.comparison.response_deviation import (
     response_deviation,
     summarise_band,
 )
-from pantocheck.conformance.comparison.response_record import ResponseRecord
-from pantocheck.conformance.comparison.response_sidecar import RESPONSE_FORMS, ResponseForm
-from pantocheck.conformance.consistency.receptance import head_receptance
-from pantocheck.conformance.counted_noun import count_noun
-from pantocheck.conformance.grading.verdicts import worst_verdict
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.verdicts import worst_verdict
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import head_receptance
+from pantocheck.conformance.pantograph.response_record import ResponseRecord
+from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_FORMS, ResponseForm
 from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
     ComparedResponse,
@@ -30,7 +31,6 @@ from pantocheck.conformance.results.comparison_format import (
     HeadResponse,
     ResponseComparison,
 )
-from pantocheck.conformance.results.results_building import build_suite
 
 LARGEST_MODULUS_RATIO = 5.0
 """Median ratio of the moduli from which the unit is refused: the smallest ratio of two units is 9.8, of g to m/s2."""

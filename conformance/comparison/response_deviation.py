@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.array_types import ComplexArray, RealArray
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, build_comparison_criterion
-from pantocheck.conformance.comparison.response_record import ResponseRecord, ResponseUncertainty
-from pantocheck.conformance.input_files.table_rows import name_rows
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.validation_messages import name_rows
+from pantocheck.conformance.pantograph.response_record import ResponseRecord, ResponseUncertainty
 from pantocheck.conformance.results.comparison_format import ComparisonCriterion, CriterionPlace, ResponseQuantity
 
 ResponseBand = tuple[float, float]

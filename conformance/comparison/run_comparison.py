@@ -6,9 +6,15 @@ import numpy as np
 
 from pantocheck.conformance.comparison.compared_run import ComparedRun
 from pantocheck.conformance.comparison.force_charts import build_force_charts
-from pantocheck.conformance.comparison.force_difference import compare_force_bands, compare_spans, correlation
-from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.comparison.force_difference import (
+    PairedForces,
+    compare_force_bands,
+    compare_spans,
+    correlation,
+    pair_forces,
+)
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
@@ -21,7 +27,6 @@ from pantocheck.conformance.results.comparison_format import (
     ForceAgreement,
     RunComparison,
 )
-from pantocheck.conformance.results.results_building import build_suite
 
 THINNED = "{name}: results hold thinned curves. Give the record for differences of the force."
 

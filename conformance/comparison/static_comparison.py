@@ -5,10 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.cases.case import json_digest
-from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.static_differences import (
     CRITERIA,
@@ -19,8 +16,13 @@ from pantocheck.conformance.comparison.static_differences import (
     select_section,
 )
 from pantocheck.conformance.comparison.static_record import StaticRecord
-from pantocheck.conformance.grading.verdicts import worst_verdict
-from pantocheck.conformance.input_files.table_rows import name_rows
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.validation_messages import name_rows
+from pantocheck.conformance.core.verdicts import worst_verdict
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.geometry import Geometry
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.comparison_format import (
     ComparedSource,
     ComparedValues,
@@ -29,9 +31,7 @@ from pantocheck.conformance.results.comparison_format import (
     StaticQuantity,
     StaticValue,
 )
-from pantocheck.conformance.results.results_building import build_suite
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.static_quantities import sample_span
+from pantocheck.conformance.runs.static_quantities import sample_span
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import rest_height, static_uplift
 

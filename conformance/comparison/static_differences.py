@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.array_types import IntegerArray, RealArray
 from pantocheck.conformance.comparison.comparison_limits import (
     ComparisonLimit,
     build_comparison_criterion,
     unit_of_difference,
 )
 from pantocheck.conformance.comparison.static_record import StaticRecord, StaticSidecar
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.results.comparison_format import (
     ComparisonCriterion,
     CriterionPlace,

@@ -8,15 +8,14 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.array_types import IntegerArray, RealArray
-from pantocheck.conformance.cases.geometry import Geometry
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.input_error import InputError, join_errors
-from pantocheck.conformance.input_files.sourced_table import Positive, PositiveList, validation_problem
-from pantocheck.conformance.input_files.table_rows import MOST_NAMED_ROWS, name_rows
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.sourced_table import Positive, PositiveList, Problems, cross_check, validation_problem
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.validation_messages import MOST_NAMED_ROWS, name_rows
+from pantocheck.conformance.line.geometry import Geometry
 from pantocheck.conformance.records.record_reading import locate_table, record_digest
-from pantocheck.conformance.records.table_sidecar import NamedTableSidecar, read_named_columns
+from pantocheck.conformance.records.sidecar_tables import NamedTableSidecar, read_named_columns
 from pantocheck.conformance.results.comparison_format import StaticValue
 
 STATIC_SCHEMA = "pantocheck.static/1"

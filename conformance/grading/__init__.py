@@ -1,1 +1,1 @@
-"""Grading: cases by their limits, records by profiles, results by a baseline."""
+"""Values against limits: coverage, uncertainty, criteria and verdicts."""

@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from pantocheck.conformance.core.criterion import BASELINE, Criterion
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_verdict import judge_baseline, read_participation
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.baseline_format import BaselineComparison
-from pantocheck.conformance.results.criterion_format import BASELINE, Criterion
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.results.scope import build_scope

@@ -1,28 +1,40 @@
 """Evaluation of a delivery: signals, quantities, errors and consistency findings, each computed once."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.start_and_section import shift_section, span_length
-from pantocheck.conformance.consistency.check import CheckName, Finding
-from pantocheck.conformance.consistency.record_checks import check_record
-from pantocheck.conformance.consistency.record_state import record_state
-from pantocheck.conformance.grading.case_uncertainty import discretisation_component, start_component
+from pantocheck.conformance.cases.start_and_section import (
+    has_short_run_in,
+    list_earlier_sections,
+    run_in_spans,
+    shift_section,
+    span_length,
+)
+from pantocheck.conformance.core.criterion import ComponentName, Criterion
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
-from pantocheck.conformance.grading.record_mismatch import find_other_case, find_record_mismatch
-from pantocheck.conformance.grading.record_uncertainty import length_component, section_spread, shift_component
+from pantocheck.conformance.grading.record_uncertainty import (
+    largest_changes,
+    length_component,
+    section_spread,
+    shift_component,
+    widen_changes,
+)
 from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
-from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
-from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, SectionedSignals, Value
 from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty, map_items
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.criterion_format import ComponentName, Criterion
-from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.runs.check import CheckName, Finding
+from pantocheck.conformance.runs.record_checks import check_record, record_state
+from pantocheck.conformance.runs.record_folder import find_other_case, find_record_mismatch
+from pantocheck.conformance.runs.system import Delivered
 
 AT_REST = Component("does not apply: the line is at rest")
 NO_RECORD = Component("not known: there is no record of one passage")
@@ -164,3 +176,114 @@ def _suggest_list(name: str) -> str:
     quantity, bracket, _ = name.partition("[")
     known = bracket and quantity in QUANTITIES and QUANTITIES[quantity].scope == "static"
     return f"; give the list {quantity!r}, with the value of item 1 first" if known else ""
+
+
+# Uncertainty of the values of a case, component by component.
+def discretisation_component(coarse: Evaluation | None, value: Evaluation, fine: Evaluation | None) -> Component:
+    """Uncertainty from mesh and time step.
+
+    Args:
+        coarse, value, fine: Quantities with element length and time step doubled, as in the case, and halved; None: not
+            known.
+    """
+    if fine is None:
+        return Component("not known: the system delivered one mesh and one time step only")
+    half_widths: dict[int, dict[str, Value]] = {}
+    for owner, quantities in value.values.items():
+        finer = fine.values.get(owner, {})
+        coarser = {} if coarse is None else coarse.values.get(owner, {})
+        half_widths[owner] = {
+            name: _half_width(coarser.get(name), number, finer[name])
+            for name, number in quantities.items()
+            if _same_items(finer.get(name), number)
+        }
+    meshes = "of the case and halved" if coarse is None else "doubled, of the case and halved"
+    return Component(f"runs with element length and time step {meshes}", half_widths)
+
+
+def _half_width(coarse: Value | None, value: Value, fine: Value) -> Value:
+    """Half-width from mesh and time step of a number, or of each item."""
+    if coarse is None or not _same_items(coarse, value):
+        return map_items(partial(discretisation_half_width, None), value, fine)
+    return map_items(discretisation_half_width, coarse, value, fine)
+
+
+def _same_items(a: Value | None, b: Value) -> bool:
+    """Whether two values are both numbers, or have equally many items."""
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b)
+    return a is not None and not isinstance(a, tuple) and not isinstance(b, tuple)
+
+
+def start_component(case: Case, signals: SectionedSignals, others: Sequence[Evaluation]) -> Component:
+    """Uncertainty from the start and the run-in.
+
+    Args:
+        case: Case of the run.
+        signals: Signals of the run.
+        others: Quantities of the same case with other starts.
+    """
+    run_in = f"a run-in of {run_in_spans(case):.3g} spans"
+    if others:
+        changes = largest_changes(signals.evaluation.values, [other.values for other in others], len(others))
+        basis = f"{len(others)} runs with other starts and ramps, after {run_in}"
+        return Component(basis, widen_changes(changes))
+    widths = section_spread(signals, list_earlier_sections(case))
+    if widths:
+        return Component(f"earlier sections of the same run, before which at least half of {run_in} is left", widths)
+    if has_short_run_in(case):
+        return Component(f"not known: after {run_in}, it needs runs with other starts")
+    return Component("not known: the record does not contain earlier sections, with a shorter run-in")
+
+
+# Uncertainty from mesh and time step, by Richardson extrapolation and the grid convergence index.
+#
+# Element length and time step are doubled and halved together, a refinement ratio of 2. With the values f_2 (doubled),
+# f_1 (of the case) and f_0 (halved), the observed order and the error of f_1 are
+#
+# p = log2((f_2 - f_1) / (f_1 - f_0)),    e = (f_1 - f_0) 2^p / (2^p - 1)
+#
+# (Roache 1994, doi:10.1115/1.2910291; ASME V&V 20-2009; Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006). The
+# half-width of the 95 % interval is the error times a safety factor. Without an observed order, the difference f_1 -
+# f_0 is used. A quarter of f_2 - f_1, which predicts it at second order, replaces it where it is small by chance.
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 4.0
+"""Range of an observed order: below it, values hardly converge; above it, cubic elements do not converge."""
+
+METHOD_ORDER = 2.0
+"""Order of the time integration: a higher observed order is taken as this one (Eca and Hoekstra 2014)."""
+
+SAFETY_FACTOR = 1.25
+"""Safety factor where an order is observed (Roache 1994; Eca and Hoekstra 2014)."""
+
+LARGE_SAFETY_FACTOR = 3.0
+"""Safety factor on a difference of two meshes where no order is observed (Roache 1994; Eca and Hoekstra 2014)."""
+
+
+def observed_order(coarse: float, value: float, fine: float) -> float | None:
+    """Order of convergence of three values, each with half of the steps of the one before; None: no convergence.
+
+    Args:
+        coarse, value, fine: Values with steps doubled, as in the case, and halved.
+    """
+    first, second = coarse - value, value - fine
+    return math.log2(first / second) if second and first / second > 0 else None
+
+
+def discretisation_half_width(coarse: float | None, value: float, fine: float) -> float:
+    """Half-width of the 95 % interval of a value from mesh and time step.
+
+    Args:
+        coarse: Value with element length and time step doubled; None if it is not known.
+        value, fine: Value of the case, and with element length and time step halved.
+
+    Returns:
+        Richardson error times `SAFETY_FACTOR` where an order is observed, else a difference times
+        `LARGE_SAFETY_FACTOR`.
+    """
+    if coarse is None:
+        return LARGE_SAFETY_FACTOR * abs(value - fine)
+    order = observed_order(coarse, value, fine)
+    if order is not None and LOWEST_ORDER <= order <= HIGHEST_ORDER:
+        growth = math.pow(2, min(order, METHOD_ORDER))
+        return SAFETY_FACTOR * abs(value - fine) * growth / (growth - 1)
+    return LARGE_SAFETY_FACTOR * max(abs(value - fine), abs(coarse - value) / 2**METHOD_ORDER)

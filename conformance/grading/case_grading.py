@@ -5,23 +5,19 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.core.figure_data import ExtremePlace
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_identity import compare_with_library, limits_digest, list_limit_changes
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.case_verification import verify_evaluation, verify_ungraded
-from pantocheck.conformance.grading.extended_band import extended_band_warnings
-from pantocheck.conformance.grading.validity_warnings import validity_warnings
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places, find_uplift_place
+from pantocheck.conformance.grading.derived_facts import list_derived_facts, list_input_values, list_law_forces
+from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
+from pantocheck.conformance.grading.validity_warnings import extended_band_warnings, validity_warnings
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.contact_loss_list import build_contact_losses
-from pantocheck.conformance.results.derived_facts import list_derived_facts
-from pantocheck.conformance.results.extreme_places import find_force_places, find_uplift_place
-from pantocheck.conformance.results.figure_data import ExtremePlace
-from pantocheck.conformance.results.input_values import list_input_values
-from pantocheck.conformance.results.lift_force_facts import list_law_forces
-from pantocheck.conformance.results.outcome import Delivered, Errored, Outcome, Skipped
-from pantocheck.conformance.results.results_building import key_by_owner, list_components, select_finite
+from pantocheck.conformance.records.traces import build_pantograph_traces, build_uplift_traces
 from pantocheck.conformance.results.results_format import (
     CaseResult,
     InputGroup,
@@ -29,7 +25,7 @@ from pantocheck.conformance.results.results_format import (
     RunFacts,
     Step,
 )
-from pantocheck.conformance.results.traces import build_pantograph_traces, build_uplift_traces
+from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped
 
 _EMPTY: dict[str, object] = {
     "warnings": [],

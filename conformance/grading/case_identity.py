@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case, json_digest
+from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.library_list import list_library
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
-from pantocheck.conformance.input_files.trust import LEVELS
+from pantocheck.conformance.core.trust import LEVELS
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.results.results_format import LibraryIdentity
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.input_files.trust import Trust, limit_counts
+from pantocheck.conformance.core.trust import Trust, limit_counts
 from pantocheck.conformance.results.results_format import VerdictName
 
 VerdictChoice = Literal["criteria", "verification", "both"]

@@ -4,19 +4,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from pantocheck.conformance.cases.finding import PublishedFinding
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
-from pantocheck.conformance.grading.uncertainty import Uncertainty
-from pantocheck.conformance.grading.verdicts import Verdict, judge, margin
-from pantocheck.conformance.input_files.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.findings import IMPOSED_REASON, PublishedFinding, count_verdict, grade_finding
+from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.results_part import select_item
+from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.verdicts import Verdict, judge, margin
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
-from pantocheck.conformance.results.criterion_format import Criterion
-from pantocheck.conformance.results.finding_format import IMPOSED_REASON, count_verdict, grade_finding
-from pantocheck.conformance.results.results_part import select_item
+from pantocheck.conformance.quantities.uncertainty import Uncertainty
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, judge_parts, normalise_distance, worst_verdict
 from pantocheck.conformance.grading.criterion_grading import criterion_name
-from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict, judge_parts, normalise_distance, worst_verdict
-from pantocheck.conformance.results.criterion_format import Criterion
 from pantocheck.conformance.results.procedure_format import Evidence, Procedure, ProcedureStep, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
 

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.cases.start_and_section import shift_section
-from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
-from pantocheck.conformance.quantities.stretch_quantities import SignalsOutside
-from pantocheck.conformance.records.measured.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
-from pantocheck.conformance.records.measured.record_preparation import PreparedRecord
+from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
+from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
+from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.records.record_preparation import PreparedRecord
 
 SAMPLE_SAFETY_FACTOR = 1.25
 """Safety factor on the largest change of a few shifted sections or starts, which are a sample of all of them."""

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit, is_per_pantograph
 from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.criterion_grading import GradedValues, Requirement, build_criterion, grade_limit
-from pantocheck.conformance.grading.uncertainty import combine_half_widths
-from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import unit_of
-from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.quantities.uncertainty import combine_half_widths
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ check compares the statement with the record. A criterion that passes only insid
 from dataclasses import dataclass
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.criterion_format import ComponentName
 from pantocheck.conformance.results.record_facts import StartState
 
 START_TOLERANCE_M = 0.1

@@ -1,1 +1,1 @@
-"""Line: its file, its elements, their model, tables and drawing."""
+"""Line files: elements, layout, tables, statics and drawing."""

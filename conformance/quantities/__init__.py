@@ -1,1 +1,1 @@
-"""Quantities: definition, unit, source and computation of every number that can be graded."""
+"""Signals, filters, frequency bands and statistics, and the definition of every quantity."""

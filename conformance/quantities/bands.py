@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, check_observable
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
-from pantocheck.conformance.quantities.force_signals import ForceSignals
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
-from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
+from pantocheck.conformance.quantities.pantograph_signals import ForceSignals, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import list_stated
+from pantocheck.conformance.quantities.statistics import WHOLE_RECORD
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 
 Value = float | tuple[float, ...]

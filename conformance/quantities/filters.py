@@ -10,12 +10,8 @@ import numpy as np
 import scipy  # loads scipy.signal when it is used: its import takes longer than a listing of the cases
 from pydantic import Field
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import (
-    InputTable,
-    validation_problem,
-)
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4

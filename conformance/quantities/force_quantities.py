@@ -5,14 +5,14 @@ Each definition here gives the value, the uncertainty, the label and the tables 
 
 from functools import partial
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS, Band
 from pantocheck.conformance.quantities.contact_losses import loss_durations, loss_starts
-from pantocheck.conformance.quantities.force_signals import ForceSignals
 from pantocheck.conformance.quantities.line_signals import LineSignals
+from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
 from pantocheck.conformance.quantities.quantity import LineQuantity, Need, PantographQuantity
-from pantocheck.conformance.quantities.sampling import Sampling
 from pantocheck.conformance.quantities.statistics import (
+    Sampling,
     check_unfiltered,
     coefficient_of_variation,
     contact_loss,

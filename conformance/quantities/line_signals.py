@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import (
     ChannelMissing,
     SupportsMissing,

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, Literal, TypeVar
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.quantities.force_signals import ForceSignals
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.sampling import Sampling
+from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
+from pantocheck.conformance.quantities.statistics import Sampling
 
 QuantityTable = Literal["bands", "damping models"]
 """Tables with a fixed set of quantities: frequency bands in the certificate, and the study of damping sensitivity."""

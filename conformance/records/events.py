@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.records.logger.event_tables import EventKind
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.sidecar_tables import EventKind
 
 MOST_EVENTS = 10_000
 """Largest number of events of a channel; noise around the level gives more."""

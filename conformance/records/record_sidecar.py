@@ -5,27 +5,35 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.counted_noun import count_noun
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import NumberList, PositiveList, validation_problem
-from pantocheck.conformance.input_files.suggestions import suggest_names
-from pantocheck.conformance.input_files.units import suggest_key
-from pantocheck.conformance.records.logger.arc_tables import ArcTable
-from pantocheck.conformance.records.logger.column_tables import ColumnSource, SensorSum
-from pantocheck.conformance.records.logger.event_tables import EventChannel, EventTable
-from pantocheck.conformance.records.logger.track_tables import KilometreTable, MarkPosition, PositionTable
-from pantocheck.conformance.records.record_channels import CHANNELS, find_column
+from pantocheck.conformance.core.input_error import suggest_names
+from pantocheck.conformance.core.sourced_table import (
+    NumberList,
+    PositiveList,
+    Problems,
+    cross_check,
+    validation_problem,
+)
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.units import suggest_key
+from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
+from pantocheck.conformance.records.record import CHANNELS, find_column
 from pantocheck.conformance.records.sidecar_tables import (
+    ArcTable,
     CaseDigest,
     CaseName,
+    EventChannel,
+    EventTable,
+    KilometreTable,
     LineTable,
+    MarkPosition,
+    PositionTable,
     RunTable,
     Speed,
     StartTable,
     SystemTable,
+    TableSidecar,
     find_section_problems,
 )
-from pantocheck.conformance.records.table_sidecar import TableSidecar
 
 RECORD_SCHEMA = "pantocheck.record/1"
 

@@ -6,10 +6,9 @@ from functools import cached_property
 
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.force_signals import ForceChannel
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
-from pantocheck.conformance.quantities.stretch_quantities import Stretch, evaluate_outside_overlaps
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
+from pantocheck.conformance.quantities.stated_quantities import Stretch, evaluate_outside_overlaps
 from pantocheck.conformance.records.record import Record
 
 

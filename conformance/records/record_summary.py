@@ -4,9 +4,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.sourced_table import NumberList, SourcedTable, validation_problem
-from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.core.input_error import suggest_names
+from pantocheck.conformance.core.sourced_table import (
+    NumberList,
+    Problems,
+    SourcedTable,
+    cross_check,
+    validation_problem,
+)
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import QUANTITIES

@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.atomic_writing import produce_atomically, write_atomically
-from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.table_formats import CSV, HDF5, TableFormat, find_table_format
-from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_channels import CHANNELS, RecordChannel
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.files import file_digest, produce_atomically, write_atomically
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.measured_table import CSV, HDF5, TableFormat, find_table_format
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.records.record import CHANNELS, Record, RecordChannel
 from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
 
 Rows = dict[RecordChannel, RealArray]
@@ -104,7 +102,7 @@ def _write_csv(path: Path, rows: Rows) -> None:
 
 
 def _write_hdf5(path: Path, rows: Rows) -> None:
-    from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
+    from pantocheck.conformance.core.hdf5_table import write_hdf5_table
 
     write_hdf5_table(path, {}, {channel.key: values for channel, values in rows.items()})
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 

@@ -1,12 +1,26 @@
 """Common tables and keys of sidecars and summaries: table, system, run and line."""
 
-from pathlib import PureWindowsPath
-from typing import Annotated, Literal
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path, PureWindowsPath
+from typing import Annotated, Literal, NamedTuple
 
-from pydantic import Field
+from pydantic import Discriminator, Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems
-from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, validation_problem
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, read_tables
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    NonNegative,
+    Positive,
+    Problems,
+    cross_check,
+    validation_problem,
+)
+from pantocheck.conformance.core.text_settings import TextSettings
+from pantocheck.conformance.core.units import convert_key, find_unit, suggest_key
+from pantocheck.conformance.records.column_values import ColumnTable, FileColumnName
 
 Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
 
@@ -96,3 +110,257 @@ def find_section_problems(section: tuple[float, ...] | None) -> Problems:
         yield validation_problem(
             "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
         )
+
+
+# Tables `track` and `position` of a sidecar: the kilometres of the line, and the position of the train.
+class KilometreTable(InputTable):
+    """Kilometres of the line: x = 1000 (km - zero_km), or 1000 (zero_km - km) if they decrease in running direction."""
+
+    zero_km: Annotated[float, Field(ge=-10000, le=10000)]
+    """Kilometre of the line at x = 0."""
+    kilometres: Literal["increasing", "decreasing"]
+    """Kilometres of the line in running direction."""
+
+    @property
+    def direction(self) -> float:
+        """1 if the kilometres increase in running direction, else -1."""
+        return 1.0 if self.kilometres == "increasing" else -1.0
+
+    def place(self, kilometre: float) -> float:
+        """Position x in running direction [m]."""
+        return self.direction * 1000 * (kilometre - self.zero_km)
+
+
+class CounterPosition(InputTable):
+    """Position from a counter of distance pulses; it may count up or down."""
+
+    kind: Literal["counter"]
+    column: FileColumnName
+    metres_per_pulse: Annotated[Positive, Field(le=1000)]
+    """Distance per pulse [m]."""
+    start_m: float
+    """Position of the first pantograph at the first sample [m]."""
+
+
+class PulsePosition(InputTable):
+    """Position from a pulse train: the signal of a wheel sensor, whose rising edges are counted."""
+
+    kind: Literal["pulses"]
+    column: FileColumnName
+    metres_per_pulse: Annotated[Positive, Field(le=1000)]
+    """Distance per pulse [m]."""
+    start_m: float
+    """Position of the first pantograph at the first sample [m]."""
+
+
+class KilometreMark(InputTable):
+    """Passing of a kilometre mark by the first pantograph."""
+
+    time_s: float
+    """Time of the passing, as in the channel time_s [s]."""
+    km: Annotated[float, Field(ge=-10000, le=10000)]
+    """Kilometre of the line."""
+
+
+class MarkPosition(InputTable):
+    """Position from the times at which the first pantograph passes kilometre marks, interpolated between them."""
+
+    kind: Literal["marks"]
+    mark: Annotated[tuple[KilometreMark, ...], Field(strict=False, min_length=2, max_length=10000)]
+    """Passings of kilometre marks in order of time."""
+
+    @cross_check
+    def _check_order(self) -> Problems:
+        if any(later.time_s <= earlier.time_s for earlier, later in pairwise(self.mark)):
+            yield validation_problem("mark", "the times do not increase", "List the marks in the order of time.")
+
+
+PositionTable = Annotated[CounterPosition | PulsePosition | MarkPosition, Discriminator("kind")]
+
+
+# Tables `event` and `event_channel` of a sidecar: places of the line that a measurement passes.
+EventKind = Literal[
+    "support", "overlap", "section_insulator", "neutral_section", "switch", "tunnel", "bridge", "level_crossing",
+    "fault_of_measurement", "other",
+]  # fmt: skip
+"""Kinds of places."""
+
+Reason = Annotated[
+    str | None,
+    Field(
+        min_length=3,
+        max_length=500,
+        description="reason to leave this stretch out of the evaluation, where the profile permits it",
+    ),
+]
+EventPlace = Annotated[float | None, Field(ge=-1e7, le=1e7)]
+
+
+class EventTable(InputTable):
+    """Place or stretch of the line by position x [m], or by kilometres with the table `track`."""
+
+    kind: EventKind
+    """Kind of the place."""
+    name: Annotated[str, Field(max_length=200)] = ""
+    """Name of the place."""
+    from_m: EventPlace = None
+    """Start of the stretch, or place of the event [m]."""
+    to_m: EventPlace = None
+    """End of the stretch [m]; default: its start."""
+    from_km: EventPlace = None
+    """One end of the stretch, or place of the event [km]."""
+    to_km: EventPlace = None
+    """Other end of the stretch [km]; default: the first one."""
+    exclude: Reason = None
+
+    @cross_check
+    def _check_place(self) -> Problems:
+        if (self.from_m is None) == (self.from_km is None):
+            yield validation_problem("from_m", "the place is missing, or stated twice", "Give from_m or from_km.")
+        elif (self.to_m is not None and self.from_m is None) or (self.to_km is not None and self.from_km is None):
+            yield validation_problem("to_m", "the ends have other units", "Give both ends in metres or in kilometres.")
+        if self.from_m is not None and self.to_m is not None and self.to_m < self.from_m:
+            yield validation_problem("to_m", "the end is before the start", "Give the start, then the end.")
+        if self.exclude is not None and self.to_m is None and self.to_km is None:
+            yield validation_problem(
+                "exclude", "the event is a place without length", "Give both ends of the stretch to be left out."
+            )
+
+
+class EventChannel(InputTable):
+    """Column of the file that marks events: an event lasts while its number exceeds a level."""
+
+    column: FileColumnName
+    kind: EventKind
+    """Kind of the places."""
+    above: float = 0.5
+    """Level that the number exceeds during an event."""
+    ahead_m: Annotated[float, Field(ge=-1000, le=1000)] = 0.0
+    """Distance of the marked place ahead of the first pantograph [m]."""
+    exclude: Reason = None
+
+
+# Table `arc` of a sidecar: arc detector and current of a pantograph.
+LOADED_SHARE = 0.3
+"""Share of the nominal current above which time counts for the arc share: EN 50317, by secondary sources."""
+
+
+class ArcTable(InputTable):
+    """Arc detector of one pantograph; an arc lasts while its number exceeds a level."""
+
+    pantograph: Annotated[int, Field(ge=1, le=20)]
+    """Number of the pantograph in running order."""
+    detector: FileColumnName
+    """Column of the arc detector."""
+    above: float
+    """Level that the number of the detector exceeds during an arc."""
+    current: ColumnTable | None = None
+    """Current of the pantograph."""
+    nominal_current_A: Annotated[Positive | None, Field(le=1e5)] = None
+    """Nominal current [A]."""
+
+    @cross_check
+    def _check_current(self) -> Problems:
+        if (self.current is None) != (self.nominal_current_A is None):
+            yield validation_problem(
+                "current",
+                "current and nominal_current_A belong together",
+                "Give both; without them there is no arc share.",
+            )
+
+
+# Sidecar of any measured table: the keys that all kinds share, and the reading of its named columns.
+ColumnName = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class TableSidecar(InputTable):
+    """Keys of the sidecar of a measured table: its file and the layout of the file."""
+
+    file: TableName
+    sha256: TableDigest = None
+    table: TextSettings = TextSettings()
+    """Layout of a text table, if it is not found from the file."""
+
+    @cross_check
+    def _check_file(self) -> Problems:
+        yield from find_table_name_problems(self.file)
+
+
+class NamedTableSidecar(TableSidecar):
+    """Sidecar of a table whose columns have the names of this suite with their unit, or are named here."""
+
+    columns: Annotated[dict[str, ColumnName], Field(default_factory=dict, max_length=10)]
+    """Names of the columns in the table, where they are others: the name of this suite, with its unit, then that of
+    the table; further columns are ignored then.
+    """
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
+
+
+class NamedColumn(NamedTuple):
+    """Column of a table, in the unit of its name."""
+
+    values: RealArray
+    place: str
+    """Column in messages."""
+
+
+def read_named_columns(
+    table: Path, sidecar: NamedTableSidecar, known: Sequence[str], usual: Sequence[str], largest: int
+) -> dict[str, NamedColumn]:
+    """Read the columns of a table with one run.
+
+    Args:
+        table: The table.
+        sidecar: Its sidecar.
+        known: Names of the columns of this kind, with their unit.
+        usual: Names that messages suggest.
+        largest: Largest accepted number of values.
+
+    Returns:
+        Columns by their known name, in its unit.
+
+    Raises:
+        InputError: The table is damaged; a column is unknown, missing or repeated.
+    """
+    tables = read_tables(table, (), largest, (CSV, HDF5), sidecar.table)
+    where = f"record '{table.name}'"
+    if len(tables) > 1:
+        raise InputError(where, f"holds {len(tables)} runs", "Write one file per measurement.")
+    columns: dict[str, NamedColumn] = {}
+    for name, values, place in _name_columns(tables[0], sidecar.columns, table.with_suffix(".toml").name):
+        if (converted := convert_key(name, list(known))) is None:
+            raise InputError(place, "unknown column", _suggest_column(name, known, usual))
+        if converted[0] in columns:
+            raise InputError(place, f"repeats {converted[0]}", "Store each value once.")
+        columns[converted[0]] = NamedColumn(converted[1] * values, place)
+    return columns
+
+
+def _name_columns(table: MeasuredTable, mapping: dict[str, str], sidecar_name: str) -> list[tuple[str, RealArray, str]]:
+    """Name in this suite, values and place in messages of each column that is used."""
+    by_name: dict[str, RealArray] = {}
+    for column, values in zip(table.columns, table.values.T, strict=True):
+        if column.name is None:
+            raise InputError(table.where, "has no head line", "Write the names of the columns in the first line.")
+        if column.name in by_name:
+            raise InputError(table.where, f"has two columns {column.name[:80]!r}", "Give each column its own name.")
+        by_name[column.name] = values
+    if not mapping:
+        return [(name, values, f"{table.where}, column {name[:80]!r}") for name, values in by_name.items()]
+    for key, name in mapping.items():
+        if name not in by_name:
+            raise InputError(
+                f"sidecar '{sidecar_name}', key columns.{key[:80]}",
+                f"the table has no column {name[:80]!r}",
+                suggest_names(name, list(by_name)),
+            )
+    return [(key, by_name[name], f"sidecar '{sidecar_name}', key columns.{key[:80]}") for key, name in mapping.items()]
+
+
+def _suggest_column(name: str, known: Sequence[str], usual: Sequence[str]) -> str:
+    stem = name.split("_", 1)[0]
+    if (hint := suggest_key(name, None, list(usual))) is not None:
+        return hint
+    other_kind = [column for column in known if column.startswith(f"{stem}_") and find_unit(name) is not None]
+    return f"For this kind, the column is {other_kind[0]}." if other_kind else suggest_names(name, list(usual))

@@ -1,1 +1,1 @@
-"""results.json: format, building, reading, traces."""
+"""Types of results.json and of the other files that the suite writes."""

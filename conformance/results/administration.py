@@ -5,10 +5,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.shown_text import find_unshowable
-from pantocheck.conformance.input_files.sourced_table import InputTable, validation_problem
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
+from pantocheck.conformance.core.texts import find_unshowable
+from pantocheck.conformance.core.toml_file import read_model
 
 NamedText = Annotated[str | None, Field(min_length=1, max_length=200)]
 RemarkText = Annotated[str | None, Field(min_length=1, max_length=2000)]

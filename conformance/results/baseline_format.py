@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.core.verdicts import Verdict
 
 
 class BaselineComparison(ResultsPart):

@@ -4,9 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.results.figure_data import Chart
-from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
-from pantocheck.conformance.results.suite_part import Suite
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart, Suite
 
 CampaignEnding = Literal["complete", "failure share", "time budget", "interrupted"]
 """Reason of the end of a campaign."""

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.results.results_part import FiniteNumber, Owner, ResultsPart
+from pantocheck.conformance.core.results_part import FiniteNumber, Owner, ResultsPart
 
 
 class ContactLossFacts(ResultsPart):

@@ -4,11 +4,11 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
-from pantocheck.conformance.comparison.response_sidecar import HeadPoint, ResponseKind
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
-from pantocheck.conformance.results.figure_data import Chart
-from pantocheck.conformance.results.suite_part import Suite
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.json_file import Rounded, RoundedModel
+from pantocheck.conformance.core.results_part import Suite
+from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.pantograph.response_sidecar import HeadPoint, ResponseKind
 
 Range = tuple[Rounded, Rounded]
 ComparedValue = Rounded | tuple[Rounded, ...]

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.identification.damping.damping_format import LineComparison
-from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
+from pantocheck.conformance.core.json_file import Rounded, RoundedModel
+from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparedSource, ModelComparison, Range
+from pantocheck.conformance.results.damping_format import LineComparison
 
 CurveValues = tuple[float, ...]
 

@@ -1,7 +1,7 @@
 """Simulated and measured run beside each other in results.json: curves, spectra, and statistics span by span."""
 
-from pantocheck.conformance.results.figure_data import Spectrum
-from pantocheck.conformance.results.results_part import FiniteNumber, Number, Owner, ResultsPart
+from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
 
 
 class ForceStatistics(ResultsPart):

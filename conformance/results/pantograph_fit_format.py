@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from pantocheck.conformance.identification.pantograph_fit.fit_intervals import Determination
-from pantocheck.conformance.identification.rounded_model import Rounded, RoundedModel
+from pantocheck.conformance.core.json_file import Rounded, RoundedModel
+from pantocheck.conformance.core.results_part import Suite
+from pantocheck.conformance.pantograph.chain_fit import Determination
 from pantocheck.conformance.results.comparison_format import ResponseComparison
-from pantocheck.conformance.results.suite_part import Suite
 
 ChainKey = Literal["masses_kg", "stiffness_N_m", "damping_N_s_m"]
 """Lists of a chain, as in a pantograph file."""

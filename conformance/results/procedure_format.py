@@ -2,10 +2,10 @@
 
 from typing import Literal, get_args
 
-from pantocheck.conformance.grading.verdicts import Verdict
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
-from pantocheck.conformance.results.criterion_format import Criterion
-from pantocheck.conformance.results.results_part import FiniteNumber, ResultsPart
 
 StepName = Literal[
     "pantograph_model", "static_check", "simulation_parameters", "reference_models", "line_test", "limits_of_validity"

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.core.results_part import ResultsPart
 
 RecordState = Literal["verified", "unverified", "contradicted"]
 """Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""

@@ -1,6 +1,6 @@
 """Values of the reference simulator beside those of the system under test, for information."""
 
-from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
+from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart
 
 
 class ReferenceValues(ResultsPart):

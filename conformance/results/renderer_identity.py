@@ -7,8 +7,8 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-from pantocheck.conformance.input_files.bounded_file import file_digest
-from pantocheck.conformance.input_files.extras import version_or_absence
+from pantocheck.conformance.core.extras import version_or_absence
+from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.results.results_format import Renderer
 
 FONT_FILES = "mpl-data/fonts/ttf/DejaVuSans*.ttf"

@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from pantocheck.conformance.input_files.extras import is_installed, require_package
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.suggestions import suggest_names
+from pantocheck.conformance.core.extras import is_installed, require_package
+from pantocheck.conformance.core.input_error import InputError, suggest_names
 
 FILES = {
     "html": "certificate.html",

@@ -8,10 +8,14 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from pantocheck.conformance.cases.case_origin import CaseOrigin
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.sourced_table import is_absent
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.cases.case import CaseOrigin
+from pantocheck.conformance.core.criterion import CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.core.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.core.findings import FindingCounts
+from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
+from pantocheck.conformance.core.sourced_table import is_absent
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.baseline_format import BaselineComparison
@@ -22,15 +26,10 @@ from pantocheck.conformance.results.case_facts_format import (
     LawForces,
     StoredValues,
 )
-from pantocheck.conformance.results.criterion_format import CaseVerification, ComponentName, Criterion
-from pantocheck.conformance.results.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
-from pantocheck.conformance.results.finding_format import FindingCounts
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.reference_format import ReferenceValues
-from pantocheck.conformance.results.results_part import Number, Owner, ResultsPart
-from pantocheck.conformance.results.suite_part import Suite
 
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 

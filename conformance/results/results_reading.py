@@ -4,8 +4,8 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from pantocheck.conformance.input_files.bounded_file import read_bytes
-from pantocheck.conformance.input_files.json_file import parse_json, validate_json
+from pantocheck.conformance.core.files import read_bytes
+from pantocheck.conformance.core.json_file import parse_json, validate_json
 from pantocheck.conformance.results.results_format import Results
 
 MAX_RESULTS_BYTES = 64 * 2**20

@@ -1,1 +1,1 @@
-"""Studies: cases that need several runs, or mass drops and their identification."""
+"""Studies that run a case several times."""

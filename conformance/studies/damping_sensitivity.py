@@ -1,23 +1,70 @@
-"""Damping sensitivity: the passage of any case under several damping models."""
+"""Bar charts of the contact force in frequency bands under several damping models."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import DampingFile
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.step_log import use_part
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.elements.damping import DampingFile
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
-from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
 from pantocheck.conformance.quantities.registry import table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.results.figure_data import TextTable
-from pantocheck.conformance.results.outcome import Delivered, Outcome, StudyResult, missing_record_reason
-from pantocheck.conformance.step_log import use_part
-from pantocheck.conformance.studies.band_charts import draw_band_bars
-from pantocheck.conformance.systems.system import System
+from pantocheck.conformance.runs.system import Delivered, Outcome, StudyResult, System, missing_record_reason
 
+PrintedValues = Mapping[tuple[str, int], Mapping[str, float]]
+"""Printed values of a publication by damping model and pantograph, then by name of quantity."""
+
+
+def list_pantographs(values: Mapping[str, ValuesByOwner]) -> list[int]:
+    """Numbers of all pantographs with values, in running order."""
+    return sorted({number for model_values in values.values() for number in model_values if number != LINE})
+
+
+def draw_band_bars(
+    values: Mapping[str, ValuesByOwner], printed: PrintedValues, bands: Sequence[str]
+) -> tuple[Chart, ...]:
+    """Draw one bar chart per pantograph: computed and printed RMS of the contact force in each band.
+
+    Args:
+        values: Computed values by damping model.
+        printed: Printed values; may be empty.
+        bands: Names of the quantities.
+
+    Returns:
+        Charts in the order of the pantographs.
+    """
+    origin = "computed on the assumed line and printed" if printed else "computed under each damping model"
+    table = "computed and printed values" if printed else "the same run under several damping models"
+    charts = []
+    for p in list_pantographs(values):
+        series = [_draw_bars(f"computed, {model}", computed.get(p, {}), bands) for model, computed in values.items()]
+        series += [
+            _draw_bars(f"printed, {model}", printed[model, p], bands) for model in values if (model, p) in printed
+        ]
+        charts.append(
+            Chart(
+                caption=f"Pantograph {p}: RMS of the contact force by band, {origin}.",
+                alternative=f"The bars show the numbers in the table of {table}.",
+                x_label="band [Hz]",
+                y_label="RMS [N]",
+                ticks=[band.removeprefix("rms_").removesuffix("_N").replace("_", "–") for band in bands],
+                series=[bars for bars in series if bars.x],
+            )
+        )
+    return tuple(charts)
+
+
+def _draw_bars(label: str, values: Mapping[str, Value], bands: Sequence[str]) -> Series:
+    known = {float(i): value for i, band in enumerate(bands) if isinstance(value := values.get(band), float)}
+    return Series(label=label, style="bars", x=list(known), y=list(known.values()))
+
+
+# Damping sensitivity: the passage of any case under several damping models.
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library by name of the model, for the damping study of any line."""
 TABLE_ROWS = table_quantities("damping models")
@@ -65,7 +112,7 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
 
 def _run_unrefined(system: System, case: Case) -> Outcome:
     """Run a case; the reference simulator leaves out its refined run."""
-    from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+    from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 
     return system.run_unrefined(case) if isinstance(system, ReferenceSimulator) else system.run(case)
 

@@ -1,6 +1,6 @@
 """Consistency checks of a record."""
 
-from pantocheck.conformance.consistency.record_checks import RECORD_CHECKS
+from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
 from site_pages.markdown_table import build_markdown_table, escape_text
 
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pantocheck.conformance.command_line.app import COMMANDS, load_command
+from pantocheck.conformance.app.commands.command_list import COMMANDS, load_command
 from site_pages.markdown_table import build_markdown_table, escape_text
 
 

@@ -1,8 +1,8 @@
 """Converged values of the library, from their files: both formulations and their difference."""
 
 from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, ConvergedValue
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.library_folder import library_folder
 from site_pages.markdown_table import build_markdown_table, escape_text
 
 HEADINGS = ("pantograph", "quantity", "converged", "half-width", "order", "second formulation", "difference [%]")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.schemas import FORMAT_NAMES, READ_FORMATS, build_schema
+from pantocheck.conformance.app.schemas import FORMAT_NAMES, READ_FORMATS, build_schema
 from site_pages.markdown_table import build_markdown_table, escape_text
 
 

@@ -1,16 +1,4 @@
-"""Active window: stations that no wave can have reached yet, or that are not needed any more, are held at rest.
-
-time ^                           With wave speed c and speed v of the pantograph, a disturbance from the pantograph
- end +......./--x--\\             travels along the characteristics x = x0 +- c t: the domain of influence. Outside of
-     |     /   /     \\           it, the line is still at rest. The result at the end depends on a second cone: from
-     |   /    /    /             the stations outside of it no wave returns in time. The window is the intersection of
-     |    \\  /   /               both, a rhombus around the path of the pantograph.
-     |     \\/ /
-     +------x0-------> x
-
-A station that has left the window is cut off from the line. Its motion, and that of every station which a wave from the
-cut can have reached, is unknown: a recording holds NaN there.
-"""
+"""Binary search in a part of an array, without a view of this part."""
 
 import math
 from typing import NamedTuple
@@ -19,14 +7,38 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.discretised_line import DiscretisedLine, max_wave_speed
-from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, max_wave_speed
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
 
+
+@kernel
+def search(values: Array | Indices, first: int, end: int, value: float) -> int:
+    """First index from `first` on, before `end`, of increasing values that is not below a value; else `end`."""
+    while first < end:
+        middle = (first + end) // 2
+        if values[middle] < value:
+            first = middle + 1
+        else:
+            end = middle
+    return first
+
+
+# Active window: stations that no wave can have reached yet, or that are not needed any more, are held at rest.
+#
+# time ^                           With wave speed c and speed v of the pantograph, a disturbance from the pantograph
+#  end +......./--x--\             travels along the characteristics x = x0 +- c t: the domain of influence. Outside of
+#      |     /   /     \           it, the line is still at rest. The result at the end depends on a second cone: from
+#      |   /    /    /             the stations outside of it no wave returns in time. The window is the intersection of
+#      |    \  /   /               both, a rhombus around the path of the pantograph.
+#      |     \/ /
+#      +------x0-------> x
+#
+# A station that has left the window is cut off from the line. Its motion, and that of every station which a wave from
+# the cut can have reached, is unknown: a recording holds NaN there.
 MIN_HALF_WIDTH = 30.0
 """Half-width that is active around a pantograph from the first step, and distance from a cut at which motion counts as
 known [m]: covers the influence of one step and fast short waves. At 10 m they are below 1e-9 m."""

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
 from pantocheck.model.dynamics.kernel_compilation import kernel
 
 ForceMoment = tuple[float, float]

@@ -15,17 +15,14 @@ solved anew in every step, and gives the influence of the contact on the other c
 
 import math
 
-from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.dynamics.active_window import Window, search
 from pantocheck.model.dynamics.block_tridiagonal import solve_stations
 from pantocheck.model.dynamics.connector_step import ConnectorArrays, inner_product
-from pantocheck.model.dynamics.contact_arrays import ContactArrays, ContactWorkspace
+from pantocheck.model.dynamics.contact_arrays import ContactArrays, ContactWorkspace, height_of_irregularity
 from pantocheck.model.dynamics.distributed_step import DistributedArrays
-from pantocheck.model.dynamics.irregularity_step import height_of_irregularity
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.motion import Motion
-from pantocheck.model.dynamics.scalar_forces import ScalarWorkspace
-from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+from pantocheck.model.dynamics.scalar_forces import NEGLIGIBLE_FORCE, ScalarWorkspace, maximum
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.fem.mesh import find_element

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csr_array
 
-from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
 from pantocheck.model.dynamics.connector_step import inner_product
 from pantocheck.model.dynamics.kernel_compilation import kernel

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
 from pantocheck.model.dynamics.block_tridiagonal import Factor, factorise_blocks
-from pantocheck.model.dynamics.mass_correction import mass_correction
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import Beams, element_stiffness
+from pantocheck.model.fem.mass_correction import mass_correction
 
 
 def factorise(beams: Beams, time_step: float) -> Factor:

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Indices
-from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.description.arrays import Indices
+from pantocheck.model.dynamics.active_window import Window, search
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.fem.beams import Beams

@@ -5,13 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_array, csr_array
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.dynamics.active_window import WindowArrays, whole_line
 from pantocheck.model.dynamics.connector_step import (
     ConnectorArrays,
     build_connector_arrays,
     coefficients_at_nodes,
+    column_half_width,
     connector_ends,
     node_compliance,
 )
@@ -29,7 +30,6 @@ from pantocheck.model.dynamics.distributed_step import (
 )
 from pantocheck.model.dynamics.effective_matrix import factorise
 from pantocheck.model.dynamics.extents import find_extents, merge_extents
-from pantocheck.model.dynamics.inverse_columns import column_half_width
 from pantocheck.model.dynamics.motion import Layout
 from pantocheck.model.dynamics.panels import (
     PanelFactor,
@@ -47,9 +47,8 @@ from pantocheck.model.dynamics.scalar_forces import (
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
 from pantocheck.model.dynamics.wire_step import WireArrays, build_wire_arrays
-from pantocheck.model.fem.contact_wires import locate_contact_wires
-from pantocheck.model.kept_results import keep_with_line
 from pantocheck.model.modal.modal_damping import build_modal_terms
+from pantocheck.model.statics.contact_wires import locate_contact_wires
 
 
 class Load(NamedTuple):

@@ -4,15 +4,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import GRAVITY, Catenary
-from pantocheck.model.discretised_line import discretise
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.catenary import GRAVITY, Catenary
+from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 from pantocheck.model.dynamics.kernel_arrays import Load, build_kernel_arrays
 from pantocheck.model.dynamics.motion import motion_at_rest
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.train import build_empty_train
-from pantocheck.model.fem.assembly import point_load
+from pantocheck.model.statics.assembly import point_load
 from pantocheck.model.statics.static_solver import static_solver
 
 

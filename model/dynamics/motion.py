@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.vectors import align

@@ -30,8 +30,7 @@ from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
 from pantocheck.model.dynamics.kernel_compilation import merged_kernel
 from pantocheck.model.dynamics.motion import Motion, hold_left_stations
 from pantocheck.model.dynamics.panels import solve_wires
-from pantocheck.model.dynamics.scalar_forces import sweep_forces
-from pantocheck.model.dynamics.sweeps import FORCE_TOLERANCE, MAX_SWEEPS, maximum
+from pantocheck.model.dynamics.scalar_forces import FORCE_TOLERANCE, MAX_SWEEPS, maximum, sweep_forces
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import add_lumped_forces, predict_wires
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.extents import Extents, clip_extent

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.pantograph import Pantograph
 
 
 @dataclass(frozen=True)

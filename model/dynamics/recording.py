@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.description.failures import DidNotConverge
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import active_window
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
@@ -14,7 +15,6 @@ from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.failures import DidNotConverge
 
 BLOCK = 500
 """Number of steps between two reports of progress."""

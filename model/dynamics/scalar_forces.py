@@ -1,31 +1,53 @@
-"""Scalar forces in a time step: Gauss-Seidel sweeps over all forces except those of the contacts.
+"""Gauss-Seidel sweeps over the scalar forces of a time step: terms that all of these forces share.
 
-A scalar force X acts on the line along a vector g of coefficients, with the elongation e = g'q: the tension of a
-connector, the additional tension of a held stretch, the damping force of a mode. At the end of a step
+Within one step, each of these forces X changes its own closing acceleration linearly, by the compliance c:
 
-    X = X0 + k e + c e',    of connectors that cannot push    X = max(0, X0 + k e + c e')
+    X = k (d + dt^2/4 a),    a = a_others - c X
 
-With the predicted e*, e*' and the acceleration a = g'q'' of the elongation, X = X* + h a with h = k dt^2/4 + c dt/2. A
-change of the force Y along another vector changes a by -(compliance) times the change, compliance = g' A^-1 g_Y with
-the effective matrix A. The sweeps need these compliances only, not the motion of the line: with all other forces held,
-
-    X = (X* + h a + h_c X_old) / (1 + h_c),    h_c = h times the compliance of X to itself
-
-Within one step forces far apart hardly influence each other: the compliances are a sparse matrix, and two or three
-sweeps suffice.
+so X is solved exactly with all other forces held. One sweep solves each force once. The sweeps are repeated until no
+force changes any more; forces far apart hardly influence each other within a step, so two or three sweeps suffice.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.kernel_compilation import kernel
-from pantocheck.model.dynamics.sweeps import NEGLIGIBLE_FORCE, maximum
+
+FORCE_TOLERANCE = 1e-9
+"""A step has converged when no force changes by more than this in a sweep [N]; forces are of the order of 100 N."""
+NEGLIGIBLE_FORCE = 1e-11
+"""Changes of a force below this, a hundredth of the tolerance of a step, do not update the accelerations [N]."""
+MAX_SWEEPS = 200
+"""A step without convergence after this number of sweeps is abandoned."""
 
 
+@kernel
+def maximum(a: float, b: float) -> float:
+    """Larger of two numbers, or NaN if either is NaN: `max` would drop it, and a diverged step would look converged."""
+    return a if a >= b or math.isnan(a) else b
+
+
+# Scalar forces in a time step: Gauss-Seidel sweeps over all forces except those of the contacts.
+#
+# A scalar force X acts on the line along a vector g of coefficients, with the elongation e = g'q: the tension of a
+# connector, the additional tension of a held stretch, the damping force of a mode. At the end of a step
+#
+# X = X0 + k e + c e',    of connectors that cannot push    X = max(0, X0 + k e + c e')
+#
+# With the predicted e*, e*' and the acceleration a = g'q'' of the elongation, X = X* + h a with h = k dt^2/4 + c dt/2.
+# A change of the force Y along another vector changes a by -(compliance) times the change, compliance = g' A^-1 g_Y
+# with the effective matrix A. The sweeps need these compliances only, not the motion of the line: with all other forces
+# held,
+#
+# X = (X* + h a + h_c X_old) / (1 + h_c),    h_c = h times the compliance of X to itself
+#
+# Within one step forces far apart hardly influence each other: the compliances are a sparse matrix, and two or three
+# sweeps suffice.
 class ScalarLaw(NamedTuple):
     """Laws of F scalar forces."""
 

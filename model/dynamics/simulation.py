@@ -4,22 +4,21 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.failures import ImpossiblePassage
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
-from pantocheck.model.dynamics.contact_arrays import ContactArrays
-from pantocheck.model.dynamics.irregularity_step import height_of_irregularity
+from pantocheck.model.dynamics.contact_arrays import ContactArrays, height_of_irregularity
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
 from pantocheck.model.dynamics.passage import History, Passage
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.train import Train, build_train
-from pantocheck.model.failures import ImpossiblePassage
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.assembly import point_load
-from pantocheck.model.fem.contact_wires import locate_contact_wires, touched_wires
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
+from pantocheck.model.statics.assembly import point_load
+from pantocheck.model.statics.contact_wires import locate_contact_wires, touched_wires
 from pantocheck.model.statics.static_solver import static_solver
 
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.dynamics.passage import Passage
-from pantocheck.model.pantograph import equilibrium
 
 
 class Train(NamedTuple):

@@ -19,7 +19,7 @@ from numba.core.datamodel.models import PrimitiveModel
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, register_model
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
 
 LANES = 8
 """Numbers in a vector."""

@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.extents import Extents, active_run, clip_extent, find_runs
 from pantocheck.model.dynamics.kernel_compilation import inline_kernel, kernel

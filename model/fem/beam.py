@@ -9,7 +9,7 @@ The unknowns of an element are (w1, r1, w2, r2); cubic Hermite shape functions m
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
+from pantocheck.model.description.arrays import Array
 
 
 def stiffness(h: float | Array, tension: float | Array, bending_stiffness: float | Array) -> Array:

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.catenary import Catenary, Termination, Wire
+from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.description.catenary import Catenary, Termination, Wire
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import Mesh
 

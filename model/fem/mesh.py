@@ -11,8 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import Catenary, Kind, Wire
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.catenary import Catenary, Kind, Wire
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import ModalBand
-from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.catenary import ModalBand
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.modal.modes import compute_modes_below, free_vectors
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from pantocheck.model.arrays import Array
-from pantocheck.model.catenary import Kind, Rayleigh
-from pantocheck.model.discretised_line import DiscretisedLine, with_damping
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, free_unknowns
-from pantocheck.model.fem.line_stiffness import factored_stiffness
-from pantocheck.model.one_thread import use_one_thread
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.catenary import Kind, Rayleigh
+from pantocheck.model.description.one_thread import use_one_thread
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, with_damping
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, free_unknowns
+from pantocheck.model.statics.line_stiffness import factored_stiffness
 
 
 @dataclass(frozen=True)

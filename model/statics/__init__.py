@@ -1,1 +1,1 @@
-"""Static states of a line: initial state, lateral state, static solver, elasticity."""
+"""Static solutions of a line, and its elasticity."""

@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.fem.assembly import point_load
-from pantocheck.model.fem.contact_wires import touched_rows, touched_wires
+from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.description.irregularity import NO_IRREGULARITY, irregularity_height
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
-from pantocheck.model.irregularity_spline import NO_IRREGULARITY, irregularity_height
-from pantocheck.model.kept_results import keep_with_line
+from pantocheck.model.statics.assembly import point_load
+from pantocheck.model.statics.contact_wires import touched_rows, touched_wires
 from pantocheck.model.statics.static_solver import PointResponse, point_product, static_solver
 
 

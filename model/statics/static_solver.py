@@ -7,12 +7,11 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from pantocheck.model.arrays import Array, Indices
-from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.failures import NoEquilibrium
-from pantocheck.model.fem.assembly import bandwidth_order, connector_directions
-from pantocheck.model.fem.line_stiffness import factored_stiffness
-from pantocheck.model.kept_results import keep_with_line
+from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.description.failures import NoEquilibrium
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
+from pantocheck.model.statics.assembly import bandwidth_order, connector_directions
+from pantocheck.model.statics.line_stiffness import factored_stiffness
 
 MAX_ITERATIONS = 100
 """Largest number of changes of the set of slack droppers."""

@@ -6,7 +6,7 @@ Definitions as in Kiessling, Puschmann, Schmieder and Schneider, Contact Lines f
 import math
 from collections.abc import Iterable
 
-from pantocheck.model.catenary import Wire
+from pantocheck.model.description.catenary import Wire
 
 
 def impedance(wires: Iterable[Wire]) -> float:

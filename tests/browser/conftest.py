@@ -14,14 +14,13 @@ import pytest
 
 from helpers.example_identification import build_example_line
 from helpers.example_results import chart, example, with_hostile_text, with_measured_run, with_reference
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.document import Document, Figure, Figures, PlainHeader, Section, make_grid
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
-from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.mass_drop.identification_report import build_identification_document
-from pantocheck.conformance.reports.site.published_results import publish_results
-from pantocheck.conformance.reports.site.site_index import build_site_index
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import Document, Figure, Figures, PlainHeader, Section, make_grid
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.identification_page import build_identification_document
+from pantocheck.conformance.pages.site_index import build_site_index, publish_results
+from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.example_results import SPEED, example
-from pantocheck.conformance.input_files.documentation_pages import TEMPLATES
+from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 
 pytestmark = pytest.mark.thorough

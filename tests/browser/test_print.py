@@ -11,8 +11,8 @@ import pytest
 from pypdf import PdfReader
 
 from helpers.example_results import example
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.document import to_plain
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import to_plain
 from pantocheck.conformance.results.results_format import Results
 
 pytestmark = pytest.mark.thorough

@@ -12,8 +12,8 @@ import yaml
 from typer.testing import CliRunner
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.line.library_folder import library_folder
 
 CI = Path(__file__).parents[2] / "docs" / "ci"
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"

@@ -14,9 +14,9 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.own_files.file_check import check_input_file
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.file_check import check_input_file
+from pantocheck.conformance.line.library_folder import library_folder
 
 ROOT = Path(__file__).parents[2]
 ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
@@ -85,7 +85,7 @@ def checkout(tmp_path: Path) -> Path:
     shutil.copytree(library_folder() / "en50318-2002" / "known-passing-code", tmp_path / "my records")
     program = tmp_path / "temp" / "pantocheck-environment" / "bin" / "pantocheck"
     program.parent.mkdir(parents=True)
-    code = "from pantocheck.conformance.command_line import main; main()"
+    code = "from pantocheck.conformance.app.main import main; main()"
     program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -c "{code}" "$@"\n')
     program.chmod(0o755)
     return tmp_path

@@ -6,7 +6,7 @@ from typing import get_args
 
 import yaml
 
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.core.trust import Trust
 
 ROOT = Path(__file__).parents[2]
 FORMS = sorted(set((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")) - {ROOT / ".github/ISSUE_TEMPLATE/config.yml"})

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from jsonschema import validate
 
+from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
-from pantocheck.conformance.schemas import build_schema
 
 TEXT = (Path(__file__).parents[2] / "docs" / "compare-drop.md").read_text(encoding="utf-8")
 

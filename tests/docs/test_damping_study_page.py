@@ -4,11 +4,11 @@ import csv
 from pathlib import Path
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.grading.verdicts import judge
+from pantocheck.conformance.core.findings import judge_finding
+from pantocheck.conformance.core.verdicts import judge
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import format_bounds
-from pantocheck.conformance.results.finding_format import judge_finding
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "damping-study.md").read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ def test_outcomes_follow_from_the_printed_values() -> None:
 
 
 def test_commands_of_the_page_are_those_of_the_damping_files() -> None:
-    """tests/conformance/studies/vovan2015/test_damping_files.py fits with these options."""
+    """tests/conformance/line/elements/test_damping_files.py fits with these options."""
     (fit,) = (line for line in PAGE.splitlines() if line.startswith("pantocheck drop fit"))
     assert "modes/modes.json --line vovan2015/mass-drop/stand-in --element 0.75 --wires common --out fit" in fit
     names = {path.stem for path in (library_folder() / "vovan2015" / "damping").glob("*.toml")}

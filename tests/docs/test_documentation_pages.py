@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from pantocheck.conformance.input_files.documentation_pages import DocumentationPage
+from pantocheck.conformance.core.texts import DocumentationPage
 
 ROOT = Path(__file__).parents[2]
 TITLES = {path.stem: path.read_text().partition("\n")[0][2:].partition(":")[0] for path in (ROOT / "docs").glob("*.md")}

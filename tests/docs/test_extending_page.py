@@ -9,9 +9,9 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.wave_system import Wave
-from pantocheck.conformance.cases.installed_cases import GROUP
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.cases.case_source import GROUP
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.records.record_writing import write_record
 
 PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from jsonschema import validate
 
-from pantocheck.conformance.mass_drops.drop_sidecar import read_drop_sidecar
-from pantocheck.conformance.schemas import build_schema
+from pantocheck.conformance.app.schemas import build_schema
+from pantocheck.conformance.drops.drop_sidecar import read_drop_sidecar
 
 PAGE = Path(__file__).parents[2] / "docs" / "identification.md"
 

@@ -5,7 +5,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from pantocheck.conformance.input_files.extras import EXTRA_OF_PACKAGE
+from pantocheck.conformance.core.extras import EXTRA_OF_PACKAGE
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "installation.md").read_text(encoding="utf-8")

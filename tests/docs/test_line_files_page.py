@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from helpers.listed_spans import list_spans
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 
 PAGE = Path(__file__).parents[2] / "docs" / "line-files.md"
 

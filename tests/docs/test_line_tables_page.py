@@ -9,16 +9,16 @@ from typer.testing import CliRunner
 
 from helpers.line_table_files import change_cell, export_tables
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import COLUMN_UNITS, read_static_record
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.input_files.units import find_key_units
-from pantocheck.conformance.line_tables.line_columns import DROPPER_COLUMNS, SUPPORT_COLUMNS
-from pantocheck.conformance.line_tables.line_import import import_line
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.units import find_key_units
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_columns import DROPPER_COLUMNS, SUPPORT_COLUMNS
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_import import import_line
 
 PAGE = (Path(__file__).parents[2] / "docs" / "line-tables.md").read_text(encoding="utf-8")
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from jsonschema import validate
 
+from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile, load_profile
-from pantocheck.conformance.input_files.extras import EXTRA_OF_PACKAGE
-from pantocheck.conformance.input_files.table_formats import TABLE_FORMATS
-from pantocheck.conformance.input_files.text_settings import TextSettings
+from pantocheck.conformance.core.extras import EXTRA_OF_PACKAGE
+from pantocheck.conformance.core.measured_table import TABLE_FORMATS
+from pantocheck.conformance.core.text_settings import TextSettings
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
-from pantocheck.conformance.schemas import build_schema
 
 PAGE = Path(__file__).parents[2] / "docs" / "logger-files.md"
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_record
 
 PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")

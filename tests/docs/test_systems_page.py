@@ -7,9 +7,9 @@ from typing import Any
 import jsonschema
 import pytest
 
+from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.schemas import build_schema
-from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.runs.command_system import build_case_message
 
 PAGE = Path(__file__).parents[2] / "docs" / "systems.md"
 

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from pantocheck.conformance.grading.discretisation import observed_order
-from pantocheck.conformance.identification.decay_kernel import decay_kernel
+from pantocheck.conformance.drops.decay_kernel import decay_kernel
+from pantocheck.conformance.grading.case_evaluation import observed_order
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.exact_beam import exact_stiffness
-from pantocheck.model.fem.residual_flexibility import in_series
+from pantocheck.model.fem.residual_flexibility import exact_stiffness, in_series
 from pantocheck.model.statics.wave_factors import doppler_factor
 
 ROOT = Path(__file__).parents[2]
@@ -22,17 +21,17 @@ PAGE = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
 
 SECTIONS = {
     "Line": "tests/model/fem/test_beam.py",
-    "Initial state": "tests/model/statics/test_initial_state.py",
+    "Initial state": "tests/model/discretisation/test_initial_state.py",
     "Connectors": "tests/model/fem/test_held_stretches.py",
     "Residual flexibility": "tests/model/fem/test_residual_flexibility.py",
     "Damping": "tests/model/modal/test_modal_damping.py",
-    "Pantograph and contact": "tests/model/test_pantograph.py",
+    "Pantograph and contact": "tests/model/description/test_pantograph.py",
     "Time integration": "tests/model/dynamics/test_newmark.py",
     "Active window": "tests/model/dynamics/test_active_window.py",
     "Quantities and filters": "tests/conformance/quantities/test_filters.py",
     "Uncertainty": "tests/conformance/grading/test_discretisation.py",
-    "Identification of modes from a mass drop": "tests/conformance/identification/test_output_error.py",
-    "Fit of a damping model": "tests/conformance/identification/damping/test_damping_model.py",
+    "Identification of modes from a mass drop": "tests/conformance/drops/test_output_error.py",
+    "Fit of a damping model": "tests/conformance/drops/test_damping_model.py",
 }
 """Sections of the page, and the test of the equations of each beside those of this file."""
 

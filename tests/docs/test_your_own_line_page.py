@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.command_line.app import app
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "your-own-line.md").read_text(encoding="utf-8")

@@ -12,7 +12,7 @@ from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.library_folder import library_folder
 
 EditedCase = Callable[[str, dict[str, Any]], Path]
 """Function that copies the case at 250 km/h with values changed in one of its files; gives the path of the case."""

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 
 from helpers.lines import Array, without_connectors
 from pantocheck.model import DiscretisedLine, Passage
-from pantocheck.model.fem.assembly import (
+from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,

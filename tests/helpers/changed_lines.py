@@ -3,9 +3,9 @@
 from typing import Any
 
 from helpers.toml_edit import change_keys
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 
 
 def changed_tables(changes: dict[str, Any], spans: int = 3) -> dict[str, Any]:

@@ -14,8 +14,7 @@ from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_r
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
 from pantocheck.conformance.campaigns.design_axes import RangeAxis
-from pantocheck.conformance.campaigns.local_workers import LocalWorkers
-from pantocheck.conformance.campaigns.run_executor import Execute
+from pantocheck.conformance.campaigns.local_workers import Execute, LocalWorkers
 
 
 def speed_design(runs: int) -> CampaignDesign:

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from helpers.lines import Array, without_connectors
-from pantocheck.model.discretised_line import DiscretisedLine
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, stepping_mass
 
 
 def inverse_of_assembled(line: DiscretisedLine, time_step: float) -> Array:

@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.array_types import ComplexArray, RealArray
-from pantocheck.conformance.identification.decay_filters import FrequencyBand, complete_overlap, low_pass_decay
-from pantocheck.conformance.identification.decay_preparation import LinearDecay, PreparedDecay
-from pantocheck.conformance.identification.line_fit import LineFit, fit_line, share_blocks
-from pantocheck.conformance.identification.projection import build_block
-from pantocheck.conformance.identification.release import Release
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand, complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, Release
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.line_fit import LineFit, fit_line, share_blocks
+from pantocheck.conformance.drops.projection import build_block
 
 RATE, RELEASE = 50.0, 2.0
 BAND = FrequencyBand.up_to(4.0, RATE)

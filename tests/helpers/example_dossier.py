@@ -8,11 +8,11 @@ from typing import Any, Literal
 
 from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.procedure.dossier_reading import read_dossier
-from pantocheck.conformance.procedure.validation import Validation
-from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.dossier.dossier_reading import read_dossier
+from pantocheck.conformance.dossier.validation import Validation
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.system import Delivered
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "dossier"
 

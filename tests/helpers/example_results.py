@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.formats.pdf import render_pdf
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"

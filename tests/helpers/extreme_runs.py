@@ -6,12 +6,12 @@ from typing import Any
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.simulation.case_run import build_passage, record_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.runs.case_run import build_passage, record_passage
 from pantocheck.model import History, Passage, discretise, simulate_passage
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 
 
 def build_case(

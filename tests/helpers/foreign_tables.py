@@ -9,10 +9,10 @@ import pytest
 import pyuff
 import scipy.io
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
-from pantocheck.conformance.input_files.formats.uff_sets import write_data_sets
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.hdf5_table import write_hdf5_table
+from pantocheck.conformance.core.uff_table import write_data_sets
 
 Channels = Mapping[str, RealArray]
 

@@ -6,12 +6,12 @@ import pytest
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runner import run_cases
 
 
 def render_document(results: dict[str, Any], name: str) -> bytes:

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.line_tables.line_export import DecimalMark, export_droppers, export_supports
-from pantocheck.conformance.line_tables.line_import import import_line
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_import import import_line
 
 
 def export_tables(folder: Path, line: LineFile, mark: DecimalMark = "point") -> tuple[Path, Path]:

@@ -17,7 +17,7 @@ from pantocheck.model import (
     Wire,
     chain,
 )
-from pantocheck.model.sections import join_sections, place_section
+from pantocheck.model.description.sections import join_sections, place_section
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 
 
 def list_spans(tables: dict[str, Any]) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.library_folder import library_folder
 
 
 def outside_case(name: str, speed_km_h: float = 250.0) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import TypeVar
 
-from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.pages import document as doc
 
 B = TypeVar("B", bound=doc.Block)
 

@@ -14,10 +14,10 @@ from scipy.linalg import solve
 
 from helpers.lines import Array, without_connectors
 from pantocheck.model import Passage
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.motion import Layout, Motion, end_of_step
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.fem.assembly import (
+from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,

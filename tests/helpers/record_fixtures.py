@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.hdf5_table import write_hdf5_table
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 

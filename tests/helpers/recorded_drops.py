@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from helpers.static_records import read_unequal_line
-from pantocheck.conformance.cases.damping_file import Damping
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drop_simulation import decimate
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_simulation import decimate
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model.dynamics.drop_values import MassDropSetup
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 

@@ -8,9 +8,9 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 
 FREQUENCY = np.geomspace(0.5, 50.0, 120)
 """Frequencies of a rig [Hz]: 26 per octave of ten percent steps and less."""

@@ -3,8 +3,8 @@
 import tomllib
 from typing import Any
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 
 
 def section_tables(

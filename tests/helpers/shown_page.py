@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.results.results_format import Results
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.authenticity.signatures.signing import SigningOptions, sign_document
+from pantocheck.conformance.documents.signing import SigningOptions, sign_document
 
 
 def sign(document: Path, holder: Any, **options: Any) -> Path:

@@ -7,10 +7,10 @@ import numpy as np
 import tomli_w
 from numpy.typing import NDArray
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import discretise
 from pantocheck.model.statics.elasticity import rest_height, static_uplift
 

@@ -5,12 +5,12 @@ import numpy as np
 from helpers.lines import Array
 from helpers.plain_newmark import PlainNewmark
 from pantocheck.model import Passage, chain
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.fem.assembly import bandwidth_order
+from pantocheck.model.statics.assembly import bandwidth_order
 
 SCALES = {"q": 0.01, "v": 0.1, "a": 10.0, "tension": 100.0, "contact": 100.0}
 """Sizes of a passage [m, m/s, m/s2, N, N] below which a difference is not made relative to the largest value.

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.results.outcome import Outcome, Skipped
+from pantocheck.conformance.runs.system import Outcome, Skipped
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.pantograph_file import PantographFile
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.simulation.pantograph_model import build_pantograph
+from pantocheck.conformance.runs.system import Delivered
 
 MEAN, SIGMA, UPLIFT_MM = 119.0, 28.0, 50.0
 RIPPLE_N, RIPPLE_HZ = 0.05, 40.0

@@ -75,7 +75,7 @@ def test_second_process_loads_the_kernels_of_the_first(tmp_path: Path) -> None:
     """Also a worker of a pool or of pytest: a fresh process with the same folder compiles nothing."""
     code = """
 import numpy as np
-from pantocheck.model.dynamics.binary_search import search
+from pantocheck.model.dynamics.active_window import search
 search(np.arange(7.0), 0, 7, 0.5)
 print(sum(search.stats.cache_misses.values()), sum(search.stats.cache_hits.values()))
 """

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from verification.tables.filter_and_band import CASES, FILTERS, band_changes, filter_changes, load_signals
 

@@ -13,10 +13,10 @@ from scipy.linalg import eigh
 from helpers.listed_spans import list_spans
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.input_files.toml_file import read_toml
-from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.difference_arrays import NEVER_SLACK, Model, build_model
 from verification.formulations.difference_data import Heads
 from verification.formulations.difference_line import CaseData, build_line

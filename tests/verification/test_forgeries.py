@@ -7,8 +7,8 @@ import pytest
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
 from verification.attacks.forged_pages import HTML_FORGERIES
 from verification.attacks.forged_pdfs import PDF_FORGERIES
 from verification.attacks.forged_results import CHANGES

@@ -6,8 +6,8 @@ import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case
-from pantocheck.conformance.runner import run_case
-from pantocheck.conformance.systems.reference_simulator import UnrefinedSimulator
+from pantocheck.conformance.execution.runner import run_case
+from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
 from verification.tables.spacing_resonance import CASE, first_band, wake_frequency
 
 SPEED_KM_H = 200.0

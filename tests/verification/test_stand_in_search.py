@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.library_folder import library_folder
 from verification.tables import stand_in_search
 
 

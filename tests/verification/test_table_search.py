@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
-from pantocheck.conformance.studies.vovan2015.force_changes import force_changes
+from pantocheck.conformance.studies.vovan2015.damping_change import force_changes
 from verification.tables.table_scenarios import (
     CHOSEN,
     InitialRun,

@@ -24,7 +24,7 @@ CAMPAIGN = (
     *("--set", "discretisation.time_step_s=0.002"),
 )
 PYTHON = [sys.executable, "-c"]
-SUITE = "from pantocheck.conformance.command_line import main; main()"
+SUITE = "from pantocheck.conformance.app.main import main; main()"
 LONGEST_START_S = 120.0
 """Longest time until the scheduler states its address [s]."""
 

@@ -57,7 +57,7 @@ def main(kills: int, seed: int) -> None:
 
 def start(folder: Path) -> "subprocess.Popen[bytes]":
     """Start or resume the campaign."""
-    code = "from pantocheck.conformance.command_line import main; main()"
+    code = "from pantocheck.conformance.app.main import main; main()"
     command = [sys.executable, "-c", code, "campaign", *CAMPAIGN, "--out", str(folder)]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 

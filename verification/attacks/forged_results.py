@@ -9,12 +9,12 @@ from collections.abc import Callable
 from typing import Any
 
 from pantocheck.conformance.cases.library import list_library, load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.trust import limit_counts
+from pantocheck.conformance.core.verdicts import judge, margin
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
-from pantocheck.conformance.grading.near_limit import ValueErrors, near_limit_remarks
-from pantocheck.conformance.grading.verdicts import judge, margin
-from pantocheck.conformance.input_files.trust import limit_counts
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.scope import build_scope

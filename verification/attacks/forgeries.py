@@ -23,24 +23,24 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.authenticity.authenticity_check import DocumentCheck
-from pantocheck.conformance.authenticity.certificate_reading import read_certificate
-from pantocheck.conformance.authenticity.record_check import check_record_quantities
-from pantocheck.conformance.authenticity.rerun_check import check_rerun
-from pantocheck.conformance.authenticity.verification import Verification, verify_certificate
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.authenticity_check import DocumentCheck
+from pantocheck.conformance.documents.document_reading import read_certificate
+from pantocheck.conformance.documents.record_check import check_record_quantities
+from pantocheck.conformance.documents.rerun_check import check_rerun
+from pantocheck.conformance.documents.verification import Verification, verify_certificate
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.embedded_results import encode_attachment, encode_data_block
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.embedded_results import encode_attachment, encode_data_block
-from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.formats.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.systems.record_folder import open_record_folder
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from verification.attacks.forged_pages import HTML_FORGERIES
 from verification.attacks.forged_pdfs import PDF_FORGERIES, replace_attachment
 from verification.attacks.forged_results import CHANGES, forge_results

@@ -31,7 +31,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
 from verification.attacks.fuzz_files import Target, build_targets
 from verification.attacks.fuzz_uses import Falsehood, use_digested
 

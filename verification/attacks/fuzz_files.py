@@ -13,22 +13,22 @@ import h5py
 import numpy as np
 import scipy.io
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.authenticity.verification import verify_document
+from pantocheck.conformance.app.new_files import read_template
 from pantocheck.conformance.cases.library import load_case, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.mass_drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.mass_drops.uff_writing import write_drop_uff
-from pantocheck.conformance.own_files.new_files import read_template
-from pantocheck.conformance.plan import read_plan
-from pantocheck.conformance.procedure.dossier_reading import read_dossier
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.documents.verification import verify_document
+from pantocheck.conformance.dossier.dossier_reading import read_dossier
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
+from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.execution.plan import read_plan
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.formats.pdf import render_pdf
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.runs.record_folder import open_record_folder
 from verification.attacks.fuzz_uses import (
     CASE,
     PASSING,

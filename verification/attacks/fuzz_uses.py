@@ -6,29 +6,28 @@ from pathlib import Path
 
 import numpy as np
 
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.app.sidecar_draft import draft_record_sidecar
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.measured_table import EVERY_CHANNEL, read_tables
+from pantocheck.conformance.core.text_settings import TextSettings
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.drops.drop_reading import LARGEST_DROP, read_drop_records
+from pantocheck.conformance.drops.line_comparison import compare_line
+from pantocheck.conformance.drops.mode_matching import select_usable
+from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
-from pantocheck.conformance.grading.profile_grading import assess_record
-from pantocheck.conformance.identification.damping.line_comparison import compare_line
-from pantocheck.conformance.identification.damping.mode_matching import select_usable
-from pantocheck.conformance.identification.mode import read_modes
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.measured_table import EVERY_CHANNEL
-from pantocheck.conformance.input_files.table_formats import read_tables
-from pantocheck.conformance.input_files.text_settings import TextSettings
-from pantocheck.conformance.mass_drops.drop_reading import LARGEST_DROP, read_drop_records
-from pantocheck.conformance.own_files.channel_facts import find_time, list_channel_facts
-from pantocheck.conformance.own_files.sidecar_draft import draft_record_sidecar
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.channel_facts import find_time, list_channel_facts
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.results.modes import read_modes
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.systems.command.protocol_messages import AnswerRefused, parse_message
-from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.runs.protocol_messages import AnswerRefused, parse_message
+from pantocheck.conformance.runs.record_folder import open_record_folder
 
 CASE = "en50318-2002/250"
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"

@@ -24,25 +24,25 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.grading.profile_grading import assess_record
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_toml
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.outcome import Delivered
 from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.systems.record_folder import open_record_folder
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.system import Delivered
 from verification.attacks.manipulation_dossier import Dossier
 from verification.attacks.manipulation_grammar import MANIPULATIONS
 

@@ -10,13 +10,13 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.statistics import statistical_extremes
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.static_quantities import SMALL_LOAD, sample_span
-from pantocheck.conformance.systems.command.case_message import build_case_message
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.conformance.runs.command_system import build_case_message
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.static_quantities import SMALL_LOAD, sample_span
 from pantocheck.model import discretise
 from pantocheck.model.statics.elasticity import non_uniformity, static_uplift
 from verification.formulations.difference_arrays import build_model

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.converged_extrapolation import (
     AGREEMENT_PCT,
     Extrapolation,

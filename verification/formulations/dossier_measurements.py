@@ -20,7 +20,7 @@ import tomli_w
 
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.difference_arrays import Model, build_model
 from verification.formulations.difference_line import CaseData, build_line
 from verification.formulations.difference_passage import Passage, simulate

@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from pantocheck.model import DiscretisedLine
-from pantocheck.model.catenary import GRAVITY, Kind
+from pantocheck.model.description.catenary import GRAVITY, Kind
 from verification.formulations.exact_connections import build_bars, build_springs
 from verification.formulations.exact_forces import allocate_scratch, sum_forces
 from verification.formulations.exact_line import Array, ExactLine, Indices, Wires, no_strings, unstretched_lengths

@@ -3,8 +3,8 @@
 import numpy as np
 
 from pantocheck.model import DiscretisedLine
-from pantocheck.model.catenary import Kind
-from pantocheck.model.fem.connectors import RIGID, arm_direction
+from pantocheck.model.description.catenary import Kind
+from pantocheck.model.discretisation.connectors import RIGID, arm_direction
 from verification.formulations.exact_line import Array, Bars, Springs
 from verification.formulations.exact_points import point_number
 

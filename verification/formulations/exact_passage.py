@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.model import DiscretisedLine, History, Passage
-from pantocheck.model.pantograph import Pantograph
+from pantocheck.model.description.pantograph import Pantograph
 from verification.formulations.exact_contact import ExactPantograph
 from verification.formulations.exact_line import Array, ExactLine
 from verification.formulations.exact_points import watched_points

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.model import DiscretisedLine
-from pantocheck.model.fem.connectors import arm_direction
+from pantocheck.model.discretisation.connectors import arm_direction
 from verification.formulations.exact_line import Array, Indices
 
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.systems.command.case_message import build_case_message
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.conformance.runs.command_system import build_case_message
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.formulations.difference_passage import LINE_QUANTITIES, QUANTITIES, Quantities, difference_quantities

@@ -18,12 +18,12 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.drops.drop_simulation import simulate_drop
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
-from pantocheck.conformance.simulation.case_run import build_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drop_simulation import simulate_drop
+from pantocheck.conformance.runs.case_run import build_passage
 from pantocheck.model import Catenary, Kind, ModalBand, discretise, simulate_passage
-from pantocheck.model.irregularity import Irregularity
+from pantocheck.model.description.irregularity import Irregularity
 from verification.formulations.library_passages import PASSAGES
 from verification.speed.passage_lines import ac_simple, passage, staggered, vertical
 

@@ -12,17 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from pantocheck.conformance.app.self_test.numerical_faults import without_residual_flexibility
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.grading.verification_limits import EXTREMES, RELATIVE
+from pantocheck.conformance.grading.case_verification import EXTREMES, RELATIVE
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.self_test.faulty_lines import without_residual_flexibility
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.runs.case_run import run_passage
 from pantocheck.model import Catenary, DiscretisedLine, discretise
-from pantocheck.model.discretised_line import keep_viscous_part
+from pantocheck.model.discretisation.discretised_line import keep_viscous_part
 
 CASES = ("en50318-2002/250", "en50318-2002/300", "en50318-2018/ac-simple/320-twin")
 SHOWN = [name for name in (*RELATIVE, *EXTREMES) if not name.startswith(("elasticity", "statistical"))]

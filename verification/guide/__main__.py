@@ -13,11 +13,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from pantocheck.conformance.command_line.guard import guard_command
-from pantocheck.conformance.command_line.progress_display import follow_steps
-from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.input_files.atomic_writing import check_writable, write_atomically
-from pantocheck.conformance.reports.formats.report_writers import remark_missing_formats, write_document
+from pantocheck.conformance.app.commands.guard import guard_command
+from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.core.files import check_writable, write_atomically
+from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from verification.guide.guide_building import build_guide, guide_identity, list_deviations
 from verification.guide.guide_driver import compute_parts
 from verification.guide.guide_format import Guide

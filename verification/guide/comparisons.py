@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from verification.guide.guide_format import CheckedValue, ConvergenceStudy
 
 

@@ -5,10 +5,10 @@ from importlib.metadata import version
 from typing import TypeVar
 
 from pantocheck.conformance.cases.library import source_text
-from pantocheck.conformance.results.results_building import build_suite, utc_now
+from pantocheck.conformance.core.results_part import ResultsPart
+from pantocheck.conformance.grading.results_building import build_suite, utc_now
 from pantocheck.conformance.results.results_format import Platform
-from pantocheck.conformance.results.results_part import ResultsPart
-from pantocheck.conformance.simulation.model_uncertainty import read_effects
+from pantocheck.conformance.runs.resolution import read_effects
 from verification.guide.guide_driver import GuideParts
 from verification.guide.guide_format import (
     Guide,

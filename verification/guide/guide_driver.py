@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 
-from pantocheck.conformance.results.results_part import ResultsPart
-from pantocheck.conformance.systems.worker_process import end_workers, handle_worker_signals, limit_threads
+from pantocheck.conformance.core.processes import end_workers, handle_worker_signals, limit_threads
+from pantocheck.conformance.core.results_part import ResultsPart
 from verification.guide.guide_format import FailedPart
 from verification.guide.guide_store import GuideStore
 from verification.guide.guide_tasks import GuideTask

@@ -4,12 +4,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.trust import Trust
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.results_part import FiniteNumber, Number, ResultsPart, Suite
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.results_format import Platform
-from pantocheck.conformance.results.results_part import FiniteNumber, Number, ResultsPart
-from pantocheck.conformance.results.suite_part import Suite
 
 
 class CheckedValue(ResultsPart):

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from pantocheck.conformance.input_files.atomic_writing import write_atomically
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.core.files import write_atomically
+from pantocheck.conformance.core.results_part import ResultsPart
 from verification.guide.guide_tasks import GuideTask
 
 FOLDER_OF_PARTS = "parts"

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.library_list import list_library
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.cases.case_source import list_library
+from pantocheck.conformance.core.results_part import ResultsPart
+from pantocheck.conformance.line.library_folder import library_folder
 from verification.guide.guide_format import LibraryCase, PeerComparison, Performance, SelfTestSummary, Topic
 from verification.guide.library_values import compute_library_case
 from verification.guide.peers.peer_list import PEERS

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.identification.rounded_model import round_significant
+from pantocheck.conformance.core.json_file import round_significant
 from verification.guide.guide_format import Guide, LibraryCase, Topic
 
 

@@ -4,10 +4,10 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.results.criterion_format import Criterion
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.results.results_format import CaseResult
-from pantocheck.conformance.runner import run_case
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from verification.guide.guide_format import ConvergedComparison, LibraryCase, PublishedRange
 
 

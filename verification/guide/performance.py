@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.simulation.case_run import build_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.runs.case_run import build_passage
+from pantocheck.conformance.runs.uplift_tuning import estimate_uplift_forces
 from pantocheck.model import discretise, simulate_passage
 from verification.guide.guide_format import Performance, Timing
 

@@ -1,8 +1,8 @@
 """Self-test of the suite for the guide: verdict on every known fault."""
 
+from pantocheck.conformance.app.self_test.bench import MutantResult, run_self_test
+from pantocheck.conformance.app.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.self_test.bench import MutantResult, run_self_test
-from pantocheck.conformance.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from verification.guide.guide_format import DetectedFault, SelfTestSummary
 
 RECORD_CASES = ("en50318-2002/250", "en50318-2002/300")

@@ -15,7 +15,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from pantocheck.conformance.reports.figures.figure_style import HALF, LINES, SHADES, add_legend, render_svg
+from pantocheck.conformance.core.figure_style import HALF, LINES, SHADES, add_legend, render_svg
 from pantocheck.model import discretise, simulate_passage
 from verification.speed.passage_lines import QUANTITIES, ac_simple, figures, passage, staggered
 

@@ -25,7 +25,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-MAIN = "from pantocheck.conformance.command_line import main; raise SystemExit(main())"
+MAIN = "from pantocheck.conformance.app.main import main; raise SystemExit(main())"
 BUSY = "while True: pass"
 TIME_LIMIT = 1800.0
 """Longest time of one command [s]."""

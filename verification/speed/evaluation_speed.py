@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
+from pantocheck.conformance.campaigns.campaign_evaluation import evaluate_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, CampaignStore, open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
-from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
-from pantocheck.conformance.identification.rounded_model import write_model
-from pantocheck.conformance.reports.campaign.campaign_page import build_campaign_report
-from pantocheck.conformance.reports.formats.report_writers import write_report
+from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.pages.campaign_page import build_campaign_report
+from pantocheck.conformance.pages.report_writers import write_report
 
 SPEED, START, FORCE = "speed_km_h", "start_m", "pantograph.uplift_force_N"
 

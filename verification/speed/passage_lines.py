@@ -6,14 +6,14 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 from pantocheck.model import Catenary, DiscretisedLine, History, Passage
-from pantocheck.model.fem.connectors import arm_direction
-from pantocheck.model.statics.initial_state import InitialState
+from pantocheck.model.discretisation.connectors import arm_direction
+from pantocheck.model.discretisation.initial_state import InitialState
 
 QUANTITIES = (
     "std_force_N",

@@ -11,7 +11,7 @@ from pantocheck.model import DiscretisedLine, Passage
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.fem.assembly import (
+from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,

@@ -10,9 +10,9 @@ import time
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.runs.case_run import run_passage
 from pantocheck.model import Catenary, discretise
 from verification.speed.passage_lines import ALLOWED_PCT, QUANTITIES, vertical
 

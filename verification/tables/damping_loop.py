@@ -11,10 +11,10 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.identification.damping.damping_results import build_damping_results
-from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.drops.damping_results import build_damping_results
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.identify import identify_modes
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.model import Kind, Rayleigh
 from pantocheck.model.dynamics.drop_values import MassDropSetup as SimulatedDrop
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop

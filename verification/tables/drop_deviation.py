@@ -17,19 +17,24 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.cases.damping_file import DampingFile
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
-from pantocheck.conformance.comparison.drop_motion import DropMotion, simulate_models
+from pantocheck.conformance.comparison.drop_motion import (
+    GRAPHIC_BAND,
+    DropMotion,
+    MotionBand,
+    filter_motion,
+    simulate_models,
+)
 from pantocheck.conformance.comparison.drop_statistics import select_window
-from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MotionBand, filter_motion
 from pantocheck.conformance.comparison.recorded_drop import locate_drop
-from pantocheck.conformance.input_files.toml_file import read_model
-from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
-from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.line.elements.damping import DampingFile
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import discretise
-from pantocheck.model.catenary import GRAVITY
+from pantocheck.model.description.catenary import GRAVITY
 from pantocheck.model.fem import beams
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 

@@ -13,12 +13,12 @@ from scipy.signal import butter, sosfiltfilt
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
 from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 
 CASES = ("en50318-2002/250", "en50318-2002/300")
 FILTERS = {

@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from pantocheck.conformance.identification.identify import Identification, identify_modes
-from pantocheck.conformance.identification.pole_refinement import refine_poles
-from pantocheck.conformance.identification.projection import whiten
-from pantocheck.conformance.mass_drops.drop_reading import read_drop_records
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.identify import Identification, identify_modes
+from pantocheck.conformance.drops.pole_refinement import refine_poles
+from pantocheck.conformance.drops.projection import whiten
 
 Real = NDArray[np.float64]
 SSI_ROWS, SSI_ORDER, SSI_RATE = 60, 160, 25.0  # block rows, largest model order, rate of the decimated record [Hz]

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.geometry import GradientTable, ListedSpans
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.working_height import compute_working_height
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.geometry import GradientTable, ListedSpans
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.conformance.runs.uplift_tuning import compute_working_height
 from pantocheck.model import DiscretisedLine, discretise
 
 PUBLISHED = {

@@ -18,11 +18,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
-from pantocheck.model.discretised_line import max_wave_speed
+from pantocheck.model.discretisation.discretised_line import max_wave_speed
 from pantocheck.model.dynamics.active_window import build_window_arrays
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps

@@ -11,13 +11,12 @@ import argparse
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.response_comparison import model_stiffness
-from pantocheck.conformance.identification.pantograph_fit.chain_fit import fit_chain
-from pantocheck.conformance.identification.pantograph_fit.chain_problem import MeasuredStiffness
-from pantocheck.conformance.identification.pantograph_fit.fit_intervals import compute_intervals
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pantograph.chain_fit import compute_intervals, fit_chain
+from pantocheck.conformance.pantograph.chain_problem import MeasuredStiffness
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 
 PANTOGRAPHS = (
     "en50318-2018/pantograph.toml",

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.simulation.case_run import build_passage
+from pantocheck.conformance.runs.case_run import build_passage
 from pantocheck.model import discretise, simulate_passage
 from verification.speed.passage_lines import QUANTITIES, ac_simple, figures, passage, staggered
 

@@ -6,10 +6,10 @@ python -m verification.tables.self_test_tables
 import argparse
 from collections.abc import Iterable, Sequence
 
+from pantocheck.conformance.app.commands.system_self_test_command import DEFAULT_CASES, NUMERICAL_CASES
+from pantocheck.conformance.app.self_test.bench import MutantResult, run_self_test
+from pantocheck.conformance.app.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.command_line.system_self_test_command import DEFAULT_CASES, NUMERICAL_CASES
-from pantocheck.conformance.self_test.bench import MutantResult, run_self_test
-from pantocheck.conformance.self_test.numerical_faults import NumericalResult, run_numerical_faults
 
 
 def list_severe(results: Iterable[MutantResult]) -> list[tuple[str, ...]]:

@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.reports.figures.figure_style import FULL, render_svg
-from pantocheck.conformance.simulation.line_discretisation import discretise_line
+from pantocheck.conformance.core.figure_style import FULL, render_svg
+from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model.modal.modes import compute_modes
 
 Real = NDArray[np.float64]

@@ -19,18 +19,21 @@ import numpy as np
 import tomli_w
 from scipy.stats import qmc
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.verdicts import margin
+from pantocheck.conformance.drops.mode_groups import LAST_GROUP, number_groups
 from pantocheck.conformance.grading.criterion_grading import find_value
-from pantocheck.conformance.grading.verdicts import margin
-from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.identification.mode_groups import LAST_GROUP, number_groups
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.group_findings import compare_reference, compute_group_findings
-from pantocheck.conformance.studies.vovan2015.line_damping import computed_damping_ratios
+from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.studies.vovan2015.line_damping import (
+    compare_reference,
+    compute_group_findings,
+    computed_damping_ratios,
+)
 from pantocheck.model import discretise
 from pantocheck.model.modal.modes import compute_modes_below
 

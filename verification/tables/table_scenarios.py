@@ -8,19 +8,19 @@ from typing import NamedTuple
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import PantographFile
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.quantities.evaluation import LINE, ValuesByOwner
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.simulation.case_run import run_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.studies.vovan2015.force_changes import ForceChanges, compare_damping_runs
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.conformance.studies.vovan2015.damping_change import ForceChanges, compare_damping_runs
 from pantocheck.model import discretise
-from pantocheck.model.failures import SimulationError
+from pantocheck.model.description.failures import SimulationError
 
 MEAN_FORCES = (151.0, 210.0)
 """Mean contact forces of front and rear, which follow from the printed values [N]."""

@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
+from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
-from pantocheck.conformance.grading.verdicts import judge
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
-from pantocheck.conformance.studies.vovan2015.force_changes import COMPARED_QUANTITIES
+from pantocheck.conformance.studies.vovan2015.damping_change import COMPARED_QUANTITIES
 from verification.tables.table_scenarios import (
     PANTOGRAPHS,
     TENSIONS_N,

@@ -8,7 +8,7 @@ Prints the table of docs/damping-study.md: one assumption at a time differs from
 from collections.abc import Iterator
 
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.studies.vovan2015.force_changes import CHANGES
+from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES
 from verification.tables.table_scenarios import CHOSEN, MEAN_FORCES, Scenario, run_initial, run_settled_changes
 from verification.tables.table_search import count_reproduced
 

@@ -10,11 +10,10 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.line.line_discretisation import discretise_line
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.simulation.case_run import PassageRun, run_passage
-from pantocheck.conformance.simulation.line_discretisation import discretise_line
-from pantocheck.conformance.simulation.uplift_estimate import estimate_uplift_forces
-from pantocheck.conformance.simulation.uplift_tuning import tune_uplift
+from pantocheck.conformance.runs.case_run import PassageRun, run_passage
+from pantocheck.conformance.runs.uplift_tuning import estimate_uplift_forces, tune_uplift
 
 CASES = ["en50318-2018/ac-simple/*", "en50318-2018/ac-stitched/*"]
 

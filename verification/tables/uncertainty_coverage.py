@@ -16,12 +16,12 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.start_and_section import RunStart, list_other_starts, shift_section, span_length
-from pantocheck.conformance.grading.case_uncertainty import discretisation_component, start_component
+from pantocheck.conformance.grading.case_evaluation import discretisation_component, start_component
 from pantocheck.conformance.grading.record_uncertainty import shift_component
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import Evaluation, ValuesByOwner
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
-from pantocheck.conformance.simulation.case_run import run_passage, run_starts
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.runs.case_run import run_passage, run_starts
 from pantocheck.model import discretise
 from verification.formulations.library_passages import PASSAGES
 from verification.speed.passage_lines import ac_simple

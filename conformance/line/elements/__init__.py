@@ -1,1 +1,1 @@
-"""Elements of a line, one file each: keys, checks, model, derived values, drawing and feature."""
+"""Elements of a line, one declaration each."""

@@ -6,20 +6,21 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
     Positive,
+    Problems,
     SourcedTable,
+    cross_check,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import round_number, round_position
+from pantocheck.conformance.line.elements.derived_numbers import round_number, round_position
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, Element, list_key
 from pantocheck.model import Catenary, TrackCurve
-from pantocheck.model.curves import head_shift
+from pantocheck.model.description.curves import head_shift
 
 if TYPE_CHECKING:
     from pantocheck.model import DiscretisedLine
@@ -146,7 +147,7 @@ class TrackCurves(Element):
 
     def measure(self, built: "DiscretisedLine") -> dict[str, float]:
         """Largest lateral distance of a touched contact wire at rest from the centre of a pantograph head."""
-        from pantocheck.model.fem.contact_wires import touched_wires
+        from pantocheck.model.statics.contact_wires import touched_wires
 
         track, catenary, position = self.track, built.catenary, built.mesh.position
         if track is None or not catenary.has_lateral_field:

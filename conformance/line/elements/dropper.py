@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, TypeVar
 import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NumberList,
     PositiveList,
+    Problems,
     SourcedTable,
+    cross_check,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import (
+from pantocheck.conformance.line.elements.derived_numbers import (
     BySpan,
     MassCoefficient,
     StiffnessCoefficient,
@@ -31,7 +32,7 @@ from pantocheck.conformance.line.elements.steady_arm import ClampMass
 from pantocheck.model import Catenary, Dropper, Kind
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.conformance.line.line_layout import LineLayout
 
 Entry = TypeVar("Entry")
 

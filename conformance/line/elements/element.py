@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
-from pantocheck.conformance.input_files.cross_checks import Problems
-from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent, validation_problem
+from pantocheck.conformance.core.sourced_table import InputTable, Problems, is_absent, validation_problem
 from pantocheck.model import Catenary, Kind, Wire
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_file import LineFile
-    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.conformance.line.line_file import LineFile
+    from pantocheck.conformance.line.line_layout import LineLayout
     from pantocheck.model import DiscretisedLine
 
 MOST_LINE_PARTS = 1000

@@ -6,22 +6,23 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
     Positive,
+    Problems,
     SourcedTable,
+    cross_check,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import BySupport, Numbers, join_equal, round_positions
+from pantocheck.conformance.line.elements.derived_numbers import BySupport, Numbers, join_equal, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
 from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
 from pantocheck.model import Catenary, Kind, MessengerSupport
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.conformance.line.line_layout import LineLayout
 
 HELD = Feature("messenger_wire_held_along_track")
 SupportStiffness = Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]

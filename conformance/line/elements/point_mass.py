@@ -6,10 +6,16 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
-from pantocheck.conformance.input_files.sourced_table import InputTable, NonNegative, SourcedTable, is_absent
-from pantocheck.conformance.line.derived_numbers import MassCoefficient, round_number, round_position
+from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    NonNegative,
+    Problems,
+    SourcedTable,
+    cross_check,
+    is_absent,
+)
+from pantocheck.conformance.line.elements.derived_numbers import MassCoefficient, round_number, round_position
 from pantocheck.conformance.line.elements.element import (
     KINDS,
     MOST_LINE_PARTS,

@@ -2,8 +2,8 @@
 
 from typing import TypeVar
 
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import InputTable
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import InputTable
 
 Table = TypeVar("Table", bound=InputTable)
 

@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
+    Problems,
     SourcedTable,
+    cross_check,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import (
+from pantocheck.conformance.line.elements.derived_numbers import (
     BySupport,
     MassCoefficient,
     Numbers,
@@ -29,7 +30,7 @@ from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
 from pantocheck.model import Catenary, Kind, SteadyArm
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.conformance.line.line_layout import LineLayout
 
 ARMS = Feature("steady_arms")
 ARM_MASS = Feature("steady_arm_mass")
@@ -149,7 +150,7 @@ class SteadyArms(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Arms at rest."""
-        from pantocheck.model.fem.connectors import arm_direction
+        from pantocheck.model.discretisation.connectors import arm_direction
 
         catenary, force = section.line.catenary, section.line.state.arm_force
         arms, rayleigh = catenary.steady_arms, catenary.rayleigh(Kind.STEADY_ARM)

@@ -3,17 +3,23 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import InputTable, Positive, SourcedTable, validation_problem
-from pantocheck.conformance.line.derived_numbers import MassCoefficient, Numbers, round_number, round_positions
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    Positive,
+    Problems,
+    SourcedTable,
+    cross_check,
+    validation_problem,
+)
+from pantocheck.conformance.line.elements.derived_numbers import MassCoefficient, Numbers, round_number, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, Element
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
 from pantocheck.model import Catenary, Clamp, Kind, TensionChange, Wire, wave_speed
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_layout import LineLayout
+    from pantocheck.conformance.line.line_layout import LineLayout
 
 STITCH_WIRE = Feature("stitch_wire")
 

@@ -17,18 +17,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import InputTable, is_absent, validation_problem
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, is_absent, validation_problem
 from pantocheck.conformance.line.elements.element import BuiltSection, Element
 from pantocheck.conformance.line.elements.single_support import MOST_SPANS, overlay_changes
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
 from pantocheck.model import Catenary, Kind
-from pantocheck.model.catenary import Termination
-from pantocheck.model.sections import join_sections, place_section, select_parts
+from pantocheck.model.description.catenary import Termination
+from pantocheck.model.description.sections import join_sections, place_section, select_parts
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_file import LineFile
+    from pantocheck.conformance.line.line_file import LineFile
     from pantocheck.model import DiscretisedLine
 
 SECTIONS = Feature("sections")

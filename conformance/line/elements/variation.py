@@ -7,15 +7,21 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import InputTable, SourcedTable, is_absent, validation_problem
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    Problems,
+    SourcedTable,
+    cross_check,
+    is_absent,
+    validation_problem,
+)
 from pantocheck.conformance.line.elements.element import Element
 from pantocheck.model import Catenary, Kind, Wire
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_file import LineFile
+    from pantocheck.conformance.line.line_file import LineFile
 
 VARIATION = Feature("variation")
 
@@ -151,8 +157,8 @@ class Variations(Element):
         Raises:
             NoInitialState: A wire would have no tension left, or a dropper would be slack at rest.
         """
-        from pantocheck.model.statics.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
-        from pantocheck.model.statics.wire_climate import excess_lengths
+        from pantocheck.model.discretisation.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
+        from pantocheck.model.discretisation.wire_climate import excess_lengths
 
         variation, line = self.variation, self.line
         if variation is None:
@@ -166,7 +172,7 @@ class Variations(Element):
 
 def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wire:
     """Wire with its tension after the change of temperature and with its tolerance; a stitch wire is unchanged."""
-    from pantocheck.model.statics.wire_climate import fixed_tension
+    from pantocheck.model.discretisation.wire_climate import fixed_tension
 
     tables = {Kind.CONTACT_WIRE: variation.contact_wire, Kind.MESSENGER_WIRE: variation.messenger_wire}
     table = tables.get(wire.kind, WireVariation())

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import NO_FEATURE, Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
     Positive,
+    Problems,
     SourcedTable,
+    cross_check,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import (
+from pantocheck.conformance.line.elements.derived_numbers import (
     Numbers,
     round_number,
     round_numbers,
@@ -40,7 +41,7 @@ from pantocheck.conformance.line.elements.wire_irregularity import (
 from pantocheck.model import Catenary, Kind, SectionChange, TensionChange, Wire, wave_speed
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.cases.line_layout import LineLayout, SpanLimit
+    from pantocheck.conformance.line.line_layout import LineLayout, SpanLimit
 
 Tension = Annotated[float, Field(ge=500, le=200e3, description="axial tension of one wire [N]")]
 MassPerLength = Annotated[float, Field(ge=0.02, le=10, description="mass per length of one wire [kg/m]")]
@@ -285,7 +286,7 @@ def _change_wire(wire: Wire, changes: Sequence[WireChange]) -> Wire:
 
 def _mass_and_stiffness(wire: Wire, change: WireChange) -> tuple[float, float]:
     """Mass per length and bending stiffness of a stretch [kg/m, N m2]."""
-    from pantocheck.model.worn_wire import worn_stiffness_share  # loads scipy.optimize
+    from pantocheck.model.description.worn_wire import worn_stiffness_share  # loads scipy.optimize
 
     mass, stiffness = wire.mass_per_length, wire.bending_stiffness
     if isinstance(change, ContactWireChange) and change.wear_share is not None:

@@ -8,20 +8,21 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.input_files.cross_checks import Problems, cross_check
-from pantocheck.conformance.input_files.features import Feature
-from pantocheck.conformance.input_files.sourced_table import (
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.sourced_table import (
     InputTable,
     Positive,
+    Problems,
     SourcedTable,
+    cross_check,
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.derived_numbers import Numbers, round_numbers, round_positions
+from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_numbers, round_positions
 from pantocheck.conformance.line.elements.element import Element
 from pantocheck.model import Catenary, Kind, Wire
-from pantocheck.model.irregularity import Irregularity, SpectralDensity, realise_irregularity
+from pantocheck.model.description.irregularity import Irregularity, SpectralDensity, realise_irregularity
 
 MOST_POINTS = 50_000
 """Largest number of measured points: a height every 6 cm over 3 km."""
@@ -143,7 +144,7 @@ class Irregularities(Element):
 
     def irregularity_at(self, position: RealArray) -> RealArray:
         """Heights of the irregularity at positions (n,) [m]; zero on smooth wires [m]."""
-        from pantocheck.model.irregularity_spline import irregularity_height
+        from pantocheck.model.description.irregularity import irregularity_height
 
         irregularity = self.built_irregularity
         return np.zeros_like(position) if irregularity is None else irregularity_height(irregularity, position)

@@ -14,23 +14,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperDamping
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Mark, Series
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.results.figure_data import Chart, Mark, Series
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.case_run import build_passage, build_run_table, record_passage
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.time_steps import integrate_passage
+from pantocheck.conformance.records.traces import thin_series
+from pantocheck.conformance.runs.case_run import build_passage, build_run_table, integrate_passage, record_passage
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise
-from pantocheck.model.discretised_line import keep_viscous_part, with_damping
+from pantocheck.model.discretisation.discretised_line import keep_viscous_part, with_damping
 
 TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""

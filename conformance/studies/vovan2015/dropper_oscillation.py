@@ -10,17 +10,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropperOscillation
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_simulation import ORDER, require_mass_drop, simulate_drop
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.results.figure_data import Chart, Series, TextTable
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drop_simulation import ORDER, require_mass_drop, simulate_drop
+from pantocheck.conformance.records.traces import thin_series
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 from pantocheck.model import Kind, Rayleigh

@@ -1,31 +1,33 @@
-"""Mass drops of Vo Van, Balmes and Lorang (2015): simulated, identified, and compared with their damping models.
+"""Damping model fitted to identified modes, compared with the damping of the simulation.
 
-The first of the compared models of a case is the reference model of the paper.
+The observability of the coefficients is drawn as in Vo Van, Balmes and Lorang (2015), Figure 6.
 """
 
 import time
 from collections.abc import Sequence
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.identification.mode import Mode
-from pantocheck.conformance.identification.population_analysis import analyse_population
-from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.figure_data import Chart, Mark, Series
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.catenary_model import build_catenary
-from pantocheck.conformance.simulation.drop_simulation import require_mass_drop
-from pantocheck.conformance.studies.vovan2015.fit_comparison import build_fit_report
-from pantocheck.conformance.studies.vovan2015.group_findings import (
-    compare_reference,
-    compute_group_findings,
-    compute_population_findings,
-)
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Mark, Series, TextTable
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.damping_results import build_damping_results
+from pantocheck.conformance.drops.damping_terms import MATRICES, WIRES
+from pantocheck.conformance.drops.drop_simulation import require_mass_drop
+from pantocheck.conformance.drops.identify import Identification
+from pantocheck.conformance.drops.population_analysis import analyse_population
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.quantities.evaluation import LINE, Value
+from pantocheck.conformance.records.traces import thin_series
+from pantocheck.conformance.results.damping_format import DampingResults, Observability
+from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,
     build_drop_run_table,
     build_lines,
+    compare_reference,
+    compute_group_findings,
+    compute_population_findings,
     computed_damping_ratios,
     draw_damping_ratios,
     identify_drops,
@@ -33,10 +35,92 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     select_certain,
 )
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
-from pantocheck.model import discretise
+from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modes import compute_modes_below
 
+SMALLEST_DRAWN_RATIO = 1e-3
+"""Smaller ratios, and zero, are drawn at this value on the logarithmic scale [-]."""
 
+
+def build_fit_report(case: Case, identification: Identification) -> StudyResult:
+    """Fit a damping model with coefficients of each wire, and report coefficients and their observability.
+
+    Args:
+        case: Case with the simulated drops.
+        identification: Modes identified from the drops.
+
+    Returns:
+        Numbers of observable coefficients by name of quantity, table and chart; without enough modes, a table with the
+        reason.
+    """
+    line, element = build_catenary(case.line), case.file.discretisation.element_m
+    try:
+        results = build_damping_results(identification.modes, line, element, f"the modes of {case.id}")
+    except InputError as error:
+        return StudyResult(tables=(TextTable(caption="Fitted damping: none", columns=["Reason"], rows=[[str(error)]]),))
+    return StudyResult(
+        findings={LINE: count_observable(results.observability)},
+        charts=(_draw_observability(results),),
+        tables=(_coefficient_table(results, line),),
+    )
+
+
+def count_observable(rows: Sequence[Observability]) -> dict[str, Value]:
+    """Numbers of observable coefficients of the wires and of the other components, by name of quantity."""
+    observable = [row.kind in WIRES for row in rows if row.observable]
+    return {
+        "observable_wire_coefficients": float(sum(observable)),
+        "observable_other_coefficients": float(len(observable) - sum(observable)),
+    }
+
+
+def _coefficient_table(results: DampingResults, line: Catenary) -> TextTable:
+    rows = []
+    for c in results.coefficients:
+        rayleigh = line.damping.get(Kind(c.kind))
+        simulated = 0.0 if rayleigh is None else getattr(rayleigh, f"{c.matrix}_coefficient")
+        difference = f"{100 * (c.value / simulated - 1):+.1f} %" if simulated else "-"
+        name = f"{c.kind.replace('_', ' ')}, {c.matrix} [{MATRICES[c.matrix].unit}]"
+        rows.append([name, f"{simulated:.4g}", f"{c.value:.4g}", f"{c.low_95:.3g} to {c.high_95:.3g}", difference])
+    modal = " The case has modal damping; the fit describes it by Rayleigh damping." if line.modal_damping else ""
+    return TextTable(
+        caption="Rayleigh damping of the wires: simulated, and fitted to the identified modes." + modal,
+        columns=["Coefficient", "Simulated", "Fitted", "95 % interval", "Difference"],
+        rows=rows,
+    )
+
+
+def _draw_observability(results: DampingResults) -> Chart:
+    rows = results.observability
+    return Chart(
+        caption="Observability of every coefficient: its plausible value divided by its standard deviation from the "
+        "modes. An observable coefficient reaches the dashed line and contributes at least "
+        f"{100 * results.thresholds.largest_share:g} % of the damping of some mode. "
+        f"Values below {SMALLEST_DRAWN_RATIO:g} are drawn at {SMALLEST_DRAWN_RATIO:g}.",
+        alternative="; ".join(
+            f"{row.kind} {row.matrix}: {row.plausible_over_std:.3g}, "
+            f"{'observable' if row.observable else 'not observable'}"
+            for row in rows
+        ),
+        x_label="coefficient",
+        y_label="plausible value / std [-]",
+        y_scale="log",
+        ticks=[f"{row.kind.replace('_', ' ')} {row.matrix}" for row in rows],
+        series=[
+            Series(
+                label="all modes together",
+                style="bars",
+                x=[float(i) for i in range(len(rows))],
+                y=[max(row.plausible_over_std, SMALLEST_DRAWN_RATIO) for row in rows],
+            )
+        ],
+        marks=[Mark(label="needed", axis="y", low=results.thresholds.plausible_over_std)],
+    )
+
+
+# Mass drops of Vo Van, Balmes and Lorang (2015): simulated, identified, and compared with their damping models.
+#
+# The first of the compared models of a case is the reference model of the paper.
 def run_mass_drop_study(case: Case) -> Delivered:
     """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit.
 

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.core.figure_data import TextTable
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
-from pantocheck.conformance.grading.verdicts import judge
-from pantocheck.conformance.input_files.trust import Trust
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.figure_data import TextTable
 
 PAPER = "vovan2015"
 """Key of Vo Van, Balmes and Lorang (2015) in the bibliography."""

@@ -11,21 +11,27 @@ from functools import partial
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import ReleaseVelocity
-from pantocheck.conformance.comparison.drop_motion import DropMotion, DropSimulation, simulate_models
+from pantocheck.conformance.comparison.drop_motion import (
+    GRAPHIC_BAND,
+    MOTION_BANDS,
+    TAPER_S,
+    DropMotion,
+    DropSimulation,
+    simulate_models,
+)
 from pantocheck.conformance.comparison.drop_statistics import compute_statistics, select_window
-from pantocheck.conformance.comparison.motion_bands import GRAPHIC_BAND, MOTION_BANDS, TAPER_S
 from pantocheck.conformance.comparison.recorded_drop import locate_drop
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_simulation import require_mass_drop, simulate_drop
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.filters import is_observable
+from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.results.drop_comparison_format import ModelAgreement
-from pantocheck.conformance.results.figure_data import Chart, Series, TextTable
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.traces import thin_series
-from pantocheck.conformance.simulation.drop_simulation import require_mass_drop, simulate_drop
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table, build_lines
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import SteadyArmDamper
-from pantocheck.conformance.identification.mode import Mode
+from pantocheck.conformance.core.figure_data import Chart, Mark, TextTable
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.results.figure_data import Chart, Mark, TextTable
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     build_drop_run_table,
     draw_damping_ratios,

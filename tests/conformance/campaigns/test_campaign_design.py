@@ -14,12 +14,11 @@ from scipy import stats
 
 from helpers.cheap_campaign import speed_design
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
-from pantocheck.conformance.campaigns.campaign_file import CampaignFile
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile, check_variation, parse_variation
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
 from pantocheck.conformance.campaigns.distributions import TruncatedNormal
-from pantocheck.conformance.campaigns.short_form import check_variation, parse_variation
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import validate_model
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import validate_model
 
 CASE = "en50318-2002/250"
 

@@ -8,23 +8,26 @@ import numpy as np
 import pytest
 
 from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
+from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
+from pantocheck.conformance.campaigns.campaign_comparison import compare_values, pair_runs
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
+from pantocheck.conformance.campaigns.campaign_evaluation import (
+    build_sample_charts,
+    build_statistics,
+    evaluate_campaign,
+)
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
 from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
-from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
-from pantocheck.conformance.campaigns.evaluation.campaign_comparison import compare_values, pair_runs
-from pantocheck.conformance.campaigns.evaluation.campaign_evaluation import evaluate_campaign
-from pantocheck.conformance.campaigns.evaluation.input_charts import build_input_charts, build_maps
-from pantocheck.conformance.campaigns.evaluation.sample_evaluation import build_sample_charts, build_statistics
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.campaign.campaign_page import _join_sources, build_campaign_report
-from pantocheck.conformance.reports.figures.tornado_chart import draw_tornado
-from pantocheck.conformance.reports.formats.html import render_html
+from pantocheck.conformance.campaigns.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.pages.campaign_page import _join_sources, build_campaign_report
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.study_chart import draw_tornado
 from pantocheck.conformance.results.campaign_format import CampaignResults
-from pantocheck.conformance.results.results_building import build_suite
 
 FRONT, REAR = EvaluatedValue("1.std_force_N", upper=50.0), EvaluatedValue("2.std_force_N", upper=50.0)
 GRID = ("speed_km_h", "spacing_m")

@@ -8,6 +8,7 @@ import pytest
 
 from helpers.cheap_campaign import ThisProcess, compute_row, fail_even, speed_design
 from helpers.example_results import passing_case
+from pantocheck.conformance.app.notebook.campaign_session import read_traces, run_campaign
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
@@ -15,9 +16,8 @@ from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table, write_parquet
 from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces, unpack_traces
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.interface.campaign_session import read_traces, run_campaign
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.results_format import CaseResult
 
 

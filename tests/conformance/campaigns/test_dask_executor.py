@@ -13,7 +13,7 @@ from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
 from pantocheck.conformance.campaigns.executor_choice import choose_executor
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
 
 RUNS = 80
 

@@ -7,10 +7,10 @@ import pytest
 
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
-from pantocheck.conformance.campaigns.profile_limits import ProfileLimits
+from pantocheck.conformance.campaigns.campaign_run import ProfileLimits
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.quantities.filters import Filter
 
 PROFILE = load_profile("acceptance-ac")

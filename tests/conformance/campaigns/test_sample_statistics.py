@@ -5,12 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import stats
 
-from pantocheck.conformance.campaigns.evaluation.sample_evaluation import estimate_exceedance
-from pantocheck.conformance.campaigns.evaluation.sample_statistics import (
-    linear_influences,
-    mean_interval,
-    wilson_interval,
-)
+from pantocheck.conformance.campaigns.campaign_evaluation import estimate_exceedance
+from pantocheck.conformance.campaigns.sample_statistics import linear_influences, mean_interval, wilson_interval
 
 REPETITIONS, RUNS = 200, 150
 COEFFICIENTS = np.array([3.0, -4.0])

@@ -5,11 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import stats
 
+from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue
 from pantocheck.conformance.campaigns.campaign_file import InputSampling
 from pantocheck.conformance.campaigns.design_axes import sample_inputs
-from pantocheck.conformance.campaigns.evaluation.campaign_columns import CampaignColumns, EvaluatedValue
-from pantocheck.conformance.campaigns.evaluation.saltelli_evaluation import build_indices, select_independent
-from pantocheck.conformance.campaigns.evaluation.sobol_indices import estimate_sobol_indices
+from pantocheck.conformance.campaigns.sample_statistics import build_indices, estimate_sobol_indices, select_independent
 
 KEYS = ("x1", "x2", "x3")
 A, B = 7.0, 0.1

@@ -10,24 +10,16 @@ import pytest
 from jsonschema import Draft202012Validator
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 
-from pantocheck.conformance.cases import (
-    case_file,
-    damping_file,
-    drop_test,
-    force_law,
-    geometry,
-    limits,
-    line_file,
-    pantograph_file,
-    profile_file,
-    study_tables,
-)
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.mass_drops import drop_sidecar
+from pantocheck.conformance.cases import case_file, limits, profile_file, study_tables
+from pantocheck.conformance.drops import drop_sidecar
+from pantocheck.conformance.line import geometry, line_file
+from pantocheck.conformance.line.elements import damping
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pantograph import force_law, pantograph_file
 from pantocheck.conformance.records import record_sidecar, record_summary, sidecar_tables
 
 MODULES = (
-    *(case_file, damping_file, drop_test, force_law, geometry, limits, line_file, pantograph_file, profile_file),
+    *(case_file, damping, study_tables, force_law, geometry, limits, line_file, pantograph_file, profile_file),
     *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables),
 )
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)

@@ -10,16 +10,16 @@ from pydantic import BaseModel, ValidationError
 from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import change_keys, edit_toml, write_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import Damping, overlay_damping
 from pantocheck.conformance.cases.library import load_case, overlay_limits, read_limits, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.cases.line_file import LineFile
-from pantocheck.conformance.cases.pantograph_file import ChainTable, MatricesTable, ModesTable
 from pantocheck.conformance.cases.profile_file import NamedBound, Rule, SpeedFormula, load_profile, resolve_bounds
 from pantocheck.conformance.cases.study_tables import DropperDamping, ReleaseVelocity
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.elements.damping import Damping, overlay_damping
 from pantocheck.conformance.line.elements.dropper import DropperTable
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import ChainTable, MatricesTable, ModesTable
 
 OWN = {"trust": "primary", "source": "own"}
 TUNED = {"model": "pantograph.toml", "target_mean_force_N": 120.0, **OWN}

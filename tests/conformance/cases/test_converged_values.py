@@ -8,10 +8,10 @@ import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import FOLDER, ConvergedFile, find_converged
 from pantocheck.conformance.cases.library import list_library, load_case
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.grading.verification_limits import EXTREMES, VERIFIED_QUANTITIES, build_requirements
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.input_files.toml_file import read_model
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.grading.case_verification import EXTREMES, VERIFIED_QUANTITIES, build_requirements
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 PATHS = sorted((library_folder() / FOLDER).rglob("*.toml"))

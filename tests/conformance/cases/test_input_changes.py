@@ -10,14 +10,14 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import load_case, select_cases
-from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_identity import compare_with_library
 from pantocheck.conformance.grading.case_verification import find_obstacle
-from pantocheck.conformance.input_files.input_error import InputError
 from pantocheck.conformance.records.record_writing import write_record
 
 TENSION = "line.contact_wire.tension_N=21e3"

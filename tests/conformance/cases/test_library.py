@@ -17,9 +17,9 @@ from pantocheck.conformance.cases.library import (
     read_limits,
     select_cases,
 )
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.plan import Plan, prepare_plan
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.execution.plan import Plan, prepare_plan
+from pantocheck.conformance.line.library_folder import library_folder
 
 LIMITS = {  # Wang et al., Table III
     "en50318-2002/250": {

@@ -8,12 +8,12 @@ import pytest
 from helpers.fake_distribution import write_distribution
 from helpers.outside_cases import outside_case, write_case
 from pantocheck.conformance import list_cases, open_case
+from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.cases.library_list import list_library
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_identity import compare_with_library
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line.library_folder import library_folder
 
 GROUP = "pantocheck.cases"
 

@@ -12,8 +12,8 @@ from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case
 from pantocheck.conformance.cases.profile_file import list_profiles, load_profile
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.input_files.input_error import InputError
 
 LIBRARY = list_library(library_folder())
 

@@ -10,7 +10,7 @@ from pantocheck.conformance.comparison.comparison_limits import (
     build_comparison_criterion,
     unit_of_difference,
 )
-from pantocheck.conformance.grading.value_grade import grade_value
+from pantocheck.conformance.core.near_limit import grade_value
 from pantocheck.conformance.results.comparison_format import CriterionPlace
 
 RESPONSE = {

@@ -10,10 +10,10 @@ import pytest
 from helpers.recorded_drops import DURATION, RATE, RELEASE, WINDOWS, build_task, read_short_line, record_drop
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.drop_comparison import compare_drop
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.mass_drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_simulation import decimate
 from pantocheck.conformance.results.drop_comparison_format import DropComparison, ModelAgreement
-from pantocheck.conformance.simulation.drop_simulation import decimate
 
 ALL = (0.3, 20.0)
 EARLY, LATE = WINDOWS

@@ -5,18 +5,18 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.comparison.force_difference import (
+    PairedForces,
     coherence,
     compare_force_bands,
     compare_spans,
     correlation,
+    pair_forces,
     span_profile,
 )
-from pantocheck.conformance.comparison.paired_forces import PairedForces, pair_forces
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.force_signals import ForceChannel
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
 Force = Callable[[RealArray], RealArray]

@@ -7,18 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
+from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
-from pantocheck.conformance.grading.profile_grading import assess_record
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.comparison_section import comparison_blocks, force_difference, spectrum_difference
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.certificate.comparison_section import comparison_blocks
-from pantocheck.conformance.reports.figures.overlay_figure import force_difference, spectrum_difference
-from pantocheck.conformance.results.figure_data import Spectrum
 
 SPAN = 60.0
 SUPPORTS = np.arange(0.0, 601.0, SPAN)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.comparison.motion_bands import (
+from pantocheck.conformance.comparison.drop_motion import (
     MOTION_BANDS,
     TAPER_S,
     MotionBand,

@@ -21,13 +21,13 @@ from helpers.response_records import (
     scale_head,
     write_response,
 )
-from pantocheck.conformance.cases.pantograph_file import PantographFile
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_comparison import compare_responses, model_stiffness
-from pantocheck.conformance.comparison.response_record import ResponseRecord, read_response
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
+from pantocheck.conformance.pantograph.response_record import ResponseRecord, read_response
 from pantocheck.conformance.results.comparison_format import RESPONSE_QUANTITIES, ResponseComparison
-from pantocheck.conformance.simulation.pantograph_model import build_pantograph
 
 PANTOGRAPHS = ["en50318-2018/pantograph.toml", "en50318-2002/pantograph.toml", "pantographs/dsa380.toml"]
 REFERENCE = read_pantograph()

@@ -9,13 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
-from pantocheck.conformance.cases.line_file import LineFile
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
 from pantocheck.conformance.comparison.static_differences import ValuePair, grade_tolerance
 from pantocheck.conformance.comparison.static_record import StaticSidecar, read_static_record
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.comparison_format import StaticComparison, StaticQuantity
-from pantocheck.conformance.simulation.catenary_model import build_catenary
 from pantocheck.model import discretise
 from pantocheck.model.statics.elasticity import rest_height
 

@@ -8,8 +8,8 @@ import pytest
 
 from helpers.static_records import read_unequal_line, write_static_record
 from pantocheck.conformance.comparison.static_record import read_static_record
-from pantocheck.conformance.input_files.formats.hdf5_table import write_hdf5_table
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.hdf5_table import write_hdf5_table
+from pantocheck.conformance.core.input_error import InputError
 
 GEOMETRY = read_unequal_line().geometry
 COLUMNS = {

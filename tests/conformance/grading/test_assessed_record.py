@@ -9,13 +9,13 @@ import pytest
 import tomli_w
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, load_assessed_record
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.records.block_bootstrap import bootstrap_uncertainties
 from pantocheck.conformance.records.sidecar_tables import LineTable
 
 SPEED, RATE, SUMMARY = 60.0, 100.0, library_folder() / "en50318-2002" / "known-passing-code" / "250.toml"

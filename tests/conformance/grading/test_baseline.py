@@ -12,21 +12,21 @@ from pydantic import ValidationError
 from typer.testing import CliRunner, Result
 
 from helpers.toml_edit import change_keys, write_toml
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.command_line.app import app
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.case_verdict import Participation
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.certificate.summary_page import build_summary
-from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.systems.system_choice import choose_system
+from pantocheck.conformance.runs.system_choice import choose_system
 
 PASSING = "record:en50318-2002/known-passing-code"
 CRITERIA = ("--verdicts", "criteria")
@@ -384,7 +384,7 @@ def test_results_are_kept_if_the_comparison_fails(
     def fail(*_: object) -> Results:
         raise RuntimeError("defect")
 
-    monkeypatch.setattr("pantocheck.conformance.plan.compare_with_baseline", fail)
+    monkeypatch.setattr("pantocheck.conformance.execution.plan.compare_with_baseline", fail)
     out = tmp_path / "out"
     command = ("run", "en50318-2002/*", "--system", PASSING, *CRITERIA, "--out", out, "--baseline", tmp_path / "b.json")
     assert pantocheck(*command).exit_code == 2

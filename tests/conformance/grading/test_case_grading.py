@@ -6,9 +6,9 @@ from helpers.case_fixtures import EditedCase
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import list_library, load_case, select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.results.outcome import Delivered, Skipped
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.runs.system import Delivered, Skipped
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
 

@@ -8,11 +8,10 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.case_fixtures import EditedCase
+from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import list_library, load_case, overlay_limits
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.limits import Limit, LimitOverride
-from pantocheck.conformance.command_line.app import app
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import (
     compare_with_library,
@@ -20,9 +19,10 @@ from pantocheck.conformance.grading.case_identity import (
     limits_digest,
     list_limit_changes,
 )
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import raises_trust_only
-from pantocheck.conformance.results.outcome import Skipped
 from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.runs.system import Skipped
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
 LIBRARY = list_library(library_folder())

@@ -4,9 +4,9 @@ import pytest
 
 from helpers.converged_fixtures import StateConverged
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.execution.plan import Plan, PreparedPlan, prepare_plan
 from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.plan import Plan, PreparedPlan, prepare_plan
 
 TWIN, PUBLISHED = "en50318-2018/ac-simple/320-twin", "en50318-2002/250"
 BOTH = ("criteria", "verification")

@@ -10,9 +10,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.grading.uncertainty import Uncertainty
+from pantocheck.conformance.quantities.uncertainty import Uncertainty
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.runs.system import Delivered
 
 
 @pytest.fixture(scope="module")

@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from helpers.example_results import example, passing_case
-from pantocheck.conformance.authenticity.completeness import find_gaps
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.command_line.results_output import EXIT_CODES
+from pantocheck.conformance.core.criterion import CaseVerification
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
+from pantocheck.conformance.documents.verification import find_gaps
+from pantocheck.conformance.execution.plan import Plan, prepare_plan
+from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
-from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict
-from pantocheck.conformance.plan import Plan, prepare_plan
-from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.junit import render_junit
+from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.baseline_format import BaselineComparison
-from pantocheck.conformance.results.criterion_format import CaseVerification
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runner import run_cases
 
 CODE = "published passing code (Wang et al.)"
 PUBLISHED = (

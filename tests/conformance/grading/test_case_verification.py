@@ -9,18 +9,18 @@ import pytest
 from helpers.converged_fixtures import StateConverged, build_converged
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.trust import LEVELS, limit_counts
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.grading.verification_limits import (
+from pantocheck.conformance.grading.case_verification import (
     VERIFIED_QUANTITIES,
     build_requirements,
     include_start,
     tolerance,
 )
-from pantocheck.conformance.input_files.trust import LEVELS, limit_counts
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.results.outcome import Delivered, Errored, Skipped
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.runs.system import Delivered, Errored, Skipped
 
 Values = dict[int, dict[str, float]]
 UPLIFT, EXTENDED = (0, "max_uplift_at_support_mm"), (2, "rms_20_50_N")

@@ -14,8 +14,8 @@ from pantocheck.conformance.grading.criterion_grading import (
     find_value,
     grade_limit,
 )
-from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
+from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
 
 LENGTHS = (1.017, 0.896, math.nan)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.grading.discretisation import discretisation_half_width, observed_order
+from pantocheck.conformance.grading.case_evaluation import discretisation_half_width, observed_order
 
 LIMIT = 50.0
 

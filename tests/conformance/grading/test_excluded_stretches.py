@@ -8,13 +8,13 @@ import pytest
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
+from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.grading.profile_grading import assess_record
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.records.events import covered_share
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 SPEED, PEAK_M = 70.0, 1200.0

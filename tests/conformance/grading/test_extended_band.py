@@ -7,11 +7,11 @@ import numpy as np
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.grading.extended_band import NOT_VALIDATED
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.validity_warnings import NOT_VALIDATED
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.runs.system import Delivered
 
 
 def rippled(wave: type[Wave], case: Case, amplitude: float) -> Record:

@@ -6,19 +6,19 @@ from typing import Any
 import pytest
 
 from helpers.shown_page import shown_certificate
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
-from pantocheck.conformance.cases.finding import PublishedFinding, Role
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.core.findings import PublishedFinding, Role
+from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest
+from pantocheck.conformance.grading.results_building import build_results
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.reports.certificate.summary_page import build_summary
-from pantocheck.conformance.reports.certificate.verdict_reasons import build_headline
-from pantocheck.conformance.reports.formats.markdown import render_markdown
-from pantocheck.conformance.results.outcome import Delivered, StudyResult
-from pantocheck.conformance.results.results_building import build_results
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
+from pantocheck.conformance.runs.system import Delivered, StudyResult
 
 SYSTEM = SystemIdentity(name="test", version="1", kind="builtin")
 QUANTITIES = ("damping_gain_fading_pct", "dropper_locked_force_pct", "damping_rise_pct", "damping_decrease_pct")

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, worst_verdict
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.grading.procedure_verdict import (
     decide_procedure,
@@ -14,7 +15,6 @@ from pantocheck.conformance.grading.procedure_verdict import (
     judge_procedure,
     rest_claim_on_steps,
 )
-from pantocheck.conformance.grading.verdicts import WORST_FIRST, Verdict, worst_verdict
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.procedure_format import (
     STEP_NAMES,

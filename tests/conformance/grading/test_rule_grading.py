@@ -9,8 +9,8 @@ import pytest
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
+from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
-from pantocheck.conformance.grading.profile_grading import assess_record
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable

@@ -11,16 +11,16 @@ import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.consistency.check import CheckName
-from pantocheck.conformance.consistency.record_checks import check_record
+from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
-from pantocheck.conformance.grading.profile_grading import assess_record
-from pantocheck.conformance.grading.uncertainty import Component, Uncertainty
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.runs.check import CheckName
+from pantocheck.conformance.runs.record_checks import check_record
 
 
 @pytest.fixture

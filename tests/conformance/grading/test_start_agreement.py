@@ -9,18 +9,18 @@ from numpy.testing import assert_allclose
 
 from helpers.converged_fixtures import StateConverged
 from helpers.wave_system import Wave
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.results_building import build_results, utc_now
 from pantocheck.conformance.grading.start_agreement import compare_starts
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.outcome import Delivered
-from pantocheck.conformance.results.results_building import build_results, utc_now
 from pantocheck.conformance.results.results_format import SystemIdentity
-from pantocheck.conformance.systems.record_folder import open_record_folder
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.system import Delivered
 
 IDENTITY = SystemIdentity(name="wave", version="1", kind="record")
 START: dict[str, Any] = {"place_m": 60.0, "ramp_m": 0.0, "state": "equilibrium_under_uplift_forces"}

@@ -9,12 +9,12 @@ import pytest
 from helpers.section_lines import section_line
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.pantograph_file import MatricesTable, ModesTable
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.validity_warnings import validity_warnings
 from pantocheck.conformance.line.elements.tension_section import SectionTable, SectionWire
+from pantocheck.conformance.pantograph.pantograph_file import MatricesTable, ModesTable
 from pantocheck.conformance.quantities.evaluation import Evaluation
-from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.runs.system import Delivered
 
 NOTHING = Evaluation({}, {})
 PROVENANCE = {"trust": "primary", "source": "rig"}

@@ -3,7 +3,7 @@
 import pytest
 
 from helpers.drop_records import build_drop_record
-from pantocheck.conformance.mass_drops.drop_record import DropRecord
+from pantocheck.conformance.drops.drop_record import DropRecord
 
 
 @pytest.fixture

@@ -6,10 +6,9 @@ import pytest
 from pantocheck.conformance.quantities.contact_losses import list_losses, loss_durations
 from pantocheck.conformance.quantities.evaluation import evaluate_signals
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.force_signals import ForceChannel
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
-from pantocheck.conformance.records.measured.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
+from pantocheck.conformance.records.block_bootstrap import bootstrap_uncertainties
 
 RATE, SPEED = 1000.0, 50.0
 POSITION = SPEED * np.arange(20_000) / RATE

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.signal import butter, freqz
 
 from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, LowPass, needs_filter
-from pantocheck.conformance.quantities.force_signals import ForceChannel
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 RATE = 1000.0

@@ -4,7 +4,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.grading.verdicts import judge
+from pantocheck.conformance.core.verdicts import judge
+from pantocheck.conformance.pages.words import format_beside_limits
 from pantocheck.conformance.quantities.limit_text import (
     format_bounds,
     format_criterion_margin,
@@ -13,7 +14,6 @@ from pantocheck.conformance.quantities.limit_text import (
     format_rounded,
     name_value,
 )
-from pantocheck.conformance.reports.page_text import format_beside_limits
 
 numbers = st.floats(-1e6, 1e6)
 

@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.force_signals import ForceChannel
 from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals, edge_warnings
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.unavailable import (
     BandNotObservable,
     ChannelMissing,

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.quantities.sampling import WHOLE_RECORD
 from pantocheck.conformance.quantities.statistics import (
+    WHOLE_RECORD,
     coefficient_of_variation,
     contact_loss,
     force_histogram,

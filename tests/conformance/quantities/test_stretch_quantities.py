@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.quantities.filters import LowPass
-from pantocheck.conformance.quantities.force_signals import ForceChannel
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.quantities.stretch_quantities import (
+from pantocheck.conformance.quantities.stated_quantities import (
     OVERLAP_QUANTITIES,
     evaluate_outside_overlaps,
     name_outside_overlaps,

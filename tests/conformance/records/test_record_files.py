@@ -15,17 +15,17 @@ from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
 from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
-from pantocheck.conformance.input_files.formats.csv_table import write_csv_table
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record, RecordInvalid
 from pantocheck.conformance.records.record_reading import open_record, read_record, read_samples
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.samples import complete_samples
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.systems.record_folder import open_record_folder
+from pantocheck.conformance.runs.record_folder import open_record_folder
 
 Writer = Callable[[str], Path]
 CHANNELS = ("time", "position", "force", "contact_height", "support_position", "support_uplift")
@@ -255,7 +255,7 @@ def test_table_with_too_many_numbers_is_refused(
 ) -> None:
     """The limit is lowered below the size of the table, which must not be cut silently."""
     path = written("a.csv")
-    monkeypatch.setattr("pantocheck.conformance.records.channel_rows.MAX_SAMPLES", record.time.size)
+    monkeypatch.setattr("pantocheck.conformance.records.record_reading.MAX_SAMPLES", record.time.size)
     with pytest.raises(InputError, match=f"more than {record.time.size} numbers"):
         read_record(path)
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from helpers.foreign_tables import FOREIGN_WRITERS
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_writing import write_record

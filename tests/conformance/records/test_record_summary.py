@@ -7,16 +7,16 @@ from typing import Any
 import pytest
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.authenticity.recomputation import find_discrepancies
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.library_folder import library_folder
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.results_format import CaseResult
-from pantocheck.conformance.runner import run_cases
-from pantocheck.conformance.systems.record_folder import open_record_folder
-from pantocheck.conformance.systems.system_choice import choose_system
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.system_choice import choose_system
 
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 SPEEDS = ("250", "300")

@@ -9,13 +9,13 @@ import pytest
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from pantocheck.conformance.command_line.app import app
-from pantocheck.conformance.command_line.options import build_options, state_administration
-from pantocheck.conformance.input_files.input_error import InputError
-from pantocheck.conformance.reports.certificate.certificate_page import build_certificate
-from pantocheck.conformance.reports.document import Facts, Section
-from pantocheck.conformance.reports.formats.junit import render_junit
-from pantocheck.conformance.reports.formats.pdf import render_pdf
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.commands.options import build_options, state_administration
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import Facts, Section
+from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.administration import read_administration
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results

@@ -6,10 +6,9 @@ from typing import Literal
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped
-from pantocheck.conformance.runner import run_cases
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, System
 from pantocheck.conformance.studies.damping_sensitivity import CASE_DAMPING, MODELS, add_damping_study
-from pantocheck.conformance.systems.system import System
 
 
 def damping_dependent(wave: type[Wave]) -> System:

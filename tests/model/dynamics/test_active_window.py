@@ -9,7 +9,7 @@ import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, fix_along_track, simple_line
 from pantocheck.model import History, Kind, Passage, Rayleigh, simulate_passage
-from pantocheck.model.discretised_line import discretise, max_wave_speed
+from pantocheck.model.discretisation.discretised_line import discretise, max_wave_speed
 from pantocheck.model.dynamics.active_window import MIN_HALF_WIDTH, build_window_arrays, half_widths
 
 LINE = discretise(simple_line(spans=16, damping=DAMPED), 1.0)

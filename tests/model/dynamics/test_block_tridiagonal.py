@@ -5,10 +5,10 @@ import pytest
 
 from helpers.effective_inverse import inverse_of_assembled
 from helpers.lines import DAMPED, Array, bare_wire, simple_line
-from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.block_tridiagonal import Factor
+from pantocheck.model.dynamics.connector_step import column_half_width, inverse_columns
 from pantocheck.model.dynamics.effective_matrix import factorise
-from pantocheck.model.dynamics.inverse_columns import column_half_width, inverse_columns
 
 
 @pytest.fixture(scope="module", params=[(0.5, 1e-3), (1.3, 4e-3)])

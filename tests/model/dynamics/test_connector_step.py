@@ -8,7 +8,7 @@ import pytest
 from helpers.effective_inverse import inverse_of_assembled
 from helpers.lines import DAMPED, Array, overlapping_line, simple_line
 from pantocheck.model import Catenary
-from pantocheck.model.discretised_line import DiscretisedLine, discretise
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.connector_step import (
     accelerate_connectors,
@@ -19,8 +19,7 @@ from pantocheck.model.dynamics.connector_step import (
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import Motion, build_motion
 from pantocheck.model.dynamics.panels import solve_wires
-from pantocheck.model.dynamics.scalar_forces import sweep_forces
-from pantocheck.model.dynamics.sweeps import FORCE_TOLERANCE
+from pantocheck.model.dynamics.scalar_forces import FORCE_TOLERANCE, sweep_forces
 from pantocheck.model.dynamics.train import build_empty_train
 
 TIME_STEP = 1e-3

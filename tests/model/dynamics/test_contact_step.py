@@ -12,8 +12,8 @@ from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_w
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.assembly import bandwidth_order, point_load
 from pantocheck.model.fem.mesh import find_element
+from pantocheck.model.statics.assembly import bandwidth_order, point_load
 
 
 @pytest.mark.parametrize("position", [20.0, 20.3, 33.7])

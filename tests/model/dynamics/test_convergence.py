@@ -7,13 +7,13 @@ from scipy.linalg import eigh
 
 from helpers.lines import Array, bare_wire, simple_line
 from pantocheck.model import Passage, chain
-from pantocheck.model.discretised_line import discretise
+from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import build_empty_train
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order
 
 
 def test_free_vibration_converges_with_second_order() -> None:

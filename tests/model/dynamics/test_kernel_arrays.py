@@ -7,9 +7,9 @@ import pytest
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, Array, bare_wire, fix_along_track, simple_line
 from pantocheck.model import Catenary, Kind, ModalBand, Passage, discretise, simulate_passage
-from pantocheck.model.discretised_line import max_wave_speed
+from pantocheck.model.discretisation.discretised_line import max_wave_speed
 from pantocheck.model.dynamics.active_window import build_window_arrays
-from pantocheck.model.dynamics.inverse_columns import column_half_width
+from pantocheck.model.dynamics.connector_step import column_half_width
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.dynamics.vectors import ALIGNMENT, LANES

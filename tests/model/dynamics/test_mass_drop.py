@@ -4,7 +4,7 @@ import numpy as np
 
 from helpers.lines import bare_wire, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
-from pantocheck.model.catenary import GRAVITY
+from pantocheck.model.description.catenary import GRAVITY
 from pantocheck.model.dynamics.drop_values import MassDropSetup
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 from pantocheck.model.modal.modes import compute_modes, damping_ratios

@@ -11,12 +11,12 @@ from numba.core.runtime._nrt_python import memsys_enable_stats
 from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
-from pantocheck.model.discretised_line import discretise
+from pantocheck.model.description.pantograph import Pantograph
+from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import build_window_arrays
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.pantograph import Pantograph
 
 
 def test_step_equals_the_plain_implementation_through_slack_droppers_and_lost_contact() -> None:

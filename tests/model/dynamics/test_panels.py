@@ -8,7 +8,7 @@ import pytest
 from helpers.effective_inverse import inverse_of_assembled
 from helpers.lines import DAMPED, Array, bare_wire, overlapping_line, simple_line
 from pantocheck.model import Catenary, discretise
-from pantocheck.model.discretised_line import DiscretisedLine
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
 from pantocheck.model.dynamics.effective_matrix import factorise

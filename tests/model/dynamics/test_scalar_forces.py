@@ -5,13 +5,14 @@ from scipy.sparse import csr_array
 
 from helpers.lines import Array
 from pantocheck.model.dynamics.scalar_forces import (
+    FORCE_TOLERANCE,
+    NEGLIGIBLE_FORCE,
     ScalarLaw,
     ScalarWorkspace,
     allocate_scalar_workspace,
     build_scalar_forces,
     sweep_forces,
 )
-from pantocheck.model.dynamics.sweeps import FORCE_TOLERANCE, NEGLIGIBLE_FORCE
 
 STEP = 2e-3
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from helpers.lines import Array, bare_wire
-from pantocheck.model.discretised_line import discretise
+from pantocheck.model.description.pantograph import Pantograph
+from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
@@ -12,7 +13,6 @@ from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.fem import beam
-from pantocheck.model.pantograph import Pantograph
 from verification.guide.topics.closed_forms import travelling_pulse
 
 TENSION, MASS = 20e3, 1.35

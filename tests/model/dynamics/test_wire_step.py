@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.lines import DAMPED, Array, bare_wire, simple_line
-from pantocheck.model.discretised_line import discretise, with_damping
+from pantocheck.model.discretisation.discretised_line import discretise, with_damping
 from pantocheck.model.dynamics import wire_step
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.extents import find_extents, merge_extents

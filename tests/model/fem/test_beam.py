@@ -5,11 +5,11 @@ import pytest
 from scipy.linalg import eigh
 
 from helpers.lines import Array, bare_wire
-from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.discretised_line import discretise
+from pantocheck.model.description.catenary import GRAVITY
+from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.fem.beams import weight
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.statics.static_solver import StaticSolver
 from verification.guide.topics.closed_forms import wire_sag
 

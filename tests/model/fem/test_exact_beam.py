@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.exact_beam import exact_stiffness
+from pantocheck.model.fem.residual_flexibility import exact_stiffness
 
 TENSION, BENDING_STIFFNESS = 22e3, 195.0
 

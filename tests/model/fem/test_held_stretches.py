@@ -9,15 +9,15 @@ from scipy.optimize import brentq
 
 from helpers.lines import Array, fix_along_track, simple_line
 from pantocheck.model import Catenary, DiscretisedLine, Kind, MessengerSupport, Wire, discretise
-from pantocheck.model.catenary import GRAVITY, Termination
-from pantocheck.model.fem.assembly import (
+from pantocheck.model.description.catenary import GRAVITY, Termination
+from pantocheck.model.modal.modes import compute_modes
+from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,
     point_load,
     stretch_directions,
 )
-from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.statics.elasticity import static_uplift
 from pantocheck.model.statics.static_solver import StaticSolver
 

@@ -5,7 +5,7 @@ import pytest
 
 from helpers.lines import DROPPERS_2002, simple_line
 from pantocheck.model import Kind, Wire
-from pantocheck.model.catenary import Catenary
+from pantocheck.model.description.catenary import Catenary
 from pantocheck.model.fem.mesh import build_mesh, find_element
 
 

@@ -10,9 +10,9 @@ from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_w
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import build_empty_train
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
 from pantocheck.model.modal.modal_damping import apply_modal_bands, build_modal_terms
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, stepping_mass
 
 UNIFORM = dict.fromkeys(Kind, Rayleigh(0.05, 1e-4))
 BAND = ModalBand(0.8, 1.5, 0.02)

@@ -8,8 +8,8 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import nnls
 
 from helpers.lines import Array, simple_line, without_connectors
-from pantocheck.model.discretised_line import discretise
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
+from pantocheck.model.discretisation.discretised_line import discretise
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
 from pantocheck.model.statics.static_solver import StaticSolver
 
 LINE = discretise(simple_line(spans=3), 1.0)

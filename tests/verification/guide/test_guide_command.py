@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import typer
 
-from pantocheck.conformance.results.results_part import ResultsPart
+from pantocheck.conformance.core.results_part import ResultsPart
 from verification.guide import __main__ as guide_command
 from verification.guide.guide_format import Guide
 from verification.guide.guide_tasks import GuideTask, list_tasks

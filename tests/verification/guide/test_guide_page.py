@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.reports.formats.html import render_html
-from pantocheck.conformance.reports.formats.markdown import render_markdown
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.markdown import render_markdown
 from verification.guide.guide_building import list_deviations
 from verification.guide.guide_format import Guide
 from verification.guide.pages.guide_page import build_guide_page

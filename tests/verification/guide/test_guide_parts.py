@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pantocheck.conformance.app.self_test.bench import MutantResult
+from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS
+from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, NumericalResult
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.grading.verdicts import Verdict
-from pantocheck.conformance.identification.identify import identify_modes
-from pantocheck.conformance.self_test.bench import MutantResult
-from pantocheck.conformance.self_test.mutants import MILD, MUTANTS
-from pantocheck.conformance.self_test.numerical_faults import FAULTS, NumericalResult
+from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.drops.identify import identify_modes
 from verification.guide import peers
 from verification.guide.guide_building import list_effects
 from verification.guide.guide_tasks import list_tasks, list_timings

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.reports.figures import study_chart
-from pantocheck.conformance.reports.formats.markdown import render_markdown
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages import study_chart
+from pantocheck.conformance.pages.markdown import render_markdown
 from verification.guide.guide_building import list_deviations
 from verification.guide.guide_format import Guide
 from verification.guide.guide_values import count_results, list_guide_values

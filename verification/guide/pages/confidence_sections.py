@@ -3,8 +3,8 @@
 from statistics import median
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.page_text import format_percent, format_value
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.words import format_percent, format_value
 
 CONTAINMENT_SCOPE = (
     "The half-width of the discretisation of each value follows from three meshes. It should contain the difference "

@@ -6,14 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator
 
-from pantocheck.conformance.reports.figures.figure_style import (
-    HALF,
-    INK,
-    SHADES,
-    add_legend,
-    label_decades,
-    render_svg,
-)
+from pantocheck.conformance.core.figure_style import HALF, INK, SHADES, add_legend, label_decades, render_svg
 
 
 @render_svg

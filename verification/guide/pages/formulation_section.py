@@ -2,11 +2,10 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
-from pantocheck.conformance.reports.page_text import format_plain, format_value
-from pantocheck.conformance.reports.words import quantity_label, quantity_unit
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.pages.words import format_plain, format_value, quantity_label, quantity_unit
 
 FORMULATION_SCOPE = (
     "Two formulations of the equations share no code: finite elements with the method of Fox and Goodwin, and explicit "

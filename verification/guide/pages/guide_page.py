@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.page_text import clean_tree
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.words import clean_tree
 from verification.guide.pages.confidence_sections import (
     build_limitations_section,
     build_performance_section,

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
+from pantocheck.conformance.pages import document as doc
 from verification.guide.pages.topic_section import build_value_table, list_tolerance_reasons
 
 PEER_SCOPE = (

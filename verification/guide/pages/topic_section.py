@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
-from pantocheck.conformance.reports.page_text import format_value
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.pages.words import format_value
 from verification.guide.pages.convergence_chart import draw_convergence
 
 AGREEMENT = {True: "yes", False: "NO"}

@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.reports import document as doc
-from pantocheck.conformance.reports.figures.study_chart import draw_chart
-from pantocheck.conformance.reports.page_text import format_beside_limits, format_value
-from pantocheck.conformance.reports.words import quantity_label, quantity_unit
-from pantocheck.conformance.results.figure_data import Chart
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.pages.words import format_beside_limits, format_value, quantity_label, quantity_unit
 
 VALIDATION_SCOPE = (
     "Every library case with published limits runs on the reference simulator of this version. The limits stand with "

@@ -15,18 +15,18 @@ import scipy.sparse as sp
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 from numpy.typing import NDArray
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Passage
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.simulation import start_motion
-from pantocheck.model.fem.assembly import (
+from pantocheck.model.fem.residual_flexibility import residual_flexibility
+from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,
     point_load,
     stepping_mass,
 )
-from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 
 class DroppersAndContact:

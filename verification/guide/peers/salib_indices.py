@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.stats import qmc
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.campaigns.evaluation.sobol_indices import estimate_sobol_indices
+from pantocheck.conformance.campaigns.sample_statistics import estimate_sobol_indices
+from pantocheck.conformance.core.array_types import RealArray
 from verification.guide.comparisons import compare_absolute
 from verification.guide.guide_format import CheckedValue
 

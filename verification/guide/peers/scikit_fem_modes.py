@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import Catenary, DiscretisedLine, Wire, discretise
 from pantocheck.model.modal.modes import compute_modes
 from verification.guide.comparisons import compare_relative

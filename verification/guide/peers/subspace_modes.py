@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.identification.identify import Identification, identify_modes
-from pantocheck.conformance.mass_drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.identify import Identification, identify_modes
 from verification.guide.comparisons import compare_relative
 from verification.guide.guide_format import CheckedValue
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.model.catenary import GRAVITY
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.model.description.catenary import GRAVITY
 
 
 def wire_sag(x: RealArray, length: float, tension: float, mass: float, bending_stiffness: float) -> RealArray:

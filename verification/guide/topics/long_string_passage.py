@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.results.figure_data import Chart, Series
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.model import Passage, chain, discretise, simulate_passage
+from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.fem.beam import wave_speed
-from pantocheck.model.pantograph import equilibrium
 from verification.guide.comparisons import build_study, compare_absolute, relative_rms
 from verification.guide.guide_format import CheckedValue, Topic
 from verification.guide.topics.bare_wires import WIRE_MASS, WIRE_TENSION, build_wire

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import (
     DiscretisedLine,
     Passage,
@@ -18,8 +18,8 @@ from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, point_load, stepping_mass
-from pantocheck.model.fem.contact_wires import locate_contact_wires
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, point_load, stepping_mass
+from pantocheck.model.statics.contact_wires import locate_contact_wires
 from verification.guide.comparisons import compare_absolute
 from verification.guide.guide_format import Topic
 from verification.guide.topics.bare_wires import build_short_line

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.results.figure_data import Chart, Series
-from pantocheck.conformance.simulation.catenary_model import build_catenary
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Series
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.model import Catenary, discretise
-from pantocheck.model.catenary import GRAVITY
-from pantocheck.model.statics.string_statics import compute_string_state, remove_staggers
+from pantocheck.model.description.catenary import GRAVITY
+from pantocheck.model.discretisation.string_statics import compute_string_state, remove_staggers
 from verification.guide.comparisons import compare_absolute
 from verification.guide.guide_format import Topic
 

@@ -3,11 +3,11 @@
 import numpy as np
 from scipy.linalg import eigh
 
-from pantocheck.conformance.array_types import RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Kind, Rayleigh, discretise
-from pantocheck.model.discretised_line import with_damping
-from pantocheck.model.fem.assembly import assemble_matrices, bandwidth_order, stepping_mass
+from pantocheck.model.discretisation.discretised_line import with_damping
 from pantocheck.model.fem.beam import wave_speed
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, stepping_mass
 from verification.guide.comparisons import build_study, compare_relative, relative_rms
 from verification.guide.guide_format import Topic
 from verification.guide.topics.bare_wires import WIRE_MASS, WIRE_TENSION, build_short_line, build_wire

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from pantocheck.conformance.results.figure_data import Chart, Series
+from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.model import discretise
-from pantocheck.model.catenary import GRAVITY
+from pantocheck.model.description.catenary import GRAVITY
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.guide.comparisons import build_study, compare_relative
 from verification.guide.guide_format import Topic

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from pantocheck.conformance.array_types import RealArray
-from pantocheck.conformance.results.figure_data import Chart, Series
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.fem.beam import wave_speed
 from verification.guide.comparisons import compare_relative

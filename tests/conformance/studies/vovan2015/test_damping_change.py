@@ -7,15 +7,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.execution.study_dispatch import run_study
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.results.criterion_format import Criterion
-from pantocheck.conformance.results.outcome import Delivered, Outcome, Skipped, StudyResult
-from pantocheck.conformance.studies.band_charts import draw_band_bars
-from pantocheck.conformance.studies.study_dispatch import run_study
-from pantocheck.conformance.studies.vovan2015.force_changes import CHANGES, force_changes
-from pantocheck.conformance.systems.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, StudyResult
+from pantocheck.conformance.studies.damping_sensitivity import draw_band_bars
+from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, force_changes
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import grade_findings
 from helpers.lines import simple_line
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_damping import compare_bands, find_transition, run_dropper_damping
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
-from pantocheck.model.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
 
 COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
 

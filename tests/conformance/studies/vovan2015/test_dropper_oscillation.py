@@ -7,7 +7,7 @@ import pytest
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.studies.vovan2015.dropper_oscillation import (
     compare_oscillations,

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.identification.damping import observability
-from pantocheck.conformance.identification.damping.damping_format import DampingResults, Observability
-from pantocheck.conformance.reports.figures.damping_figures import draw_observability
-from pantocheck.conformance.reports.mass_drop.damping_report import describe_observability
-from pantocheck.conformance.results.figure_data import Chart
-from pantocheck.conformance.studies.vovan2015 import fit_comparison
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.drops import paired_shapes
+from pantocheck.conformance.pages.damping_figures import draw_observability
+from pantocheck.conformance.pages.damping_page import describe_observability
+from pantocheck.conformance.results.damping_format import DampingResults, Observability
+from pantocheck.conformance.studies.vovan2015 import mass_drop_study
 
 OBSERVED = tuple(
     Observability(
@@ -31,14 +31,14 @@ OBSERVED = tuple(
         ("steady_arm", 0.0, 0.0, False),
     )
 )
-RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED, thresholds=observability.THRESHOLDS)
+RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED, thresholds=paired_shapes.THRESHOLDS)
 
 
 @pytest.fixture
 def chart(monkeypatch: pytest.MonkeyPatch) -> Chart:
-    monkeypatch.setattr(fit_comparison, "build_damping_results", lambda *_: RESULTS)
+    monkeypatch.setattr(mass_drop_study, "build_damping_results", lambda *_: RESULTS)
     (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
-    (chart,) = fit_comparison.build_fit_report(case, SimpleNamespace(modes=())).charts
+    (chart,) = mass_drop_study.build_fit_report(case, SimpleNamespace(modes=())).charts
     return chart
 
 
@@ -46,16 +46,16 @@ def test_observable_coefficients_are_counted_for_the_wires_and_for_the_rest() ->
     rows = [row.model_copy(update={"observable": True}) for row in OBSERVED]
     kinds = ("contact_wire", "messenger_wire", "dropper")
     counted = [row.model_copy(update={"kind": kind}) for row, kind in zip(rows, kinds, strict=True)]
-    assert fit_comparison.count_observable(counted) == {
+    assert mass_drop_study.count_observable(counted) == {
         "observable_wire_coefficients": 2.0,
         "observable_other_coefficients": 1.0,
     }
-    assert set(fit_comparison.count_observable([]).values()) == {0.0}
+    assert set(mass_drop_study.count_observable([]).values()) == {0.0}
 
 
 def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart: Chart) -> None:
     assert "above the dashed line it is observable" not in chart.caption
-    assert f"{100 * observability.THRESHOLDS.largest_share:g} %" in chart.caption
+    assert f"{100 * paired_shapes.THRESHOLDS.largest_share:g} %" in chart.caption
     assert chart.marks[0].label == "needed"
     described = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
     assert dict(described) == {
@@ -66,8 +66,8 @@ def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart:
 
 
 def test_drawn_thresholds_are_those_of_the_fit(chart: Chart) -> None:
-    assert chart.marks[0].low == observability.THRESHOLDS.plausible_over_std
-    rows, thresholds = OBSERVED, observability.THRESHOLDS
+    assert chart.marks[0].low == paired_shapes.THRESHOLDS.plausible_over_std
+    rows, thresholds = OBSERVED, paired_shapes.THRESHOLDS
     left, right = draw_observability.__wrapped__(rows, thresholds).axes
     assert set(left.lines[0].get_xdata()) == {100 * thresholds.largest_share}
     assert set(right.lines[0].get_xdata()) == {thresholds.plausible_over_std}
@@ -78,8 +78,8 @@ def test_drawn_thresholds_are_those_of_the_fit(chart: Chart) -> None:
 
 def test_caption_names_the_smallest_drawn_ratio(chart: Chart) -> None:
     (bars,) = chart.series
-    assert bars.y == [40.0, 10.0, fit_comparison.SMALLEST_DRAWN_RATIO]
+    assert bars.y == [40.0, 10.0, mass_drop_study.SMALLEST_DRAWN_RATIO]
     assert (
-        f"Values below {fit_comparison.SMALLEST_DRAWN_RATIO:g} are drawn at {fit_comparison.SMALLEST_DRAWN_RATIO:g}"
+        f"Values below {mass_drop_study.SMALLEST_DRAWN_RATIO:g} are drawn at {mass_drop_study.SMALLEST_DRAWN_RATIO:g}"
         in chart.caption
     )

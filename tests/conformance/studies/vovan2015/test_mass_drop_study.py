@@ -8,11 +8,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import ModalDamping
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.identification.population import Population
-from pantocheck.conformance.results.figure_data import Chart
-from pantocheck.conformance.results.outcome import StudyResult
+from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.drops.population import Population
+from pantocheck.conformance.line.elements.damping import ModalDamping
+from pantocheck.conformance.runs.system import StudyResult
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
 
 RATIOS = {"initial": 0.03, "updated": 0.02, "updated-modal": 0.0125}

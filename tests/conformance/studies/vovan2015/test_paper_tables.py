@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.input_files.trust import Trust
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
 

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pantocheck.conformance.array_types import RealArray
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.damping_file import Damping
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.input_files.input_error import InputError
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.outcome import Delivered
+from pantocheck.conformance.runs.system import Delivered
 from pantocheck.conformance.studies.vovan2015 import release_velocity
 from pantocheck.conformance.studies.vovan2015.release_velocity import VelocityWindow, compare_velocities
 

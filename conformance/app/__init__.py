@@ -1,0 +1,1 @@
+"""Faces of the suite: commands, pytest plugin, Python interface."""

@@ -1,0 +1,61 @@
+"""`pantocheck check`: check of input files, with all their problems."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput, list_problems
+from pantocheck.conformance.app.commands.console import indent_text
+from pantocheck.conformance.app.commands.guard import BAD_INPUT, strip_control_characters
+from pantocheck.conformance.app.commands.options import CasesOption
+from pantocheck.conformance.app.file_check import check_input_file, list_input_files
+from pantocheck.conformance.app.schemas import READ_FORMATS
+from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
+
+
+def check_command(
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="FILE...", help="Files of any kind, or folders with them.")
+    ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option(help=f"Kind of the files: {', '.join(READ_FORMATS)}.", show_default="recognised by the keys"),
+    ] = None,
+    folders: CasesOption = None,
+) -> CommandOutput:
+    """Check input files and report all their problems.
+
+    Examples:
+
+    pantocheck check my-line.toml my-case.toml
+
+    pantocheck check records
+
+    pantocheck check --cases my-cases
+    """
+    if not (files or folders):
+        raise InputError("command line", "no file is named", "Name files or folders, or a folder of cases by --cases.")
+    open_catalogue(folders or ())  # refuses ids and names of the library
+    files = [*(files or ()), *(folders or ())]
+    checked: list[dict[str, object]] = []
+    problems = faulty = 0
+    # A folder without input files stays in the list, so that it is reported like a faulty file.
+    paths = [file for name in files for file in ([*list_input_files(name)] or [name] if name.is_dir() else [name])]
+    for path in paths:
+        try:
+            checked.append({"file": str(path), "kind": check_input_file(path, kind), "problems": []})
+        except InputError as error:
+            typer.echo(strip_control_characters(str(error)), err=True)
+            problems, faulty = problems + len(error.problems), faulty + 1
+            checked.append({"file": str(path), "kind": None, "problems": list_problems(error)})
+    lines = [indent_text(f"{item['file']}: valid {item['kind']}", "") for item in checked if item["kind"] is not None]
+    if faulty:
+        conclusion = Text(f"{count_noun(problems, 'problem')} in {faulty} of {count_noun(len(paths), 'file')}")
+        return CommandOutput(conclusion, checked, lines, exit_code=BAD_INPUT)
+    if len(lines) == 1 and not files[0].is_dir():
+        return CommandOutput(lines[0].text, checked)
+    return CommandOutput(Text(f"{count_noun(len(paths), 'file')} checked, all valid"), checked, lines)

@@ -1,0 +1,128 @@
+"""Output of a command: a conclusion and details for a reader, data for a program, and files."""
+
+import json
+import math
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+from rich.console import RenderableType
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.console import console, error_console, escape_text
+from pantocheck.conformance.app.commands.output_settings import current_settings
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.results.results_format import CaseResult
+
+OUTPUT_SCHEMA = "pantocheck.output/1"
+
+
+class Unwrapped(Text):
+    """Text to be copied, such as a path or a file: its lines stay whole on a narrow terminal."""
+
+
+@dataclass(frozen=True)
+class CommandOutput:
+    """Output of a command."""
+
+    conclusion: Text
+    """Verdict or result in one line, which `-q` prints alone; empty: the details are the result."""
+    data: object
+    """Result for a program: a pydantic model, or plain lists, dictionaries, text and numbers."""
+    details: Sequence[RenderableType] = ()
+    """Text and tables below the conclusion."""
+    further: Sequence[RenderableType] = ()
+    """Text and tables that only `-v` prints."""
+    files: Sequence[Path] = field(default=())
+    """Written files."""
+    exit_code: int = 0
+    """Exit code of the command."""
+    remarks: Sequence[str] = ()
+    """Remarks on the files, which go to standard error."""
+
+
+def print_output(output: CommandOutput, command: str) -> None:
+    """Print the output of a command in the form and amount of the current settings.
+
+    Args:
+        output: Output.
+        command: Name of the command.
+    """
+    settings = current_settings()
+    for remark in () if settings.detail == "quiet" else output.remarks:
+        error_console().print(escape_text(f"remark: {remark}"), soft_wrap=True)  # holds a command to be copied
+    if settings.form == "json":
+        files = [str(path) for path in output.files]
+        facts = {"conclusion": output.conclusion.plain, "files": files, "result": output.data}
+        _print_json(command, output.exit_code, facts)
+        return
+    parts = [output.conclusion] if output.conclusion else list(output.details)
+    if settings.detail != "quiet":
+        parts = [*filter(None, [output.conclusion]), *output.details]
+        parts += output.further if settings.detail == "verbose" else ()
+        parts += [Unwrapped(escape_text(str(path)).plain) for path in output.files]
+    printed = console()
+    for part in parts:
+        printed.print(part, soft_wrap=isinstance(part, Unwrapped))
+
+
+def print_failure(command: str, message: str, error: Exception | None, exit_code: int) -> None:
+    """Print a failure as JSON, if the current settings ask for it; the message itself goes to standard error.
+
+    Args:
+        command: Name of the command.
+        message: Text of the failure.
+        error: Failure; the problems of an `InputError` are listed.
+        exit_code: Exit code of the command.
+    """
+    if current_settings().form == "json":
+        problems = list_problems(error) if isinstance(error, InputError) else []
+        _print_json(command, exit_code, {"conclusion": message, "files": [], "problems": problems})
+
+
+def list_problems(error: InputError) -> list[dict[str, str]]:
+    """Problems of an input for a program."""
+    return [{"where": problem.where, "found": problem.found, "hint": problem.hint} for problem in error.problems]
+
+
+def _print_json(command: str, exit_code: int, facts: dict[str, object]) -> None:
+    """Print one object in ASCII characters: control characters of foreign texts are escaped."""
+    content = {"schema": OUTPUT_SCHEMA, "command": command, "exit_code": exit_code, **facts}
+    sys.stdout.write(json.dumps(_make_plain(content), indent=1, allow_nan=False) + "\n")
+
+
+def _make_plain(content: object) -> Any:
+    """Content of plain JSON values: models as dictionaries, tuples as lists, numbers that are not finite as null."""
+    if isinstance(content, BaseModel):
+        return _make_plain(content.model_dump(mode="json", by_alias=True))
+    if isinstance(content, dict):
+        return {str(key): _make_plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_make_plain(value) for value in content]
+    if isinstance(content, float):
+        return content if math.isfinite(content) else None
+    return content if content is None or isinstance(content, (bool, int, str)) else str(content)
+
+
+# Remarks of a run: those of several cases are footnotes, printed once; others are warnings of their case.
+STANDING_REMARKS = ("20-50 Hz: lumped models",)
+"""Begin of remarks that hold for every run and that a user cannot act on."""
+
+
+def list_footnotes(cases: Sequence[CaseResult]) -> list[str]:
+    """Remarks that are printed once, in their order: standing ones, and those that several cases have in common.
+
+    Args:
+        cases: All cases of a run.
+    """
+    counts = Counter(warning for case in cases for warning in dict.fromkeys(case.warnings))
+    return [text for text, count in counts.items() if count > 1 or text.startswith(STANDING_REMARKS)]
+
+
+def mark_footnotes(case: CaseResult, footnotes: Sequence[str]) -> str:
+    """Marks of the footnotes that apply to a case, such as `[1] [2]`; empty without one."""
+    return " ".join(f"[{number}]" for number, text in enumerate(footnotes, 1) if text in case.warnings)

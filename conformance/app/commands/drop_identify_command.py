@@ -1,0 +1,143 @@
+"""`pantocheck drop identify`: modes of a line from mass-drop records."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+from rich.console import RenderableType
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.console import escape_text, format_number, indent_text
+from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.app.notebook.identified_lines import write_identification
+from pantocheck.conformance.core.files import check_writable
+from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.core.measured_table import TABLE_FORMATS, list_suffixes
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.identification_analysis import analyse_identification
+from pantocheck.conformance.drops.identify import group_by_line, identify_modes
+from pantocheck.conformance.drops.mode_export import MODE_FORMATS, select_mode_writer
+from pantocheck.conformance.drops.population import Population, identify_population
+from pantocheck.conformance.drops.population_analysis import analyse_population
+from pantocheck.conformance.drops.start_poles import read_poles
+from pantocheck.conformance.pages.identification_page import collect_warnings
+from pantocheck.conformance.pages.population_page import build_population_document
+from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
+from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
+from pantocheck.conformance.results.modes import ModesFile
+from pantocheck.conformance.results.population_format import PooledGroup
+
+
+def drop_identify_command(
+    records: Annotated[
+        list[Path],
+        typer.Argument(help=f"Records: {list_suffixes(TABLE_FORMATS)}; a sidecar .toml of the same name is also read."),
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for modes.json, identification.json, .html and .pdf.")],
+    poles: Annotated[
+        Path | None,
+        typer.Option(
+            help="Start poles placed by hand: TOML with [[pole]] frequency_Hz and damping_ratio, or a modes.json."
+        ),
+    ] = None,
+    highest: Annotated[float, typer.Option(help="Highest frequency of a mode [Hz].", min=0.5, max=200.0)] = 10.0,
+    export: Annotated[
+        list[Path] | None,
+        typer.Option(help=f"Also write the modes to this file ({', '.join(MODE_FORMATS)}); may be repeated."),
+    ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="Also identify every record on its own, and compare the tests: population.*")
+    ] = False,
+) -> CommandOutput:
+    """Identify the modes of a line from mass-drop records.
+
+    Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared.
+
+    Examples:
+
+    pantocheck drop identify T1.h5 --out T1
+
+    pantocheck drop identify T1.h5 T2.csv --out both --highest 6
+
+    pantocheck drop identify T1.h5 --out T1 --export modes.csv --export modes.uff
+
+    pantocheck drop identify T1.h5 T2.csv T3.uff --out all --each
+    """
+    exports = [(path, select_mode_writer(path)) for path in export or ()]
+    start_poles = None if poles is None else read_poles(poles)
+    drop_records = tuple(record for path in records for record in read_drop_records(path))
+    for folder in (out, *(path.parent for path, _ in exports)):
+        check_writable(folder)
+    tasks = count_tasks(drop_records, "each" if each else "joint")
+    with follow_steps("identification", tasks) as progress:
+        inputs = (drop_records, highest, start_poles, progress.begin_task)
+        population = identify_population(*inputs) if each else None
+        identifications = identify_modes(*inputs) if population is None else population.joint
+        progress.begin_task("report")
+        lines = tuple(analyse_identification(identification) for identification in identifications)
+        modes = tuple(mode for line in lines for mode in line.modes)
+        write_model(out / "modes.json", ModesFile(modes))
+        for path, write_modes in exports:
+            write_modes(modes, path)
+        document, files = write_identification(lines, out)
+        population_lines, population_files = ((), ()) if population is None else write_population(population, out)
+    return CommandOutput(
+        escape_text(document.header.headline),
+        IdentificationFile(lines=lines),
+        [
+            *_list_groups(lines),
+            *(indent_text(text, "warning: ") for text in collect_warnings(lines)),
+            *map(escape_text, population_lines),
+        ],
+        files=[out / "modes.json", *files, *(path for path, _ in exports), *population_files],
+        remarks=remark_missing_formats(),
+    )
+
+
+def count_tasks(records: Sequence[DropRecord], extent: Literal["each", "joint"]) -> int:
+    """Number of tasks that an identification reports: preparation of records, poles, uncertainty, and the report."""
+    lines = [len(line) for line in group_by_line(tuple(records))]
+    if extent == "joint":
+        return sum(line + 2 for line in lines) + 1
+    return sum(3 * line + (2 if line > 1 else 0) for line in lines) + 1
+
+
+def _list_groups(lines: Sequence[IdentifiedLine]) -> Iterator[RenderableType]:
+    """Modes and median damping of every group."""
+    for group in (group for line in lines for group in line.groups):
+        median = None if group.median_damping_ratio is None else 100 * group.median_damping_ratio
+        yield escape_text(
+            f"group {group.group}: {group.certain} of {group.modes} modes certain, "
+            f"{group.from_Hz:.3f}-{group.to_Hz:.3f} Hz, median damping ratio {format_number(median)} %"
+        )
+
+
+# Output of `pantocheck drop identify --each`: population.json, its pages, and lines for the terminal.
+def write_population(population: Population, out: Path) -> tuple[tuple[str, ...], list[Path]]:
+    """Write population.json, .html and .pdf to a folder.
+
+    Returns:
+        Lines for the terminal.
+        Written files.
+
+    Raises:
+        InputError: A file cannot be written.
+    """
+    content = analyse_population(population)
+    document = build_population_document(content)
+    write_model(out / "population.json", content)
+    pages = write_document(document, out / "population")
+    warnings = (f"warning: {text}" for text in content.warnings)
+    lines = (document.header.headline, *map(_format_group, content.groups), *warnings)
+    return lines, [out / "population.json", *pages]
+
+
+def _format_group(group: PooledGroup) -> str:
+    joint = None if group.joint_median is None else 100 * group.joint_median
+    return (
+        f"group {group.group}: median over tests {format_number(100 * group.median)} % "
+        f"({format_number(100 * group.interval[0])}-{format_number(100 * group.interval[1])} %), joint result "
+        f"{format_number(joint)} %, outliers: {group.outliers_above} above, {group.outliers_below} below"
+    )

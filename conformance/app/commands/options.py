@@ -1,0 +1,173 @@
+"""Shell completion of the ids of cases."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from pydantic import ValidationError
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_source import list_library
+from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
+from pantocheck.conformance.cases.input_changes import InputChange
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.core.validation_messages import build_input_error
+from pantocheck.conformance.execution.plan import Plan, read_plan
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.results.administration import read_administration
+from pantocheck.conformance.results.report_files import DEFAULT_FORMATS
+
+
+def complete_case(incomplete: str) -> list[str]:
+    """Ids of the library that begin with the typed text; the shell completes paths of case files."""
+    return [name for name in list_library(library_folder()) if name.startswith(incomplete)]
+
+
+# Option `--cases` of every command that takes cases, without the imports of a run.
+CasesOption = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--cases",
+        metavar="DIR",
+        help="Folder with further cases, whose ids begin with own/; repeat the option for several.",
+    ),
+]
+
+
+# Options, and the choice of a case or line, that several commands share.
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change an input of the case, its line or its pantographs; repeat the option for several.",
+    ),
+]
+OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
+FormatsOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge, annotations, codequality.",
+        show_default=",".join(DEFAULT_FORMATS),
+    ),
+]
+TrustOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
+    ),
+]
+VerdictsOption = Annotated[
+    str | None,
+    typer.Option(
+        help="Verdicts that decide: criteria (EN 50318), verification (converged solution, up to 50 Hz) or both.",
+        show_default="criteria for builtin, both for any other system",
+    ),
+]
+AcceptUnverifiedOption = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="System whose unverified records may pass; repeat the option for several."),
+]
+BaselineOption = Annotated[Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails.")]
+AdministrationOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="TOML file with issuer and number; `pantocheck new administration` writes one."),
+]
+ReportNumberOption = Annotated[
+    str | None, typer.Option(metavar="TEXT", help="Number of the report; it replaces that of --administration.")
+]
+DriftOption = Annotated[
+    float | None, typer.Option(help="Allowed drift of a value from the baseline [%].", show_default="1")
+]
+
+
+def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
+    """Administrative data from a file, with the number of the report from the command line in place of its own.
+
+    Raises:
+        InputError: The file cannot be read or is wrong.
+    """
+    stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
+    return stated if report_number is None else {**stated, "report_number": report_number}
+
+
+OPTIONS = {"drift_pct": "--drift", "jobs": "--jobs", "timeout_s": "--timeout", "trust": "--trust"}
+"""Options of the command line by their key in a plan, for messages."""
+
+
+def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
+    """Combine the options of the command line with those of a plan.
+
+    Administrative data replace those of the plan key by key.
+
+    Args:
+        plan: File of the plan.
+        formats: Names of formats, separated by commas.
+        options: Other options of the command line by their key in a plan; they replace those of the plan unless they
+            are None.
+
+    Raises:
+        InputError: The plan cannot be read, or a value of the plan or of the command line is wrong.
+    """
+    if formats is not None:
+        options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
+    texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
+    base = {} if plan is None else read_plan(plan).model_dump(exclude_none=True)
+    given = {key: value for key, value in texts.items() if value is not None}
+    if isinstance(stated := given.pop("administration", None), dict) and stated:
+        given["administration"] = base.get("administration", {}) | stated
+    try:
+        return Plan.model_validate(base | given)
+    except ValidationError as error:
+        problems = build_input_error(error, Plan, "command line").problems
+        raise join_errors([InputError(_name_option(each.where), each.found, each.hint) for each in problems]) from None
+
+
+def _name_option(where: str) -> str:
+    """Option of the command line in place of the key of a plan."""
+    key = where.removeprefix("command line, key ")
+    return f"option {OPTIONS[key]}" if key in OPTIONS else where
+
+
+def choose_case(
+    name: str,
+    accept: Callable[[Case], bool],
+    kind: str,
+    changes: Sequence[InputChange] = (),
+    catalogue: Catalogue = LIBRARY,
+) -> Case:
+    """Find the only case of a kind.
+
+    Args:
+        name: Id, glob or path.
+        accept: Condition on a case.
+        kind: Condition in words, for the message.
+        changes: Changes of the inputs of the case.
+        catalogue: Cases that have an id.
+
+    Raises:
+        InputError: No case, or several cases, meet the condition.
+    """
+    cases = [case for case in select_cases([name], changes, catalogue) if accept(case)]
+    if len(cases) != 1:
+        ids = ", ".join(case.id for case in cases) or "none"
+        raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")
+    return cases[0]
+
+
+def read_line(name: str) -> LineFile:
+    """Read the line of a line file, or of the cases that an id or path selects.
+
+    Raises:
+        InputError: The file is invalid, or the cases have different lines.
+    """
+    if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
+        return read_model(Path(name), LineFile, "line")
+    cases = select_cases([name])
+    if any(case.line != cases[0].line for case in cases):
+        raise InputError(f"line '{name}'", f"{len(cases)} cases with different lines", "Give the id of one case.")
+    return cases[0].line

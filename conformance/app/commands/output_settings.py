@@ -1,0 +1,167 @@
+"""Settings of the output of every command: amount, form and colour.
+
+=================  ===================================================================================
+option             meaning
+=================  ===================================================================================
+`-v`, `--verbose`  further details on standard output, and the steps of the computation on standard error
+`-q`, `--quiet`    errors and the verdict line, without progress
+`--json`           one JSON object on standard output, and nothing else there
+`--no-color`       no colour and no bold text, as with the variable `NO_COLOR`
+=================  ===================================================================================
+"""
+
+import codecs
+import inspect
+import os
+import sys
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from io import TextIOWrapper
+from typing import Annotated, Literal
+
+import typer
+
+FLAGS: Mapping[str, tuple[tuple[str, ...], str]] = {
+    "verbose": (("--verbose", "-v"), "Print details, and the steps of the computation to standard error."),
+    "quiet": (("--quiet", "-q"), "Print only errors and the verdict line."),
+    "json": (("--json",), "Print the result as one JSON object, for programs."),
+    "no_color": (("--no-color",), "Print without colour and bold text."),
+}
+"""Options of the output by name: their forms and their help."""
+
+
+@dataclass(frozen=True)
+class OutputSettings:
+    """Settings of the output of a command."""
+
+    detail: Literal["quiet", "normal", "verbose"] = "normal"
+    """Amount of text."""
+    form: Literal["text", "json"] = "text"
+    """Text for a reader, or JSON for a program."""
+    colour: Literal["automatic", "none"] = "automatic"
+    """Colour and bold text on a terminal, or none."""
+
+
+DEFAULT_SETTINGS = OutputSettings()
+
+_CURRENT: ContextVar[OutputSettings] = ContextVar("output_settings", default=DEFAULT_SETTINGS)
+
+
+def current_settings() -> OutputSettings:
+    """Settings of the command that runs; the default settings outside of a command."""
+    return _CURRENT.get()
+
+
+@contextmanager
+def use_settings(settings: OutputSettings) -> Iterator[None]:
+    """Make settings the current ones."""
+    token = _CURRENT.set(settings)
+    try:
+        yield
+    finally:
+        _CURRENT.reset(token)
+
+
+def combine_flags(given: Collection[str]) -> OutputSettings:
+    """Settings of the given options.
+
+    Args:
+        given: Names of options of `FLAGS`.
+
+    Raises:
+        typer.BadParameter: More and less output are requested at once.
+    """
+    if {"verbose", "quiet"} <= set(given):
+        raise typer.BadParameter("-v and -q contradict each other. Give one of them.")
+    return OutputSettings(
+        detail="quiet" if "quiet" in given else "verbose" if "verbose" in given else "normal",
+        form="json" if "json" in given else "text",
+        colour="none" if "no_color" in given or os.environ.get("NO_COLOR") else "automatic",
+    )
+
+
+def list_given(flags: Mapping[str, bool]) -> frozenset[str]:
+    """Names of the given options."""
+    return frozenset(name for name, given in flags.items() if given)
+
+
+def add_flags(function: Callable[..., None], visibility: Literal["shown", "hidden"]) -> Callable[..., None]:
+    """Let a function with `**flags` declare the options of the output to typer.
+
+    Args:
+        function: Function that receives the options as `flags`.
+        visibility: Whether the help lists the options: the help of `pantocheck` does, that of a command refers to it.
+    """
+    signature = inspect.signature(function)
+    own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
+    flags = [
+        inspect.Parameter(
+            name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=False,
+            annotation=Annotated[bool, typer.Option(*forms, help=text, hidden=visibility == "hidden")],
+        )
+        for name, (forms, text) in FLAGS.items()
+    ]
+    function.__signature__ = signature.replace(parameters=[*own, *flags])  # type: ignore[attr-defined]
+    return function
+
+
+# Output on terminals whose encoding lacks characters, such as Windows-1252 or ASCII.
+REPLACEMENTS = {
+    "±": "+-",
+    "≤": "<=",
+    "≥": ">=",
+    "−": "-",
+    "–": "-",
+    "—": "-",
+    "…": "...",
+    "×": "x",
+    "µ": "u",
+    "μ": "u",
+    "°": "deg",
+    "²": "^2",
+    "³": "^3",
+    "·": "*",
+    "→": "->",
+    "✓": "+",
+    "✗": "x",
+    "\N{NO-BREAK SPACE}": " ",
+    "\N{NARROW NO-BREAK SPACE}": " ",
+    "\N{EN SPACE}": " ",
+}
+"""Symbols of the suite in ASCII; any other character becomes a question mark."""
+
+ERROR_HANDLER = "pantocheck.symbols"
+
+
+def replace_symbols(error: UnicodeError) -> tuple[str, int]:
+    """Replacement of characters that an encoding lacks, as an error handler of `codecs`.
+
+    Args:
+        error: Error with the text and the range of the characters.
+
+    Returns:
+        Replacement.
+        Position at which encoding continues.
+
+    Raises:
+        UnicodeError: The error is not one of encoding.
+    """
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    text = error.object[error.start : error.end]
+    return "".join(REPLACEMENTS.get(character, "?") for character in text), error.end
+
+
+def accept_all_characters() -> None:
+    """Let standard output and standard error replace characters that their encoding lacks.
+
+    Without it, a title with a Greek letter would end a command on such a terminal.
+    """
+    codecs.register_error(ERROR_HANDLER, replace_symbols)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors=ERROR_HANDLER)

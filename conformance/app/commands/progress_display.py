@@ -1,0 +1,250 @@
+"""Display of progress on standard error: task, step, completed share and remaining time.
+
+=====================  ===========================================================
+output                 rule
+=====================  ===========================================================
+terminal               one line that is redrawn at most `REDRAWS_PER_S` times a second
+file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter command
+`-q`                   nothing
+=====================  ===========================================================
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.console import error_console
+from pantocheck.conformance.app.commands.guard import strip_control_characters
+from pantocheck.conformance.app.commands.output_settings import current_settings
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
+from pantocheck.conformance.core.step_log import TaskStep
+from pantocheck.conformance.results.results_format import CaseResult
+
+_LOGGER = logging.getLogger(__name__)
+
+LOG_INTERVAL_S = 10.0
+"""Time between two lines outside of a terminal [s]: a run of an hour writes 360 lines."""
+
+REDRAWS_PER_S = 3.0
+"""Redraws on a terminal [1/s]: a log of the terminal grows by some kilobytes a minute."""
+
+SMALLEST_SHARE = 0.1
+"""Completed share from which the remaining time is estimated; below, the estimate is an extrapolation by 10 times."""
+
+
+@contextmanager
+def show_line(describe: Callable[[], str]) -> Iterator[None]:
+    """Show a line of progress while a computation runs.
+
+    Args:
+        describe: Function that gives the current line; an empty line is not shown.
+    """
+    errors = error_console()
+    if current_settings().detail == "quiet":
+        yield
+    elif errors.is_terminal:
+        line = _LiveLine(describe)
+        with Live(line, console=errors, refresh_per_second=REDRAWS_PER_S, transient=True):
+            yield
+    else:
+        with _print_periodically(describe, errors):
+            yield
+
+
+class _LiveLine:
+    """Line that is described anew for every redraw."""
+
+    def __init__(self, describe: Callable[[], str]) -> None:
+        self._describe = describe
+
+    def __rich__(self) -> Text:
+        return Text(strip_control_characters(self._describe()))
+
+
+@contextmanager
+def _print_periodically(describe: Callable[[], str], output: Console) -> Iterator[None]:
+    ended = threading.Event()
+
+    def print_lines() -> None:
+        while not ended.wait(LOG_INTERVAL_S):
+            if line := strip_control_characters(describe()):
+                output.print(Text(f"{time.strftime('%H:%M:%S')} {line}"), soft_wrap=True)  # for a search in a log
+
+    thread = threading.Thread(target=print_lines, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+class TaskProgress(logging.Handler):
+    """Progress of tasks that report their steps to the loggers `pantocheck.*`.
+
+    Args:
+        title: Purpose of the tasks.
+        total: Number of tasks.
+        clock: Time [s].
+    """
+
+    def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__()
+        self._title, self._total, self._clock = title, total, clock
+        self._begin, self._finished = clock(), 0
+        self._steps: dict[str, TaskStep] = {}
+        self._task: str | None = None
+        self._reached: list[tuple[float, float]] = []
+
+    def begin_task(self, name: str) -> None:
+        """Begin a task that may report no steps; the task before it is finished."""
+        if self._task is not None:
+            self.finish_task()
+        self._task = name
+        _LOGGER.info("%s", name)
+
+    def reach(self, task: str, finished: int, share: float) -> None:
+        """State the latest finished task, the number of finished ones and their share of the duration of all.
+
+        The first statement counts the tasks that an earlier run has finished.
+        """
+        self._task, self._finished, self._steps = task or None, finished, {}
+        self._reached = [*self._reached[:1], (self._clock(), share)]
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep the step of a record."""
+        if isinstance(step := getattr(record, "step", None), TaskStep):
+            if self._reached:  # a part has cases without an end of their own: only the latest is named
+                self._steps = {}
+            self._steps[step.task] = step
+
+    def finish_task(self, name: str = "") -> None:
+        """Count a finished task.
+
+        Args:
+            name: Begin of the names of its steps; empty: no other task runs.
+        """
+        self._finished += 1
+        self._steps = {task: step for task, step in self._steps.items() if not task.startswith(name)}
+
+    def describe(self) -> str:
+        """Progress in one line."""
+        parts = [f"{self._title}: {self._finished} of {self._total} finished"] if self._total > 1 else [self._title]
+        steps = list(self._steps.values())
+        if steps:
+            parts += [f"{step.task}: {step.name}" for step in steps]
+        elif self._task is not None:
+            parts.append(self._task)
+        now, (share, remaining) = self._clock(), self._estimate()
+        if steps or self._reached or self._total > 1:  # the share of a program, a task without steps, is not known
+            parts.append(f"{100 * share:.0f} %")
+        if remaining is None:
+            parts.append(f"{timedelta(seconds=round(now - self._begin))} elapsed")
+        else:
+            parts.append(f"about {timedelta(seconds=round(remaining))} remaining")
+        return ", ".join(parts)
+
+    def _estimate(self) -> tuple[float, float | None]:
+        """Completed share, and remaining time [s]; None: too little is done, or the time of the estimate is over."""
+        now = self._clock()
+        if self._reached:
+            (begin, first), (latest, share) = self._reached[0], self._reached[-1]
+        else:
+            completed = self._finished + sum(step.completed for step in self._steps.values())
+            begin, first, latest, share = self._begin, 0.0, now, min(completed / self._total, 1.0)
+        if share - first < SMALLEST_SHARE:
+            return share, None
+        remaining = (latest - begin) * (1 - share) / (share - first) - (now - latest)
+        return share, remaining if remaining >= 1 or share >= 1 else None
+
+
+@contextmanager
+def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
+    """Show the progress of tasks while they run.
+
+    Args:
+        title: Purpose of the tasks.
+        total: Number of tasks.
+    """
+    progress, logger = TaskProgress(title, total), logging.getLogger(ROOT_LOGGER)
+    if current_settings().detail == "quiet":
+        yield progress
+        return
+    level = logger.level
+    logger.addHandler(progress)
+    logger.setLevel(logging.DEBUG)  # the shares of steps
+    try:
+        with show_line(progress.describe):
+            yield progress
+    finally:
+        logger.removeHandler(progress)
+        logger.setLevel(level)
+
+
+@contextmanager
+def report_cases(cases: int, title: str = "running cases") -> Iterator[Callable[[CaseResult], None]]:
+    """Show the progress of cases; yields the callback of the runner."""
+    with follow_steps(title, cases) as progress:
+        yield lambda result: progress.finish_task(result.id)
+
+
+# Progress of a campaign: finished and failed runs, rate and remaining time.
+@contextmanager
+def report_campaign() -> Iterator[Callable[[CampaignProgress], None]]:
+    """Show the progress of a campaign on standard error; yields the callback of the driver."""
+    latest: list[CampaignProgress] = []
+
+    def keep(progress: CampaignProgress) -> None:
+        latest[:] = [progress]
+
+    with show_line(lambda: describe_progress(latest[0]) if latest else ""):
+        yield keep
+
+
+def describe_progress(progress: CampaignProgress) -> str:
+    """Progress in one line: finished and failed runs, rate and remaining time."""
+    counts = f"{progress.finished} of {progress.total} runs finished, {progress.failed} failed"
+    if progress.rate is None or progress.remaining_s is None:
+        return counts
+    remaining = timedelta(seconds=round(progress.remaining_s))
+    rate = f"{progress.rate:.1f} per second" if progress.rate >= 1 else f"{60 * progress.rate:.1f} per minute"
+    return f"{counts}, {rate}, {remaining} remaining"
+
+
+# Log of a command: records of the loggers `pantocheck.*` on standard error, with time and module, for `-v`.
+ROOT_LOGGER = "pantocheck"
+
+
+class _ErrorLog(logging.Handler):
+    """Handler that prints above a line of progress, if there is one."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record without control characters."""
+        errors = error_console()
+        # Outside of a terminal a line stays whole, for a search in a log.
+        errors.print(Text(strip_control_characters(self.format(record))), soft_wrap=not errors.is_terminal)
+
+
+@contextmanager
+def write_log() -> Iterator[None]:
+    """Print the log while a command runs, if the current settings ask for details."""
+    if current_settings().detail != "verbose":
+        yield
+        return
+    logger, handler = logging.getLogger(ROOT_LOGGER), _ErrorLog(logging.INFO)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(name)s: %(message)s", "%H:%M:%S"))
+    level = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(min(logging.INFO, level or logging.INFO))
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(level)

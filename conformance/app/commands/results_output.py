@@ -1,0 +1,165 @@
+"""Output of `pantocheck run` and `assess`: verdict, criteria, values and remarks."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput, list_footnotes, mark_footnotes
+from pantocheck.conformance.app.commands.console import (
+    FittedTable,
+    build_quantities_table,
+    build_table,
+    escape_text,
+    format_number,
+    format_width,
+    indent_text,
+    list_names,
+    select_main,
+    style_verdict,
+)
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.pages.document_facts import list_administration
+from pantocheck.conformance.pages.scope_page import describe_changes
+from pantocheck.conformance.pages.two_verdicts import describe_comparison
+from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record
+from pantocheck.conformance.pages.words import clean_text
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
+from pantocheck.conformance.results.incomplete_uncertainty import explain_mark, list_unknown
+from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
+
+EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
+"""Exit code by verdict: 0 only for `pass`."""
+
+SHIFT_LEGEND = " shift: its change when the analysis section is shifted span by span;"
+"""Part of the legend for tables with the column `shift`."""
+
+LEGEND = (
+    "+-: uncertainty of the value;{shift} margin: relative distance to the nearer limit, 1 in the middle between two "
+    "limits, 0 on a limit, negative outside; with one limit, the distance divided by it, and the distance itself with "
+    "its unit if this limit is 0"
+)
+
+
+def build_results_output(
+    results: Results, files: Sequence[Path], exit_code: int, remarks: Sequence[str] = ()
+) -> CommandOutput:
+    """Verdict, criteria and values of each case, and remarks.
+
+    Args:
+        results: Results of a run.
+        files: Written files.
+        exit_code: Exit code of the command.
+        remarks: Remarks on the files.
+    """
+    system = f"{results.system.name} {results.system.version}".strip()
+    headline = f"{build_headline(results)} System: {system}"
+    parts: list[RenderableType] = [
+        escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"),
+    ]
+    if results.administration is not None:
+        stated = list_administration(results.administration)
+        parts.append(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
+    footnotes = list_footnotes(results.cases)
+    for case in results.cases:
+        parts += [Text(), *_describe_case(case, footnotes)]
+    parts.append(Text())
+    rows = [row for case in results.cases for row in _list_rows(case)]
+    if rows:
+        shift = SHIFT_LEGEND if any(row.spread is not None for row in rows) else ""
+        parts.append(Text(LEGEND.format(shift=shift), "dim"))
+    parts += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
+    return CommandOutput(
+        conclusion=style_verdict(results.verdict) + escape_text(f" {headline}"),
+        data=results,
+        details=parts,
+        further=[part for case in results.cases for part in _list_all_values(case)],
+        files=files,
+        exit_code=exit_code,
+        remarks=remarks,
+    )
+
+
+def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[RenderableType]:
+    """Verdict, remarks, criteria and values of a case."""
+    marks = mark_footnotes(case, footnotes)
+    title = f" {name_case(case.id, case.library)}  {case.title}{f' {marks}' if marks else ''}"
+    yield style_verdict(case.verdict) + escape_text(title)
+    record = None if case.record is None or case.reason else describe_record(case)
+    changes = [describe_changes(case)]
+    changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
+    warnings = (f"warning: {warning}" for warning in case.warnings if warning not in footnotes)
+    for line in filter(None, [case.reason, record, *changes, *warnings]):
+        yield indent_text(line)
+    criteria = [item for item in case.criteria if case.baseline is None or not item.is_drift]
+    missing = list_unknown(case.uncertainty_basis)
+    yield from _list_criteria(criteria, missing)
+    if not criteria:
+        table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities), missing)
+        yield from [table] if table.row_count else []
+    if missing and case.uncertainty:
+        yield indent_text(explain_mark(missing))
+    if case.verification is not None:
+        yield Text("  Verification up to 50 Hz: ") + style_verdict(case.verification.verdict)
+        if case.verification.reason and not case.reason:
+            yield indent_text(case.verification.reason)
+        yield from _list_criteria(case.verification.criteria)
+    if case.baseline is not None:
+        yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
+        yield indent_text(describe_comparison(case.baseline))
+        yield from _list_criteria([item for item in case.criteria if item.is_drift])
+
+
+def _list_rows(case: CaseResult) -> list[Criterion]:
+    """Criteria in the tables of a case."""
+    return [*case.criteria, *(() if case.verification is None else case.verification.criteria)]
+
+
+def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:
+    """All quantities of a case that are single numbers."""
+    missing = list_unknown(case.uncertainty_basis)
+    table = build_quantities_table(case.quantities, case.uncertainty, list_names(case.quantities), missing)
+    if table.row_count:
+        yield Text()
+        yield Text(f"All values of {case.id}", "bold")
+        yield table
+
+
+def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -> Iterator[RenderableType]:
+    """Criteria as a table, and their remarks."""
+    if criteria:
+        yield _build_criterion_table(criteria, missing)
+    for item in criteria:
+        for remark in filter(None, (item.reason, *item.close)):
+            yield indent_text(f"{_name(item)}: {remark}")
+
+
+def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]) -> FittedTable:
+    """Table of criteria; without the column of the shift, if no shift is known."""
+    numbers = ["value", "+-", "shift", "limits", "margin"]
+    if all(item.spread is None for item in criteria):
+        numbers.remove("shift")
+    headings = ("criterion", *numbers, "verdict", "trust")
+    table = build_table(*headings, unbroken=headings[1:], right=numbers)
+    for item in criteria:
+        error = item.discretisation_error if item.uncertainty is None else item.uncertainty
+        texts = format_graded(item.value, item.lower, item.upper)
+        cells: dict[str, str | Text] = {
+            "criterion": escape_text(_name(item)),
+            "value": texts.value,
+            "+-": format_width(error, () if item.uncertainty is None else missing),
+            "shift": format_number(item.spread, 2),
+            "limits": texts.bounds,
+            "margin": format_criterion_margin(item.margin, item.lower, item.upper, item.unit),
+            "verdict": style_verdict(item.verdict),
+            "trust": item.trust or "-",
+        }
+        table.add_row(*(cells[heading] for heading in headings))
+    return table
+
+
+def _name(item: Criterion) -> str:
+    pantograph = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
+    return name_value(item.quantity, item.item) + pantograph

@@ -1,0 +1,174 @@
+"""`pantocheck run`: grading of cases on a system, with a certificate."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.app.commands.command_execution import Interruption, receive_signals
+from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.console import error_console, escape_text
+from pantocheck.conformance.app.commands.options import (
+    AcceptUnverifiedOption,
+    AdministrationOption,
+    BaselineOption,
+    CasesOption,
+    DriftOption,
+    FormatsOption,
+    OutOption,
+    ReportNumberOption,
+    SetOption,
+    TrustOption,
+    VerdictsOption,
+    build_options,
+    complete_case,
+    state_administration,
+)
+from pantocheck.conformance.app.commands.output_settings import current_settings
+from pantocheck.conformance.app.commands.progress_display import report_cases
+from pantocheck.conformance.app.commands.results_output import EXIT_CODES, build_results_output
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.processes import interruption_exit_code
+from pantocheck.conformance.execution.plan import PreparedPlan, locate_plan, prepare_plan
+from pantocheck.conformance.execution.runner import RunInterrupted, add_reference, run_cases
+from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.results.report_files import FILES
+from pantocheck.conformance.results.results_format import Results
+
+
+def run_command(
+    case: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Ids, globs or paths of cases; default: those that count for the verdicts.",
+            autocompletion=complete_case,
+        ),
+    ] = None,
+    plan: Annotated[
+        Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
+    ] = None,
+    folders: CasesOption = None,
+    system: Annotated[
+        str | None,
+        typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
+    ] = None,
+    changed: SetOption = None,
+    out: OutOption = None,
+    formats: FormatsOption = None,
+    trust: TrustOption = None,
+    verdicts: VerdictsOption = None,
+    limits: Annotated[
+        Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
+    ] = None,
+    accept_unverified: AcceptUnverifiedOption = None,
+    baseline: BaselineOption = None,
+    drift: DriftOption = None,
+    administration: AdministrationOption = None,
+    report_number: ReportNumberOption = None,
+    jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
+    damping_study: Annotated[
+        bool,
+        typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
+    ] = False,
+    with_reference: Annotated[
+        bool,
+        typer.Option(
+            "--with-reference",
+            help="Show the values and forces of the reference simulator beside those of the system, for information.",
+        ),
+    ] = False,
+    timeout: Annotated[
+        float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
+    ] = None,
+) -> CommandOutput:
+    """Run and grade cases on a system; write a certificate.
+
+    Examples:
+
+    pantocheck run 'en50318-2002/*' --out report
+
+    pantocheck run en50318-2002/250 --damping-study
+
+    pantocheck run my-case.toml --system record:records --formats html,json
+
+    pantocheck run 'en50318-2002/*' --system 'command:python3 adapter.py'
+
+    pantocheck run my-case.toml --set speed_km_h=300 --set line.contact_wire.tension_N=22e3
+
+    pantocheck run 'en50318-2002/*' --system record:records --with-reference
+
+    pantocheck run 'own/*' --cases my-cases
+
+    pantocheck run --plan conformance.toml --baseline results.json --drift 2
+    """
+    options = build_options(
+        plan,
+        cases=tuple(case) if case else None,
+        case_folders=tuple(map(str, folders)) if folders else None,
+        set=tuple(changed) if changed else None,
+        system=system,
+        out=out,
+        formats=formats,
+        trust=trust,
+        verdicts=verdicts,
+        limits=limits,
+        accept_unverified=tuple(accept_unverified) if accept_unverified else None,
+        baseline=baseline,
+        drift_pct=drift,
+        administration=state_administration(administration, report_number),
+        jobs=jobs,
+        damping_study=damping_study or None,
+        timeout_s=timeout,
+    )
+    if with_reference:
+        _refuse_reference_beside_itself(options.system)
+    prepared = prepare_plan(options)
+    places = locate_plan(options, plan)
+    with receive_signals(prepared.out / FILES["json"], len(prepared.cases)) as interruption:
+        results, exit_code = _run_cases(prepared, with_reference, interruption)
+        if exit_code:
+            typer.echo("Interrupted: the results of the finished cases are written.", err=True)
+        results = results.model_copy(update={"administration": options.administration})
+        if prepared.baseline is not None:
+            write_all(results, prepared.out, ("json",))  # kept if the comparison fails
+            results = prepared.compare(results)
+        files = write_all(results, prepared.out, prepared.formats, places)
+        remarks = remark_missing_formats(options.formats)
+        exit_code = exit_code or interruption.exit_code or EXIT_CODES[results.verdict]
+        return build_results_output(results, files, exit_code, remarks)
+
+
+def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Interruption) -> tuple[Results, int]:
+    """Results of the finished cases, and the exit code of an interruption or 0."""
+    system, cases, plan = prepared.start_system(), prepared.cases, prepared.plan
+    _state_added_cases(prepared)
+    jobs = min(plan.jobs, len(cases))
+    try:
+        with report_cases(len(cases)) as progress:
+            follow = interruption.follow(progress, len(cases))
+            results = run_cases(cases, system, plan.trust, jobs, follow, prepared.participation)
+    except RunInterrupted as interrupted:
+        return interrupted.results, interrupted.exit_code
+    if not with_reference or interruption.exit_code:
+        return results, 0
+    try:
+        with report_cases(len(cases), "reference simulator") as progress:
+            return add_reference(results, cases, jobs, interruption.follow(progress, len(cases))), 0
+    except RunInterrupted as interrupted:
+        return interrupted.results, interrupted.exit_code
+    except KeyboardInterrupt as interrupted:  # before the first case of the reference simulator
+        return results, interruption_exit_code(interrupted)
+
+
+def _state_added_cases(prepared: PreparedPlan) -> None:
+    """One line on standard error, before the run, on the cases that run only because others require them."""
+    if prepared.added and current_settings().detail != "quiet":
+        parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
+        error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
+
+
+def _refuse_reference_beside_itself(system: str) -> None:
+    if system == "builtin":
+        raise InputError(
+            "--with-reference", "the system under test is the reference simulator", "Name another system by --system."
+        )

@@ -1,0 +1,74 @@
+"""`pantocheck simulate`: record of one case."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.console import build_quantities_table, escape_text, list_names, select_main
+from pantocheck.conformance.app.commands.options import CasesOption, SetOption, choose_case, complete_case
+from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.core.files import check_writable
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.records.record_writing import check_record_path, write_record
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.system import Delivered, missing_record_reason
+from pantocheck.conformance.runs.system_choice import choose_system
+
+
+def simulate_command(
+    case: Annotated[
+        str, typer.Argument(help="Id or path of one case, e.g. en50318-2002/250.", autocompletion=complete_case)
+    ],
+    out: Annotated[Path, typer.Option(help="Record to write: NAME.csv or NAME.h5; NAME.toml is written beside it.")],
+    system: Annotated[
+        str, typer.Option(help="System that simulates: builtin (reference simulator) or command:PROGRAM ARGUMENTS.")
+    ] = "builtin",
+    changed: SetOption = None,
+    folders: CasesOption = None,
+) -> CommandOutput:
+    """Simulate a case and write its record.
+
+    Examples:
+
+    pantocheck simulate en50318-2002/250 --out 250.csv
+
+    pantocheck simulate my-case.toml --set speed_km_h=300 --out 300.csv
+    """
+    check_record_path(out)
+    catalogue, changes = open_catalogue(folders or ()), parse_changes(changed or ())
+    chosen = choose_case(case, lambda each: not each.is_static, "with a train", changes, catalogue)
+    simulator = choose_system(system)
+    check_writable(out.parent)
+    # A record holds one run, so the refined run of the reference simulator is not needed.
+    run = simulator.run_unrefined if isinstance(simulator, ReferenceSimulator) else simulator.run
+    with follow_steps("simulation"):
+        outcome = run(chosen)
+    if not isinstance(outcome, Delivered) or outcome.record is None:
+        reason = missing_record_reason(outcome)
+        raise InputError(f"case '{chosen.id}'", f"no record: {reason}", "Choose another case or system.")
+    sidecar = write_record(
+        out,
+        outcome.record,
+        case=chosen.id,
+        system={"name": simulator.name, "version": simulator.version},
+        run=outcome.run.model_dump(),
+        further={
+            "case_digest": outcome.case_digest if simulator.kind == "record" else chosen.digest,
+            "changes": list(chosen.changes) or None,
+            "start": None if outcome.start is None else outcome.start.model_dump(),
+            "line": {"span_m": chosen.line.geometry.longest_span},
+        },
+    )
+    values = {str(owner): quantities for owner, quantities in CaseEvaluation(chosen, outcome).evaluation.values.items()}
+    return CommandOutput(
+        escape_text(f"{chosen.id}: simulated by {simulator.name} {simulator.version}"),
+        {"case": chosen.id, "run": outcome.run, "quantities": values},
+        [build_quantities_table(values, {}, select_main(values))],
+        [build_quantities_table(values, {}, list_names(values))],
+        files=(out, out.with_name(sidecar.name)),
+    )

@@ -1,0 +1,117 @@
+"""`pantocheck system self-test`: systems with known faults must not pass."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Annotated
+
+import typer
+from rich.console import RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, style_verdict
+from pantocheck.conformance.app.commands.options import complete_case
+from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.app.self_test.bench import MutantResult, SelfTest, run_self_test
+from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS
+from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, NumericalResult, run_numerical_faults
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.input_error import InputError
+
+DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
+NUMERICAL_CASES = ("en50318-2018/ac-simple/320-twin",)
+"""Further cases of the numerical faults, without published limits."""
+
+
+def system_self_test_command(
+    case: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help=f"Ids of cases that the reference simulator passes.  [default: {' '.join(DEFAULT_CASES)}]",
+            autocompletion=complete_case,
+        ),
+    ] = None,
+) -> CommandOutput:
+    """Test the suite with faulty systems.
+
+    The reference simulator itself must pass. A fault (mutant) is detected if the check that it should violate fails.
+
+    Example: pantocheck system self-test en50318-2002/250
+    """
+    cases = [selected for selected in select_cases(case or DEFAULT_CASES) if not selected.is_static]
+    if not cases:
+        raise InputError("case", "no case with a train is selected", "Select cases such as en50318-2002/250.")
+    further = () if case else select_cases(NUMERICAL_CASES)
+    with follow_steps("self-test", len((*FAULTS, *MUTANTS, *MILD, *cases))) as progress:
+        numerical = run_numerical_faults(
+            [*cases, *(extra for extra in further if not extra.is_static)], progress.begin_task
+        )
+        self_test = replace(run_self_test(cases, progress.begin_task), numerical=numerical)
+    detected = sum(result.detected for result in self_test.severe)
+    text = f" {detected} of {len(self_test.severe)} mutants detected by the expected check"
+    return CommandOutput(
+        style_verdict("pass" if self_test.passed else "fail") + Text(text),
+        _list_detections(self_test),
+        [*_describe(self_test)],
+        exit_code=0 if self_test.passed else 1,
+    )
+
+
+def _list_detections(self_test: SelfTest) -> dict[str, object]:
+    """Verdicts of all mutants and numerical faults for a program."""
+    mutants = [
+        {"mutant": row.mutant.name, "case": row.case, "verdict": row.verdict, "detected": row.detected}
+        for row in (*self_test.severe, *self_test.mild)
+    ]
+    faults = [
+        {"fault": row.fault.name, "case": row.case, "verdict": row.verification, "detected": row.detected}
+        for row in self_test.numerical
+    ]
+    return {"mutants": mutants, "numerical_faults": faults}
+
+
+def _describe(self_test: SelfTest) -> Iterator[RenderableType]:
+    """Faults that were not detected, verdicts of the reference simulator, and tables."""
+    for result in (row for row in self_test.severe if not row.detected):
+        yield escape_text(
+            f"NOT DETECTED: {result.mutant.name} on {result.case}, expected check: {result.mutant.expected_check}"
+        )
+    for name, (verdict, reason) in self_test.reference.items():
+        yield escape_text(f"reference simulator on {name}: ") + style_verdict(verdict) + escape_text(f" {reason}")
+    for fault in (row for row in self_test.numerical if not row.detected):
+        yield escape_text(f"NOT DETECTED: {fault.fault.name} on {fault.case}, by verification")
+    for title, results in (("must be detected", self_test.severe), ("may remain undetected", self_test.mild)):
+        yield Padding(_build_mutant_table(title, results), (1, 0, 0, 0))
+    if self_test.numerical:
+        yield Padding(_build_fault_table(self_test.numerical), (1, 0, 0, 0))
+
+
+def _build_mutant_table(title: str, results: Sequence[MutantResult]) -> FittedTable:
+    table = build_table("mutant", "case", "verdict", "limits alone", "detected by", "reason in the report", title=title)
+    for result in results:
+        check = result.mutant.expected_check or ", ".join(result.checks)
+        table.add_row(
+            escape_text(result.mutant.name),
+            escape_text(result.case),
+            style_verdict(result.verdict),
+            style_verdict(result.by_limits),
+            escape_text(check if result.detected else f"not by {check}"),
+            escape_text(result.reason[:160]),
+        )
+    return table
+
+
+def _build_fault_table(results: Sequence[NumericalResult]) -> FittedTable:
+    columns = ("numerical fault", "case", "EN 50318 criteria", "verification", "quantities outside")
+    table = build_table(*columns, title="numerical faults")
+    for result in results:
+        fault = result.fault.name if result.fault.must_be_detected else f"{result.fault.name} (optional)"
+        table.add_row(
+            escape_text(fault),
+            escape_text(result.case),
+            style_verdict(result.criteria),
+            style_verdict(result.verification),
+            escape_text(", ".join(result.outside) or "none"),
+        )
+    return table

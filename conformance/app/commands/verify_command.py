@@ -1,0 +1,118 @@
+"""`pantocheck verify`: verification of a certificate as PDF or HTML page, or of a results.json."""
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import RenderableType
+from rich.text import Text
+
+from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.console import escape_text, indent_text
+from pantocheck.conformance.app.commands.options import CasesOption
+from pantocheck.conformance.app.commands.results_output import EXIT_CODES
+from pantocheck.conformance.app.notebook.verified_report import verify_report
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.documents.authenticity_check import CheckOutcome
+from pantocheck.conformance.documents.verification import Verification
+
+HEADINGS: dict[CheckOutcome, str] = {
+    "contradicted": "Contradictions",
+    "incomplete": "Not compared in full",
+    "proved": "Proved",
+    "open": "Not proved",
+}
+"""Headings of the checks by their outcome, in the order of the output."""
+
+
+def verify_command(
+    document: Annotated[
+        Path, typer.Argument(metavar="FILE", help="certificate.pdf, certificate.html or results.json.")
+    ],
+    trust_roots: Annotated[
+        Path | None, typer.Option(help="PEM file of the authorities whose signatures are trusted.")
+    ] = None,
+    record: Annotated[
+        list[Path] | None, typer.Option(help="Record of a case: its quantities are computed from the samples again.")
+    ] = None,
+    folders: CasesOption = None,
+    rerun: Annotated[
+        bool, typer.Option("--rerun", help="Run the built-in simulator again and compare every number.")
+    ] = False,
+    any_verdict: Annotated[
+        bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
+    ] = False,
+) -> CommandOutput:
+    """Verify a document: verdicts, pages, cases, signatures.
+
+    The results in the document are graded again, the pages are made again and compared, and the cases are compared
+    with the installed library. Exit code 0: no contradiction, compared in full, and the verdict is `pass`. Exit code 1:
+    another verdict, a contradiction, or a document of another version that cannot be compared in full. Exit code 2: the
+    verdict is `error`, or the file is no such document.
+
+    A consistent document need not be authentic: invented results can be consistent. A signature shows who made it: with
+    --trust-roots, every signature must lead to one of these authorities. Without, signers are named, but not trusted.
+
+    Invented numbers can be consistent, too. --record computes the quantities of a record again, and --rerun runs the
+    built-in simulator again.
+
+    Examples:
+
+    pantocheck verify report/certificate.pdf
+
+    pantocheck verify report/certificate.pdf --rerun --trust-roots authority.pem
+
+    pantocheck verify report/results.json --record run.csv
+    """
+    report = verify_report(document, record or (), rerun, trust_roots, folders or ())
+    word = "authentic" if report.authentic else "consistent"
+    return CommandOutput(
+        escape_text(_conclude(report.verification, word)),
+        _describe_verification(report.verification),
+        [*_list_checks(report.verification)],
+        exit_code=_exit_code(report.verification, any_verdict),
+    )
+
+
+def _exit_code(verification: Verification, any_verdict: bool) -> int:
+    if not verification.consistent:
+        return 1
+    return 0 if any_verdict else EXIT_CODES[verification.verdict]
+
+
+def _conclude(verification: Verification, word: str) -> str:
+    """State of the document in one sentence."""
+    size = f"{count_noun(verification.cases, 'case')}, {count_noun(verification.criteria, 'criterion', 'criteria')}"
+    verdict = verification.verdict
+    match verification.state:
+        case "consistent":
+            return f"{word}: the verdict '{verdict}' follows from the embedded numbers ({size})."
+        case "incomplete":
+            return f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared."
+        case "contradicted":
+            count = count_noun(len(verification.discrepancies), "contradiction")
+            return f"not consistent: {count} ({size}; stated verdict '{verdict}')."
+
+
+def _list_checks(verification: Verification) -> Iterator[RenderableType]:
+    """Checks with their details, by outcome."""
+    for outcome, heading in HEADINGS.items():
+        checks = [check for check in verification.checks if check.outcome == outcome]
+        if checks:
+            yield Text(f"{heading}:")
+        for check in checks:
+            yield indent_text(check.statement.strip(), "  * ")
+            yield from (indent_text(line.strip(), "    - ") for line in check.details)
+
+
+def _describe_verification(verification: Verification) -> dict[str, object]:
+    """State and checks for a program."""
+    return {
+        "state": verification.state,
+        "verdict": verification.verdict,
+        "cases": verification.cases,
+        "criteria": verification.criteria,
+        "checks": [asdict(check) for check in verification.checks],
+    }

@@ -1,0 +1,1 @@
+"""Python interface for scripts and notebooks."""

@@ -1,0 +1,60 @@
+"""Values of the Python interface in one line, for the prompt of an interpreter and for notebooks."""
+
+import importlib.util
+import textwrap
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pantocheck.conformance.pages.report_writers import remark_missing_formats
+
+LONGEST_DESCRIPTION = 160
+"""Longest line that describes a value: two lines of a terminal of 80 columns."""
+
+
+def describe_in_one_line(value: object, *facts: str) -> str:
+    """Class of a value with facts about it, shortened to one line."""
+    return f"<{type(value).__name__} {textwrap.shorten(', '.join(facts), LONGEST_DESCRIPTION, placeholder=' ...')}>"
+
+
+# Tables of the Python interface: pandas if it is installed, otherwise columns of numpy.
+def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
+    """Table of equally long columns.
+
+    Args:
+        columns: Columns by name.
+
+    Returns:
+        A table of pandas if that is installed, otherwise the columns.
+    """
+    if importlib.util.find_spec("pandas") is None:
+        return dict(columns)
+    import pandas
+
+    return pandas.DataFrame(dict(columns))
+
+
+def tabulate_rows(rows: Sequence[Mapping[str, object]], names: Sequence[str]) -> Any:
+    """Table of rows with the same keys; see `tabulate_columns`. A number that is missing is NaN."""
+    return tabulate_columns({name: _build_column([row[name] for row in rows]) for name in names})
+
+
+def _build_column(values: Sequence[object]) -> NDArray[Any]:
+    """Array of numbers if every value is a number or missing, otherwise of objects."""
+    if all(value is None or (isinstance(value, float | int) and not isinstance(value, bool)) for value in values):
+        return np.array([np.nan if value is None else value for value in values])
+    return np.array(values, dtype=object)
+
+
+# Warning of a report in Python that is written without PDF.
+def warn_missing_formats(stated: Sequence[str] | None = None) -> None:
+    """Warn the caller of a method of the interface of default formats whose extra is not installed.
+
+    Args:
+        stated: Formats that the caller states; None: the default formats.
+    """
+    for remark in remark_missing_formats(stated):
+        warnings.warn(remark, stacklevel=3)

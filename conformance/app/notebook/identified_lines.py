@@ -1,0 +1,182 @@
+"""Mass drops in Python: modes of a line, and a damping model fitted to them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_rows, warn_missing_formats
+from pantocheck.conformance.app.notebook.fitted_damping import FittedDamping
+from pantocheck.conformance.app.notebook.opened_case import OpenedCase
+from pantocheck.conformance.app.notebook.opened_drop import OpenedDrop
+from pantocheck.conformance.core.drawn_axes import provide_axes
+from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.drops.damping_results import FitOptions, WireCoefficients, build_damping_results
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.identification_analysis import analyse_identification
+from pantocheck.conformance.drops.identify import identify_modes
+from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
+from pantocheck.conformance.drops.mode_matching import select_usable
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.pages.document import Document
+from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
+from pantocheck.conformance.results.modes import Mode, ModesFile, read_modes
+
+HIGHEST_FREQUENCY_HZ = 10.0
+"""Highest frequency of a mode, if none is given [Hz]."""
+
+MODE_KEYS = (
+    "frequency_Hz",
+    "frequency_std_Hz",
+    "damping_ratio",
+    "damping_ratio_std",
+    "group",
+    "certain",
+    "lateral",
+    "outlier",
+    "record",
+)
+"""Columns of the table of modes, with the keys of modes.json."""
+
+
+@dataclass(frozen=True)
+class IdentifiedLines:
+    """Modes that were identified from mass-drop records."""
+
+    modes: tuple[Mode, ...]
+    """Modes of all lines, in the order of frequency within a line."""
+
+    def __repr__(self) -> str:
+        """Number of modes in one line."""
+        return describe_in_one_line(self, count_noun(len(self.modes), "mode"))
+
+    def to_dataframe(self) -> Any:
+        """Modes, one per row: a table of pandas, or columns of numpy.
+
+        Columns have the keys of modes.json; `damping_ratio_std` is the standard deviation of `damping_ratio`.
+        """
+        return tabulate_rows([mode.model_dump(mode="json") for mode in self.modes], MODE_KEYS)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes.
+
+        Args:
+            axes: Axes to draw in; None: those of a new figure.
+        """
+        axes = provide_axes(axes)
+        certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
+        axes.errorbar(
+            [mode.frequency_Hz for mode in certain],
+            [100 * mode.damping_ratio for mode in certain],
+            yerr=[196 * mode.damping_ratio_std for mode in certain],
+            fmt="o",
+            color="0.1",
+            markersize=4,
+            capsize=2,
+            label="identified, 95 % interval",
+        )
+        axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+        axes.legend()
+        return axes
+
+    def fit_damping(
+        self, case: OpenedCase, element_m: float = 0.5, wires: WireCoefficients = "separate"
+    ) -> FittedDamping:
+        """Fit a damping model of the line of a case to the modes, as `pantocheck drop fit` does.
+
+        Args:
+            case: Case with the line of the records.
+            element_m: Element length [m].
+            wires: Whether contact and messenger wire have their own coefficients, or the same.
+
+        Raises:
+            InputError: The line is not that of the record, or the modes do not determine a model.
+        """
+        catenary, name = build_catenary(case.case.line), "modes"
+        refuse_other_line(compare_line(select_usable(self.modes, name), catenary), name)
+        return FittedDamping(build_damping_results(self.modes, catenary, element_m, name, FitOptions(wires)))
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write modes.json; returns the paths of the files.
+
+        Args:
+            folder: Folder of the files.
+
+        Raises:
+            InputError: A file cannot be written.
+        """
+        path = Path(folder) / "modes.json"
+        write_model(path, ModesFile(self.modes))
+        return [path]
+
+
+@dataclass(frozen=True, repr=False)
+class IdentifiedRecords(IdentifiedLines):
+    """Modes of the lines of mass-drop records, with the records and the course of the identification."""
+
+    lines: tuple[IdentifiedLine, ...]
+    """Content of identification.json, line by line."""
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write modes.json, identification.json and the report as HTML and PDF; returns the paths of the files.
+
+        Args:
+            folder: Folder of the files.
+
+        Raises:
+            InputError: A file cannot be written.
+        """
+        paths = super().write(folder)
+        warn_missing_formats()
+        return [*paths, *write_identification(self.lines, Path(folder))[1]]
+
+
+def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tuple[Document, list[Path]]:
+    """Write identification.json and the report; returns the report and the paths of the files.
+
+    Raises:
+        InputError: A file cannot be written.
+    """
+    from pantocheck.conformance.pages.identification_page import build_identification_document
+    from pantocheck.conformance.pages.report_writers import write_document
+
+    document = build_identification_document(lines)
+    write_model(folder / "identification.json", IdentificationFile(lines=lines))
+    return document, [folder / "identification.json", *write_document(document, folder / "identification")]
+
+
+def identify_line(*drops: str | Path | OpenedDrop, highest_Hz: float = HIGHEST_FREQUENCY_HZ) -> IdentifiedRecords:
+    """Identify the modes of a line from mass drops, as `pantocheck drop identify` does.
+
+    Args:
+        *drops: Records, or simulated drops, of one or more drops.
+        highest_Hz: Highest frequency of a mode [Hz].
+
+    Raises:
+        InputError: A record cannot be read, or holds no decay.
+    """
+    records = tuple(record for drop in drops for record in _list_records(drop))
+    lines = tuple(map(analyse_identification, identify_modes(records, highest_Hz)))
+    return IdentifiedRecords(tuple(mode for line in lines for mode in line.modes), lines)
+
+
+def _list_records(drop: str | Path | OpenedDrop) -> Iterator[DropRecord]:
+    """Records of a file, or that of a simulated drop."""
+    if isinstance(drop, OpenedDrop):
+        yield drop.record
+    else:
+        yield from read_drop_records(Path(drop))
+
+
+def open_modes(path: str | Path) -> IdentifiedLines:
+    """Read a modes.json.
+
+    Args:
+        path: Path of the file.
+
+    Raises:
+        InputError: The file cannot be read, or is no list of modes.
+    """
+    return IdentifiedLines(read_modes(Path(path)))

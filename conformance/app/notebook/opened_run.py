@@ -1,0 +1,177 @@
+"""Runs in Python: quantities, signals and figures of a simulated or recorded passage."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_columns, tabulate_rows
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.comparison.compared_run import ComparedRun, read_record_run
+from pantocheck.conformance.core.drawn_axes import provide_axes
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.pages.words import quantity_label, quantity_unit
+from pantocheck.conformance.quantities.bands import amplitude_spectrum
+from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.runs.system import System
+
+
+@dataclass(frozen=True)
+class OpenedRun:
+    """A passage with its contact forces: simulated, delivered by a system, or read from a record."""
+
+    run: ComparedRun
+    """Quantities and signals of the passage."""
+
+    def __repr__(self) -> str:
+        """Case, speed, pantographs and origin in one line."""
+        speed = "unknown speed" if self.run.speed_km_h is None else f"{self.run.speed_km_h:g} km/h"
+        owners = count_noun(len(self.run.signals), "pantograph")
+        return describe_in_one_line(
+            self, self.run.case or "no case", speed, owners, f"{self.run.kind}: {self.run.name}"
+        )
+
+    @property
+    def pantographs(self) -> tuple[int, ...]:
+        """Numbers of the pantographs, from 1 in running order."""
+        return tuple(self.run.signals)
+
+    def quantity(self, name: str, pantograph: int = 1) -> Value:
+        """Value of a quantity.
+
+        Args:
+            name: Name such as `std_force_N`.
+            pantograph: Number of the pantograph; 0: the line.
+
+        Raises:
+            KeyError: The run does not have this quantity.
+        """
+        return self.run.values[pantograph][name]
+
+    def to_dataframe(self) -> Any:
+        """Quantities with their uncertainty, one per row: a table of pandas, or columns of numpy.
+
+        The column `unknown_components` names the components that the uncertainty lacks, such as those of mesh and start
+        after `simulate`. Quantities with several values, such as the elasticity along a span, are left out.
+        """
+        rows = [
+            {
+                "pantograph": owner,
+                "quantity": name,
+                "value": value,
+                "unit": quantity_unit(name),
+                "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
+                "unknown_components": ", ".join(self.run.unknown_components),
+                "label": quantity_label(name),
+            }
+            for owner, values in self.run.values.items()
+            for name, value in values.items()
+            if not isinstance(value, tuple)
+        ]
+        return tabulate_rows(
+            rows, ("pantograph", "quantity", "value", "unit", "uncertainty", "unknown_components", "label")
+        )
+
+    def signals(self, pantograph: int = 1) -> Any:
+        """Signals over the analysis section: a table of pandas, or columns of numpy.
+
+        Columns are `position_m`, `force_N` (as delivered), `force_20_N` (filtered as graded) and, if it is known,
+        `contact_height_m`.
+
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+
+        Raises:
+            KeyError: There is no such pantograph, or the run has no signals.
+            QuantityUnavailable: The run does not cover its analysis section.
+        """
+        signals = self.run.signals[pantograph]
+        columns = {
+            "position_m": signals.position[signals.inside],
+            "force_N": signals.delivered,
+            "force_20_N": signals.graded,
+        }
+        if signals.contact_height is not None:
+            columns["contact_height_m"] = signals.height
+        return tabulate_columns(columns)
+
+    def plot(self, pantograph: int = 1, axes: Any = None) -> Any:
+        """Plot the force over the position, as delivered and as graded; returns matplotlib axes.
+
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+            axes: Axes to draw in; None: those of a new figure.
+        """
+        signals = self.run.signals[pantograph]
+        axes = provide_axes(axes)
+        position = signals.position[signals.inside]
+        axes.plot(position, signals.delivered, color="0.7", linewidth=0.8, label="as delivered")
+        axes.plot(position, signals.graded, color="0.1", linewidth=1.2, label="0-20 Hz")
+        axes.set(xlabel="position along the track [m]", ylabel="contact force [N]", title=self._title(pantograph))
+        axes.legend()
+        return axes
+
+    def plot_spectrum(self, pantograph: int = 1, axes: Any = None) -> Any:
+        """Plot the amplitude spectrum of the force up to 50 Hz; returns matplotlib axes.
+
+        Args:
+            pantograph: Number of the pantograph, from 1 in running order.
+            axes: Axes to draw in; None: those of a new figure.
+        """
+        signals: PantographSignals = self.run.signals[pantograph]
+        axes = provide_axes(axes)
+        axes.plot(*amplitude_spectrum(signals.delivered, signals.force.rate, signals.highest_frequency), color="0.1")
+        axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]", title=self._title(pantograph))
+        return axes
+
+    def _title(self, pantograph: int) -> str:
+        return f"{self.run.case or self.run.name}, pantograph {pantograph}"
+
+
+@dataclass(frozen=True, repr=False)
+class SimulatedRun(OpenedRun):
+    """A passage that a system has run."""
+
+    case: Case
+    """Case of the run."""
+    system: System
+    """System that ran it."""
+    record: Record
+    """Samples of the run."""
+
+    def write(self, path: str | Path) -> Path:
+        """Write the run as a record, CSV or HDF5 by its suffix, with a sidecar; returns the sidecar.
+
+        Args:
+            path: Path of the table; its suffix chooses CSV or HDF5.
+
+        Raises:
+            InputError: The suffix is not that of a record, or a file cannot be written.
+        """
+        further = {
+            "case_digest": self.case.digest,
+            "changes": list(self.case.changes) or None,
+            "line": {"span_m": self.case.line.geometry.longest_span},
+        }
+        system = {"name": self.system.name, "version": self.system.version}
+        return write_record(Path(path), self.record, case=self.case.id, system=system, further=further)
+
+
+def open_run(path: str | Path) -> OpenedRun:
+    """Read a simulated or measured record with its sidecar.
+
+    Args:
+        path: Sidecar, or table with the sidecar beside it.
+
+    Raises:
+        InputError: The record cannot be read or is invalid.
+    """
+    return OpenedRun(read_record_run(Path(path)))
+
+
+def _select_number(values: Mapping[str, Value], name: str) -> float | None:
+    value = values.get(name)
+    return value if isinstance(value, float) else None

@@ -1,0 +1,1 @@
+"""Criteria as tests of pytest."""

@@ -1,0 +1,1 @@
+"""Test of the suite by systems with known faults."""

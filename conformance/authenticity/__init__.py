@@ -1,1 +1,0 @@
-"""Verification of documents: attachments and recomputation of verdicts."""

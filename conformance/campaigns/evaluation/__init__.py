@@ -1,1 +1,0 @@
-"""Evaluation of a campaign: charts against inputs, maps, and statistics of random designs."""

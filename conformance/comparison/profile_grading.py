@@ -1,0 +1,178 @@
+"""Assessment of a record by a profile: acceptance of a line, or a simulation against a line test."""
+
+import re
+from collections.abc import Sequence
+
+from pantocheck.conformance.cases.case import json_digest
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.profile_file import Profile
+from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
+from pantocheck.conformance.grading.case_identity import (
+    compare_profile_with_library,
+    limits_digest,
+    rules_digest,
+)
+from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
+from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places
+from pantocheck.conformance.grading.results_building import (
+    build_results,
+    key_by_owner,
+    list_components,
+    select_finite,
+    utc_now,
+)
+from pantocheck.conformance.grading.rule_grading import RuleGrading
+from pantocheck.conformance.grading.validity_warnings import find_unvalidated
+from pantocheck.conformance.records.traces import build_pantograph_traces
+from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
+
+
+def assess_record(
+    subject: AssessedRecord,
+    profile: Profile,
+    trust: Trust = "secondary",
+    measured: AssessedRecord | None = None,
+    limits: Sequence[Limit] = (),
+    participation: Participation = EVERY_CASE,
+) -> Results:
+    """Grade a record by a profile.
+
+    Args:
+        subject: Graded record.
+        profile: Profile with the rules.
+        trust: Lowest trust of the rules that count.
+        measured: Measured record, for a profile that compares.
+        limits: The user's own limits, which replace the rules of the same quantity.
+        participation: Accepted unverified records.
+
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
+    """
+    check_pair(subject, measured, profile)
+    case = grade_record(subject, profile, trust, measured, limits)
+    system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
+    return build_results([case], system, trust, utc_now(), participation)
+
+
+def grade_record(
+    subject: AssessedRecord,
+    profile: Profile,
+    trust: Trust,
+    measured: AssessedRecord | None = None,
+    limits: Sequence[Limit] = (),
+) -> CaseResult:
+    """Result of a record by the rules of a profile; parameters as in `assess_record`."""
+    grading = RuleGrading(subject, measured, trust)
+    criteria = grading.grade_profile(profile, limits)
+    records = [record for record in (subject, measured) if record is not None]
+    digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
+    reason = (
+        "the checks of force against motion and of position against uplift need the pantograph and the line of a case, "
+        "and a profile has none"
+    )
+    record = RecordFacts(
+        state="unverified",
+        reason=reason,
+        demanded=profile.verification == "demanded",
+        digest=subject.record_digest,
+        case_digest=subject.header.case_digest,
+        measured_digest=None if measured is None else measured.record_digest,
+    )
+    return CaseResult(
+        id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
+        title=f"{profile.title}: {subject.name}",
+        verdict=judge_case((criterion.verdict for criterion in criteria), record),
+        criteria_verdict=None,
+        reason=None,
+        notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
+        warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],
+        inputs=[group for record in records for group in record.inputs],
+        input_digest=f"sha256:{digest}",
+        limits_digest=json_digest([rules_digest(profile), limits_digest(limits)]),
+        stated_limits_digest=json_digest([rules_digest(profile), limits_digest(())]),
+        limit_changes=grading.list_limit_changes(profile, limits),
+        library=compare_profile_with_library(profile),
+        profile=profile.name,
+        steps=["line_test"] if profile.compares else [],
+        criteria=criteria,
+        quantities=key_by_owner(select_finite(subject.values.values)),
+        skipped=key_by_owner(subject.values.skipped),
+        spread={},
+        uncertainty=key_by_owner(select_finite(subject.uncertainty.combined)),
+        uncertainty_components=list_components(subject.uncertainty),
+        uncertainty_basis=subject.uncertainty.basis,
+        record=record,
+        run=_run_facts(subject, profile),
+        events=list(subject.events) or None,
+        contact_losses=None if subject.prepared is None else build_contact_losses(subject.prepared.pantographs),
+        traces={}
+        if subject.prepared is None
+        else build_pantograph_traces(
+            subject.prepared.pantographs, getattr(subject.header, "support_position_m", None) or ()
+        ),
+        uplift=[],
+        comparison=None if measured is None else compare_measured_run(subject, measured, list_run_supports(subject)),
+        places={} if subject.prepared is None else find_force_places(subject.prepared.pantographs),
+    )
+
+
+def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:
+    """Check that a measured record belongs to a record, and is not a copy of it; parameters as in `assess_record`.
+
+    Raises:
+        InputError: A measured record is missing, not needed, or does not fit the record.
+    """
+    where = f"profile '{profile.name}'"
+    if measured is None:
+        if profile.compares:
+            raise InputError(where, "compares with a measured record, but there is none", "Add --measured RECORD2.")
+        return
+    if not profile.compares:
+        raise InputError(where, "does not compare with a measured record", "Remove --measured.")
+    where = f"measured record '{measured.name}'"
+    speed, measured_speed = subject.header.speed_km_h, measured.header.speed_km_h
+    if subject.pantographs != measured.pantographs:
+        count, measured_count = len(subject.pantographs), len(measured.pantographs)
+        raise InputError(
+            where,
+            f"it has {count_noun(measured_count, 'pantograph')}, {subject.name} has {count}",
+            "Compare records of the same train.",
+        )
+    if not abs(measured_speed / speed - 1) <= profile.speed_tolerance_pct / 100:
+        raise InputError(
+            where,
+            f"its speed is {measured_speed:g} km/h, that of {subject.name} is {speed:g} km/h",
+            "Compare records at the same speed.",
+        )
+    if (number := find_equal_pantograph(subject, measured)) is not None:
+        raise InputError(
+            where,
+            f"its contact force of pantograph {number} is that of {subject.name}: one record is a copy of the other",
+            "Compare a simulated record with an independent measured record.",
+        )
+
+
+def _run_facts(subject: AssessedRecord, profile: Profile) -> RunFacts:
+    prepared, run = subject.prepared, subject.header.run
+    section = subject.header.evaluated_m if prepared is None else prepared.section
+    return RunFacts(
+        simulated_s=run.simulated_s if prepared is None else prepared.seconds,
+        wall_s=run.wall_s,
+        dt_s=run.dt_s,
+        element_m=run.element_m,
+        speed_km_h=subject.header.speed_km_h,
+        rate_Hz=None if prepared is None else prepared.rate,
+        filter=profile.filter,
+        evaluated_m=None if section is None else (section[0], section[1]),
+    )
+
+
+def _name_sources(records: Sequence[AssessedRecord], field: str) -> list[str]:
+    """Notes or warnings of records; if there are several records, each text begins with the name of its record."""
+    texts = [(record.name, text) for record in records for text in getattr(record, field)]
+    return [text if len(records) == 1 else f"{name}: {text}" for name, text in texts]

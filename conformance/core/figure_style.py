@@ -1,0 +1,147 @@
+"""One style for all figures: SVG, letters as paths, no dates, the same bytes every time."""
+
+import io
+import os
+from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
+from functools import cache, wraps
+from importlib.resources import as_file
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import TEMPLATES
+
+INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
+SHADES = (INK, "#6b747e", "#9aa3ac", "#c3cad2")
+LIMIT_FILL = "#d5dbe1"
+LINES = ("-", "--", "-.", ":")
+LIMIT_LINE = (0, (6, 2))
+FULL, HALF = 6.9, 3.4
+"""Widths of a figure [in]: the text of an A4 page, and half of it."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+PlotStyle = dict[str, Any]
+"""Keyword arguments of a drawing function of matplotlib."""
+
+Arguments = ParamSpec("Arguments")
+Content = TypeVar("Content")
+
+
+@cache
+def _read_style() -> Any:
+    with as_file(TEMPLATES / "figure.mplstyle") as path:
+        settings = dict(matplotlib.rc_params_from_file(path, use_default_template=True))
+    # The backend is the choice of the importing program; `render_svg` names its canvas.
+    return {key: value for key, value in settings.items() if not key.startswith("backend")}
+
+
+def render_svg(paint: Callable[Arguments, Figure]) -> Callable[Arguments, str]:
+    """Turn a function that paints a figure into a function that returns its SVG text in the common style."""
+
+    @wraps(paint)
+    def render(*args: Arguments.args, **kwargs: Arguments.kwargs) -> str:
+        """Paint the figure in the common style; return its SVG text."""
+        read_source_date()  # refuse a wrong date: matplotlib reads it as well and fails without a message
+        with matplotlib.rc_context(_read_style()):
+            buffer = io.StringIO()
+            # No metadata: they would hold the date and the version of matplotlib.
+            metadata = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+            canvas: Any = FigureCanvasSVG(paint(*args, **kwargs))
+            canvas.print_svg(buffer, metadata=metadata)
+        text = buffer.getvalue()
+        return text[text.index("<svg") :]
+
+    return render
+
+
+def render_pdf_pages(paint: Callable[[Content], Figure], contents: Iterable[Content]) -> bytes:
+    """Render figures in the common style as the pages of a PDF; equal figures give equal bytes.
+
+    Args:
+        paint: Function that paints one page.
+        contents: Argument of the function for each page.
+    """
+    # Imported here: it takes 0.3 s, which a certificate does not need.
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf, PdfPages
+
+    buffer = io.BytesIO()
+    with (
+        matplotlib.rc_context(_read_style()),
+        PdfPages(buffer, metadata=dict.fromkeys(("Creator", "Producer", "CreationDate"))) as pages,
+    ):
+        for content in contents:
+            FigureCanvasPdf(figure := paint(content))
+            pages.savefig(figure)
+    return buffer.getvalue()
+
+
+def add_legend(axes: Axes, columns: int = 5) -> None:
+    """A legend above the axes, where it cannot cover the data."""
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=columns, borderaxespad=0.2, columnspacing=1.4)
+
+
+def use_decades(axes: Axes) -> None:
+    """A logarithmic vertical axis with one tick per decade: ticks between decades take most of the time of a figure."""
+    axes.set_yscale("log")
+    label_decades(axes.yaxis)
+    axes.minorticks_off()
+
+
+def label_decades(axis: Axis) -> None:
+    """Label the decades of a logarithmic axis with plain letters: the style reads no text as a formula."""
+    axis.set_major_formatter(lambda value, _: format_decade(value))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def format_decade(value: float) -> str:
+    """A power of ten as text, such as `10⁻³`; 0 for zero."""
+    return "0" if value == 0 else "10" + f"{round(np.log10(value)):d}".translate(SUPERSCRIPTS)
+
+
+def add_box(axes: Axes, values: RealArray, place: float) -> None:
+    """Quartiles and median of some values as a box at one place of the x axis, whose ticks are kept."""
+    axes.boxplot(
+        values,
+        positions=[place],
+        widths=0.5,
+        showfliers=False,
+        boxprops={"color": INK},
+        medianprops={"color": INK, "linewidth": 1.6},
+        whiskerprops={"color": GREY},
+        capprops={"color": GREY},
+        manage_ticks=False,
+    )
+
+
+# Date of a document from the environment, so that the same results give the same bytes.
+LATEST = 253402300799
+"""End of the year 9999 [s since 1970], the last date that can be written."""
+
+
+def read_source_date() -> int | None:
+    """`SOURCE_DATE_EPOCH` [s since 1970]; None if the environment does not set it.
+
+    Raises:
+        InputError: `SOURCE_DATE_EPOCH` is not a number of seconds.
+    """
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    if epoch is None:
+        return None
+    if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
+        raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
+    return int(epoch)
+
+
+def format_date(seconds: int) -> str:
+    """Date of a document [s since 1970] in words; empty if it is not known."""
+    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""

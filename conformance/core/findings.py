@@ -1,0 +1,80 @@
+"""Finding of a publication, graded by a limit."""
+
+from collections import Counter
+from collections.abc import Iterable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pantocheck.conformance.core.results_part import ResultsPart
+from pantocheck.conformance.core.sourced_table import InputTable
+from pantocheck.conformance.core.verdicts import Verdict
+
+Role = Literal["imposed", "held_out"]
+"""`imposed`: the inputs of the case were chosen with the finding; `held_out`: they were chosen without it."""
+
+
+class PublishedFinding(InputTable):
+    """Finding of a publication: its sentence, its role, and the choices behind the bounds of its limit."""
+
+    section: Annotated[str, Field(max_length=40)]
+    """Section, table or figure of the publication."""
+    sentence: Annotated[str, Field(max_length=500)]
+    """Statement of the publication in one sentence."""
+    role: Role
+    """imposed: the search for the inputs used the finding; held_out: it did not."""
+    printed: Annotated[str, Field(max_length=100)] = "none"
+    """Number in the publication; none: it states no number."""
+    tolerance: Annotated[str, Field(max_length=500)]
+    """Origin of the bounds and of their tolerance."""
+    sensitivity: Annotated[str, Field(max_length=1000)] = ""
+    """Reason, with numbers, why the case does not reproduce the finding."""
+
+
+# Findings of publications in results.json: their outcomes and the numbers of each outcome.
+FindingOutcome = Literal["imposed", "reproduced", "not_reproduced", "not_evaluated"]
+
+IMPOSED_REASON = "imposed: the inputs were chosen to meet this finding, so meeting it does not count"
+
+
+class GradedFinding(PublishedFinding):
+    """Finding of a publication, and its outcome in this run."""
+
+    outcome: FindingOutcome
+    """reproduced: held out and inside its limits; imposed: imposed and inside; not_reproduced: outside;
+    not_evaluated: no value.
+    """
+
+
+class FindingCounts(ResultsPart):
+    """Numbers of findings by outcome."""
+
+    imposed: int = 0
+    reproduced: int = 0
+    not_reproduced: int = 0
+    not_evaluated: int = 0
+
+
+def judge_finding(role: Role, verdict: Verdict) -> FindingOutcome:
+    """FindingOutcome of a finding from the verdict of its value between the limits, whether or not the limits count."""
+    if verdict == "fail":
+        return "not_reproduced"
+    if verdict != "pass":
+        return "not_evaluated"
+    return "imposed" if role == "imposed" else "reproduced"
+
+
+def grade_finding(finding: PublishedFinding, verdict: Verdict) -> GradedFinding:
+    """Finding with its outcome; parameters as in `judge_finding`."""
+    return GradedFinding(**finding.model_dump(), outcome=judge_finding(finding.role, verdict))
+
+
+def count_verdict(role: Role | None, verdict: Verdict) -> Verdict:
+    """Verdict that counts: an imposed finding inside its limits is information, because its inputs were chosen so."""
+    return "info" if role == "imposed" and verdict == "pass" else verdict
+
+
+def count_findings(findings: Iterable[GradedFinding | None]) -> FindingCounts | None:
+    """Numbers of findings by outcome; None without findings."""
+    counts: Counter[str] = Counter(finding.outcome for finding in findings if finding is not None)
+    return FindingCounts.model_validate(counts) if counts else None

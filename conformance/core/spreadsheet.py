@@ -1,0 +1,106 @@
+"""Tables of text cells, as spreadsheets export them: CSV with commas, semicolons or tabs, in common encodings."""
+
+import csv
+import io
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from pantocheck.conformance.core.files import read_bytes
+from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.text_settings import find_encoding
+
+MAX_SPREADSHEET_BYTES = 10_000_000
+"""Largest table that is read [bytes]: a line of 1000 spans with 30 droppers each takes 2 MB."""
+
+MOST_ROWS = 100_000
+"""Largest number of rows: 1000 spans with 100 droppers each."""
+
+DELIMITERS = (";", "\t", ",")
+"""Separators of columns; a head line with a semicolon or a tab is not separated by commas."""
+
+
+@dataclass(frozen=True)
+class SpreadsheetRow:
+    """Row of a table."""
+
+    number: int
+    """Number of its line in the file, from 1."""
+    cells: tuple[str, ...]
+    """Texts of its cells, without spaces around them."""
+
+
+@dataclass(frozen=True)
+class Spreadsheet:
+    """Table of text cells below one head line."""
+
+    where: str
+    """Name of the file in messages."""
+    delimiter: str
+    """Separator of its columns."""
+    head: SpreadsheetRow
+    """Names of the columns."""
+    rows: tuple[SpreadsheetRow, ...]
+    """Rows below the head line; empty rows are left out."""
+
+    def locate(self, row: SpreadsheetRow, column: int) -> str:
+        """Place of a cell in messages; columns count from 0."""
+        return f"{self.where}, row {row.number}, column {self.head.cells[column][:80]!r}"
+
+
+def read_spreadsheet(path: Path) -> Spreadsheet:
+    """Read a table of text cells.
+
+    The encoding is UTF-8 or UTF-16 with a byte order mark, or else UTF-8 or Windows-1252. Lines before the head line
+    that begin with `#` or `sep=` are skipped.
+
+    Args:
+        path: CSV file.
+
+    Raises:
+        InputError: The file cannot be read, is no text, has no row or too many, or has rows of another width than its
+            head line.
+    """
+    where = f"table '{path.name}'"
+    content = read_bytes(path, where, MAX_SPREADSHEET_BYTES)
+    text = content.decode(find_encoding(io.BytesIO(content), where))
+    lines = text.splitlines()
+    start = next((i for i, line in enumerate(lines) if line.strip() and not _is_preface(line)), len(lines))
+    if start == len(lines):
+        raise InputError(where, "is empty", "Write the names of the columns in the first row.")
+    delimiter = next((mark for mark in DELIMITERS if mark in lines[start]), ",")
+    reader = csv.reader(io.StringIO("\n".join(lines[start:])), delimiter=delimiter, strict=True)
+    try:
+        rows = [
+            SpreadsheetRow(start + reader.line_num, tuple(cell.strip() for cell in cells))
+            for cells in islice(reader, MOST_ROWS + 2)
+        ]
+    except csv.Error as error:
+        raise InputError(f"{where}, row {start + reader.line_num}", str(error), "Export the table again.") from None
+    if len(rows) > MOST_ROWS + 1:
+        raise InputError(where, f"has more than {MOST_ROWS} rows", "Export one line only, without empty rows.")
+    filled = [row for row in rows if any(row.cells)]
+    head, body = filled[:1], filled[1:]
+    if not body:
+        raise InputError(where, "has a head line but no rows", "Export the table again.")
+    _check_widths(where, head[0], body)
+    return Spreadsheet(where, delimiter, head[0], tuple(body))
+
+
+def _is_preface(line: str) -> bool:
+    return line.lstrip().startswith(("#", "sep="))
+
+
+def _check_widths(where: str, head: SpreadsheetRow, body: list[SpreadsheetRow]) -> None:
+    width = len(head.cells)
+    errors = [
+        InputError(
+            f"{where}, row {row.number}",
+            f"has {len(row.cells)} cells, expected {width}",
+            "If columns are separated by commas, write decimals with points.",
+        )
+        for row in body
+        if len(row.cells) != width
+    ]
+    if errors:
+        raise join_errors(errors)

@@ -1,0 +1,1 @@
+"""Verification and signatures of documents."""

@@ -1,0 +1,206 @@
+"""Private keys with their certificates, from PKCS#12 or PEM files."""
+
+import base64
+import textwrap
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Literal
+
+from pantocheck.conformance.core.files import read_bytes
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.certificates import (
+    MAX_KEY_FILE_BYTES,
+    find_usage_problem,
+    find_validity_problem,
+    parse_certificates,
+    read_certificates,
+    read_name,
+)
+
+AskPassphrase = Callable[[], bytes]
+"""Source of the passphrase; it is called only if the key is encrypted."""
+
+SMALLEST_RSA_KEY = 2048
+"""Smallest accepted RSA key [bits]: verification does not trust smaller ones (NIST SP 800-131A)."""
+
+
+@dataclass(frozen=True)
+class SigningKey:
+    """Private key with its certificate; its printed form shows neither."""
+
+    key: Any = field(repr=False)
+    """Private key of the package cryptography."""
+    certificate: Any = field(repr=False)
+    """Certificate of the key (asn1crypto)."""
+    chain: tuple[Any, ...] = field(repr=False)
+    """Certificates of authorities delivered with the key (asn1crypto)."""
+
+    @property
+    def holder(self) -> str:
+        """Name of the holder of the certificate."""
+        return read_name(self.certificate.subject)
+
+
+def read_signing_key(path: Path, certificate: Path | None, ask: AskPassphrase) -> SigningKey:
+    """Read a private key and its certificate.
+
+    Args:
+        path: PKCS#12 file with key and certificates, or PEM file with the key.
+        certificate: File of the certificate and of its authorities; None if the key file holds them.
+        ask: Source of the passphrase.
+
+    Raises:
+        InputError: A file cannot be read, the passphrase is wrong, the certificate belongs to another key, is not valid
+            now, or must not sign documents, or the key cannot be used.
+    """
+    where = f"key '{path.name}'"
+    content = read_bytes(path, where, MAX_KEY_FILE_BYTES)
+    if b"-----BEGIN " in content:
+        key, found = _load_pem(content, where, ask), parse_certificates(content, where)
+    else:
+        key, found = _load_pkcs12(content, where, ask)
+    if certificate is not None:
+        found = read_certificates(certificate, f"certificate '{certificate.name}'")
+    signing_key = _select_certificate(key, found, where)
+    _check_usable(signing_key, where)
+    return signing_key
+
+
+def _load_pem(content: bytes, where: str, ask: AskPassphrase) -> Any:
+    from cryptography.exceptions import UnsupportedAlgorithm
+    from cryptography.hazmat.primitives.serialization import load_pem_private_key
+
+    try:
+        try:
+            return load_pem_private_key(content, None)
+        except TypeError:  # the key is encrypted
+            return load_pem_private_key(content, ask())
+    except (ValueError, UnsupportedAlgorithm) as error:
+        if isinstance(error, InputError):
+            raise
+        raise _build_load_error(where, "no private key in PEM format, or one that is damaged") from None
+
+
+def _load_pkcs12(content: bytes, where: str, ask: AskPassphrase) -> tuple[Any, list[Any]]:
+    from asn1crypto import pkcs12 as structure
+    from asn1crypto import x509
+    from cryptography.exceptions import UnsupportedAlgorithm
+    from cryptography.hazmat.primitives.serialization import Encoding, pkcs12
+
+    try:
+        _ = structure.Pfx.load(content, strict=True)["version"].native
+    except (ValueError, TypeError):
+        raise InputError(
+            where, "neither PKCS#12 nor PEM", "Give a .p12 or .pfx file, or a PEM file and --certificate."
+        ) from None
+    try:
+        with warnings.catch_warnings(action="ignore"):  # some programs write BER in place of DER
+            try:
+                key, own, others = pkcs12.load_key_and_certificates(content, None)
+            except ValueError:  # the file is encrypted
+                key, own, others = pkcs12.load_key_and_certificates(content, ask())
+    except (ValueError, UnsupportedAlgorithm) as error:
+        if isinstance(error, InputError):
+            raise
+        raise _build_load_error(where, "a damaged file, or an encryption that is not supported") from None
+    if key is None:
+        raise InputError(where, "holds no private key", "Export the key together with its certificate.")
+    certificates = [certificate for certificate in (own, *others) if certificate is not None]
+    return key, [x509.Certificate.load(certificate.public_bytes(Encoding.DER)) for certificate in certificates]
+
+
+def _build_load_error(where: str, otherwise: str) -> InputError:
+    return InputError(where, f"a wrong passphrase, or {otherwise}", "Check the passphrase and the file.")
+
+
+def _select_certificate(key: Any, certificates: list[Any], where: str) -> SigningKey:
+    """The certificate with the public key of a private key; the others are its chain."""
+    from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
+
+    public = key.public_key().public_bytes(Encoding.DER, PublicFormat.SubjectPublicKeyInfo)
+    own = [certificate for certificate in certificates if certificate.public_key.dump() == public]
+    if not own:
+        found = "no certificate found" if not certificates else "the signing certificate belongs to another key"
+        raise InputError(where, found, "Give the certificate of this key with --certificate.")
+    return SigningKey(key, own[0], tuple(other for other in certificates if other is not own[0]))
+
+
+def _check_usable(key: SigningKey, where: str) -> None:
+    """Refuse a key whose signature would not be trusted at the moment of signing."""
+    public = key.certificate.public_key
+    if public.algorithm not in ("rsa", "ec", "ed25519", "ed448"):
+        raise InputError(where, f"a key of the kind '{public.algorithm}'", "Use an RSA, EC or Ed25519 key.")
+    if public.algorithm == "rsa" and public.bit_size < SMALLEST_RSA_KEY:
+        raise InputError(where, f"an RSA key of {public.bit_size} bits", f"Use at least {SMALLEST_RSA_KEY} bits.")
+    problem = find_validity_problem(key.certificate, datetime.now(UTC)) or find_usage_problem(key.certificate)
+    if problem:
+        found = f"the signing certificate of '{key.holder}' {problem}"
+        raise InputError(where, found, "Request a certificate for signatures from its authority.")
+
+
+# Signature files beside a document: CMS in DER or PEM.
+Encoding = Literal["der", "pem"]
+"""Form of a signature file: binary, or text."""
+
+MAX_SIGNATURE_BYTES = 2**22
+"""Largest signature file that is read [bytes]; one signature with time stamp and chain has about twenty thousand."""
+
+MOST_SIGNATURES = 50
+"""Largest number of signatures of a document that are checked."""
+
+
+def find_signature_file(path: Path) -> Path:
+    """Place of the detached signature of a file, beside it: `results.json.p7s`."""
+    return path.with_name(path.name + ".p7s")
+
+
+def parse_signatures(content: bytes, where: str) -> list[Any]:
+    """Signatures of a signature file, each as signed data with one signer.
+
+    Args:
+        content: Content of the file in DER or PEM.
+        where: Name of the file in messages.
+
+    Returns:
+        At least one (asn1crypto.cms.SignedData).
+
+    Raises:
+        InputError: The file is not a detached CMS signature, is damaged, or has too many signatures.
+    """
+    from asn1crypto import cms, pem
+
+    hint = "Give a detached CMS signature, as 'pantocheck sign' writes it."
+    try:
+        if pem.detect(content):
+            content = pem.unarmor(content)[2]
+        message = cms.ContentInfo.load(content, strict=True)
+        if message["content_type"].native != "signed_data":
+            raise InputError(where, f"a message of the kind '{message['content_type'].native}'", hint)
+        joined = message["content"]
+        _ = joined.native  # reads every field, so that a damaged one is reported here
+    except InputError:
+        raise
+    except (ValueError, TypeError, KeyError, AttributeError):
+        raise InputError(where, "no CMS signature, or a damaged one", hint) from None
+    if joined["encap_content_info"]["content"].native is not None:
+        raise InputError(where, "a signature that contains its content", hint)
+    number = len(joined["signer_infos"])
+    if not 1 <= number <= MOST_SIGNATURES:
+        raise InputError(where, f"{number} signatures", f"At least 1 and at most {MOST_SIGNATURES} are accepted.")
+    return [_separate(joined, info) for info in joined["signer_infos"]]
+
+
+def encode_pem(content: bytes) -> bytes:
+    """PEM text of a signature in DER (RFC 7468, label CMS)."""
+    lines = textwrap.wrap(base64.b64encode(content).decode("ascii"), 64)
+    return "\n".join(["-----BEGIN CMS-----", *lines, "-----END CMS-----", ""]).encode("ascii")
+
+
+def _separate(joined: Any, signer_info: Any) -> Any:
+    """The signed data of one signer, with all certificates."""
+    part = joined.untag()
+    part["signer_infos"] = [signer_info]
+    return part

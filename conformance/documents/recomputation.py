@@ -1,0 +1,287 @@
+"""Recomputation of results from their own numbers: a value that does not follow from its inputs is a discrepancy."""
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+
+from pantocheck.conformance.core.criterion import COMPONENT_NAMES, CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.core.findings import count_findings, count_verdict, judge_finding
+from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.results_part import Number, select_item
+from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.verdicts import Verdict, judge, margin
+from pantocheck.conformance.documents.number_comparison import EXACT, format_exact, same_number, select_first
+from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
+from pantocheck.conformance.grading.baseline import bound_drift
+from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
+from pantocheck.conformance.grading.start_agreement import list_verification_components
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
+from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents
+from pantocheck.conformance.results.scope import build_scope
+from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor
+
+
+def find_discrepancies(results: Results) -> list[str]:
+    """Find contradictions between the numbers and verdicts of results.
+
+    Args:
+        results: Results of a document.
+
+    Returns:
+        One line per contradiction.
+    """
+    discrepancies = [text for case in results.cases for text in _check_case(case, results.trust)]
+    decided = read_participation(results).decide_run(results)
+    pairs: list[tuple[str, Verdict | None, Verdict | None]] = [
+        (f"{case.id}: ", case.verdict, other.verdict) for case, other in zip(results.cases, decided.cases, strict=True)
+    ]
+    pairs.append(("", results.verdict, decided.verdict))
+    pairs.append(("verification: ", results.verification_verdict, decided.verification_verdict))
+    pairs.append(("baseline: ", results.baseline_verdict, decided.baseline_verdict))
+    pairs.append(("EN 50318 criteria: ", results.criteria_verdict, decided.criteria_verdict))
+    findings = count_findings(row.finding for case in results.cases for row in case.criteria)
+    if results.statement != STATEMENT:
+        discrepancies.append(f"the report is called '{results.statement}', expected '{STATEMENT}'")
+    if results.scope and results.scope != build_scope(results.cases):
+        discrepancies.append("the scope does not follow from the cases")
+    return [
+        *discrepancies,
+        *(() if results.findings == findings else ("the numbers of findings do not follow from the criteria",)),
+        *check_procedure(
+            results.procedure, decided.procedure, results.cases, lambda row: _check_grade(row, results.trust)
+        ),
+        *(f"{where}verdict '{old}' stated, '{new}' follows from the cases" for where, old, new in pairs if old != new),
+    ]
+
+
+def _check_case(case: CaseResult, trust: Trust | Computed) -> Iterator[str]:
+    stated, verification = case.criteria_verdict or case.verdict, case.verification
+    yield from (f"{case.id}, {text}" for text in check_combination(case))
+    record = case.record
+    graded = list_graded(case)
+    ungraded = not graded and case.reason and stated in ("skip", "error")
+    yield from _check_criteria(case, case.criteria, trust)
+    yield from (f"{case.id}: {text}" for text in check_baseline(case))
+    verdict = judge_case((row.verdict for row in graded), record)
+    if stated != verdict and not ungraded:
+        yield f"{case.id}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
+    if verification is not None:
+        yield from _check_verification(case, verification, record)
+    yield from (f"{case.id}: {text}" for text in (*check_uplift(case), *_check_line(case)))
+    for key, reported in case.quantities.items():
+        quantities = select_first(reported)
+        trace = case.traces.get(key)
+        # Statistics delivered as numbers are rounded, and printed tables are not always consistent.
+        computed = trace is not None or case.run.rate_Hz is not None
+        statistics = (*_check_order(quantities), *(_check_statistics(quantities) if computed else ()))
+        for text in (*statistics, *(check_trace(quantities, trace) if trace else ())):
+            yield f"{case.id}, pantograph {key}: {text}"
+
+
+def _check_criteria(case: CaseResult, criteria: Sequence[Criterion], trust: Trust | Computed) -> Iterator[str]:
+    start = None if case.record is None else case.record.start
+    names = list_verification_components(start) if trust == "computed" else COMPONENT_NAMES
+    for row in criteria:
+        where = f"{case.id}, {row.quantity} of pantograph {row.pantograph}"
+        components = check_components(row, case.uncertainty_components, names)
+        for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust)):
+            yield f"{where}: {text}"
+
+
+def _check_verification(case: CaseResult, verification: CaseVerification, record: RecordFacts | None) -> Iterator[str]:
+    """Verification: its verdict must follow from its criteria; without criteria it must not pass."""
+    for text in _check_criteria(case, verification.criteria, "computed"):
+        yield f"verification: {text}"
+    verdict, stated = judge_case((row.verdict for row in verification.criteria), record), verification.verdict
+    if stated != verdict and (verification.criteria or stated not in ("info", "skip", "error")):
+        yield f"{case.id}: verification '{stated}' stated, '{verdict}' follows from its criteria and the record"
+
+
+def _check_value(row: Criterion, quantities: Mapping[str, Mapping[str, Number]]) -> Iterator[str]:
+    """The graded value must be the reported quantity."""
+    reported = select_item(quantities.get(str(row.pantograph), {}).get(row.quantity), row.item)
+    if row.value != reported:
+        yield f"value {format_exact(row.value)} graded, {format_exact(reported)} reported among the quantities"
+
+
+def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
+    """Verdict, margin and remarks on a close limit must follow from value, limits, errors and trust."""
+    quantity = QUANTITIES.get(row.quantity)
+    if quantity is not None and row.unit != quantity.unit:
+        yield f"unit '{row.unit}' stated, '{quantity.unit}' is the unit of this quantity"
+    value, lower, upper = row.value, row.lower, row.upper
+    if lower is None and upper is None:
+        # Only a rule without a bound for this record, which is skipped, may lack a limit.
+        if row.verdict != ("skip" if limit_counts(row.trust, trust) else "info"):
+            yield "no limit"
+        return
+    if lower is not None and upper is not None and lower > upper:
+        yield f"lower limit {format_exact(lower)} above upper limit {format_exact(upper)}"
+        return
+    judged = "skip" if value is None else judge(value, lower, upper)
+    finding = row.finding
+    if finding is not None and finding.outcome != judge_finding(finding.role, judged):
+        yield f"finding '{finding.outcome}' stated, '{judge_finding(finding.role, judged)}' follows"
+    role = None if finding is None else finding.role
+    verdict = count_verdict(role, judged) if limit_counts(row.trust, trust) else "info"
+    if row.verdict != verdict:
+        yield f"verdict '{row.verdict}' stated, '{verdict}' follows from value, limits and trust"
+    expected = None if value is None else margin(value, lower, upper)
+    if not same_number(row.margin, expected, EXACT):
+        yield f"margin {format_exact(row.margin)} stated, {format_exact(expected)} follows from value and limits"
+    errors = ValueErrors(row.discretisation_error, row.spread, row.components, row.limit_uncertainty)
+    if row.components and not same_number(row.uncertainty, errors.uncertainty, EXACT):
+        printed, combined = format_exact(row.uncertainty), format_exact(errors.uncertainty)
+        yield f"uncertainty {printed} stated, {combined} follows from its components"
+    remarks = near_limit_remarks(value, (lower, upper), row.unit, errors)
+    if row.close != remarks:
+        stated, follow = len(row.close), len(remarks)
+        texts = " with other texts" if stated == follow else ""
+        yield f"{stated} remarks on a close limit stated, {follow}{texts} follow from value, limits and errors"
+
+
+def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:
+    """Quantities must follow from the quantities they are functions of."""
+    mean, std, std_50 = (quantities.get(name) for name in ("mean_force_N", "std_force_N", "std_force_50_N"))
+    expected: dict[str, float] = {}
+    if mean is not None and std is not None:
+        expected["statistical_min_N"], expected["statistical_max_N"] = statistical_extremes(mean, std)
+    if mean is not None and mean > 0:
+        ratios = {"cov_20": std, "cov_50": std_50}
+        expected |= {k: coefficient_of_variation(mean, v) for k, v in ratios.items() if v is not None}
+    for name, value in expected.items():
+        if name in quantities and not same_number(quantities[name], value, EXACT):
+            stated = format_exact(quantities[name])
+            yield f"{name} {stated} stated, {format_exact(value)} follows from mean and standard deviation"
+
+
+def _check_line(case: CaseResult) -> Iterator[str]:
+    """Quantities of the line must follow from the wave speed and from the elasticities that they are functions of."""
+    line, speed = select_first(case.quantities.get("0", {})), (case.run.speed_km_h or 0) / 3.6
+    expected: dict[str, float] = {}
+    if wave := line.get("wave_speed_m_s"):
+        expected["speed_over_wave_speed"] = speed / wave
+        expected["doppler_factor"] = doppler_factor(speed, wave)
+    if "reflection_coefficient" in line and line.get("doppler_factor"):
+        expected["amplification_coefficient"] = amplification_coefficient(
+            line["reflection_coefficient"], line["doppler_factor"]
+        )
+    for name, value in expected.items():
+        if name in line and not same_number(line[name], value, EXACT):
+            yield f"{name} {format_exact(line[name])} stated, {format_exact(value)} follows from the wave speed"
+
+
+def _check_order(quantities: Mapping[str, float]) -> Iterator[str]:
+    """The minimum must not exceed the maximum."""
+    low, high = quantities.get("min_force_N"), quantities.get("max_force_N")
+    if low is not None and high is not None and low > high:
+        yield f"min_force_N {format_exact(low)} above max_force_N {format_exact(high)}"
+
+
+# Check of the stated uncertainties: they must follow from their components.
+def check_components(
+    row: Criterion, components: UncertaintyComponents, names: Collection[ComponentName]
+) -> Iterator[str]:
+    """The components of a criterion must be those of its quantity; a drift and a missing limit have none.
+
+    Args:
+        row: Criterion.
+        components: Components of all quantities of the case.
+        names: Components that count for the criterion.
+
+    Yields:
+        One line if they differ.
+    """
+    if row.is_drift or (row.lower is None and row.upper is None):
+        return
+    reported = components.get(str(row.pantograph), {}).get(row.quantity, {})
+    listed = {name: select_item(width, row.item) for name, width in reported.items() if name in names}
+    if row.value is not None and row.components != listed:
+        yield "components of the uncertainty differ from those reported with the quantities"
+
+
+def check_combination(case: CaseResult) -> Iterator[str]:
+    """Every combined uncertainty must be the root of the sum of the squares of its components."""
+    for key, quantities in case.uncertainty_components.items():
+        for name, parts in quantities.items():
+            columns = [width if isinstance(width, list) else [width] for width in parts.values()]
+            expected = [math.hypot(*items) for items in zip(*columns, strict=False)]
+            stated = case.uncertainty.get(key, {}).get(name)
+            numbers = stated if isinstance(stated, list) else [stated]
+            if len(numbers) != len(expected) or not all(map(same_number, numbers, expected)):
+                yield f"pantograph {key}: uncertainty of {name} does not follow from its components"
+
+
+# Check of a comparison with a baseline: bounds, numbers and verdict must follow from the criteria of drift.
+def list_graded(case: CaseResult) -> list[Criterion]:
+    """Criteria that `criteria_verdict` counts: all but those of drift."""
+    return [row for row in case.criteria if not row.is_drift]
+
+
+def check_baseline(case: CaseResult) -> Iterator[str]:
+    """Find contradictions between a comparison with a baseline and the criteria of drift.
+
+    Yields:
+        One line per contradiction.
+    """
+    comparison = case.baseline
+    rows = [row for row in case.criteria if row.is_drift]
+    if comparison is None:
+        yield from (f"{row.quantity}: drift without a comparison with a baseline" for row in rows)
+        return
+    for row in rows:
+        if row.verdict not in ("fail", "skip"):
+            yield f"{row.quantity}: verdict '{row.verdict}' among the values that drifted"
+        if row.baseline is not None:
+            yield from _check_bounds(row, row.baseline, comparison.drift_pct)
+    verdict = judge_baseline((row.verdict for row in rows), comparison.values)
+    if comparison.verdict != verdict:
+        yield f"baseline '{comparison.verdict}' stated, '{verdict}' follows from the criteria of drift"
+    drifted = sum(row.baseline is not None for row in rows)
+    if comparison.drifted != drifted or drifted > comparison.values:
+        yield f"{comparison.drifted} of {comparison.values} values drifted are stated, {drifted} are listed"
+
+
+def _check_bounds(row: Criterion, baseline: float, drift_pct: float) -> Iterator[str]:
+    if (row.lower, row.upper) != bound_drift(row.quantity, baseline, drift_pct):
+        yield f"{row.quantity}: the bounds do not follow from the baseline and the accepted drift"
+
+
+# Check of a procedure: verdicts of its steps and claims must follow from criteria, cases and evidence.
+def check_procedure(
+    stated: Procedure | None,
+    decided: Procedure | None,
+    cases: list[CaseResult],
+    check_grade: Callable[[Criterion], Iterator[str]],
+) -> Iterator[str]:
+    """Find contradictions in the procedure of a dossier.
+
+    Args:
+        stated, decided: Procedure of the results, and the same with the verdicts that follow.
+        cases: Cases of the results.
+        check_grade: Check of the verdict and margin of one criterion.
+
+    Yields:
+        One line per contradiction.
+    """
+    if stated is None or decided is None:
+        return
+    if tuple(step.step for step in stated.steps) != STEP_NAMES:
+        yield "procedure: its steps are not complete, or not in their order"
+    named = [name for step in stated.steps for name in step.cases]
+    for case in cases:
+        if named.count(case.id) != 1:
+            yield f"procedure: {case.id} belongs to {named.count(case.id)} steps"
+    for step in stated.steps:
+        for row in step.criteria:
+            yield from (f"step {step.step}, {row.quantity}: {text}" for text in check_grade(row))
+    for name, old, new in zip(STEP_NAMES, stated.steps, decided.steps, strict=False):
+        if old != new:
+            yield f"step {name}: verdict '{old.verdict}', margin or uncertainty do not follow: '{new.verdict}'"
+    for old_claim, new_claim in zip(stated.claims, decided.claims, strict=True):
+        if old_claim != new_claim:
+            yield f"claim on {old_claim.kind}: '{old_claim.verdict}' stated, '{new_claim.verdict}' follows"
+    if stated.evidence != decided.evidence:
+        yield "procedure: the passed runs are not those whose cases pass"

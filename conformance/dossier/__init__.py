@@ -1,0 +1,1 @@
+"""Dossier and steps of the EN 50318 procedure."""

@@ -1,0 +1,126 @@
+"""Result of one step of the procedure, before its verdict is decided."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from pydantic import BaseModel
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.dossier.dossier_reading import Dossier
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
+from pantocheck.conformance.results.procedure_format import (
+    DeclaredParameter,
+    Evidence,
+    ProcedureStep,
+    StepName,
+    StepState,
+    ValidityClaim,
+)
+from pantocheck.conformance.results.results_format import CaseResult
+
+
+@dataclass(frozen=True)
+class StepResult:
+    """Result of a step: its criteria, cases and the data of its figures."""
+
+    step: StepName
+    """Step of the procedure."""
+    state: StepState = "done"
+    """Whether the step was done."""
+    reason: str | None = None
+    """Reason why it was not done, or could not be completed."""
+    unverified: str | None = None
+    """Reason why a pass counts as unverified."""
+    cases: tuple[CaseResult, ...] = ()
+    """Results of the cases and pairs of the step."""
+    criteria: tuple[Criterion, ...] = ()
+    """Criteria that belong to no case."""
+    responses: tuple[ResponseComparison, ...] = ()
+    """Frequency responses of the pantographs."""
+    statics: tuple[StaticComparison, ...] = ()
+    """Lines at rest."""
+    parameters: tuple[DeclaredParameter, ...] = ()
+    """Declared simulation parameters."""
+    evidence: tuple[Evidence, ...] = ()
+    """Conditions of the runs of the step."""
+    claims: tuple[ValidityClaim, ...] = ()
+    """Claims on the range of validity."""
+    notes: tuple[str, ...] = ()
+    """Remarks for the reader of the report."""
+
+    def describe(self, required: bool) -> ProcedureStep:
+        """The step in the format of results.json, without its verdict."""
+        return ProcedureStep(
+            step=self.step,
+            required=required,
+            state=self.state,
+            unverified=self.unverified,
+            reason=self.reason,
+            cases=[case.id for case in self.cases],
+            criteria=list(self.criteria),
+            notes=list(self.notes),
+        )
+
+
+class StepInterrupted(Exception):
+    """The user stopped a step; its finished part is kept.
+
+    Args:
+        result: Result with the finished cases.
+        exit_code: 128 and the number of the signal.
+    """
+
+    def __init__(self, result: StepResult, exit_code: int) -> None:
+        super().__init__("interrupted")
+        self.result, self.exit_code = result, exit_code
+
+
+# Conditions of a run that a claim on the range of validity refers to: line, pantographs, speed, spacing, inputs.
+def describe_conditions(name: str, case: Case, dossier: Dossier) -> Evidence | None:
+    """Conditions of the run of a case; None for a case without a train.
+
+    Args:
+        name: Id of the result.
+        case: The case.
+        dossier: Dossier with the names of lines and pantographs, and the inputs whose change is claimed.
+    """
+    if case.is_static or case.file.mass_drop is not None or case.file.speed_km_h is None:
+        return None
+    return Evidence(
+        id=name,
+        line=dossier.name_line(case.line),
+        pantographs=[dossier.name_pantograph(part) for part in case.pantographs],
+        speed_km_h=case.file.speed_km_h,
+        spacing_m=list(case.file.spacing_m or ()),
+        inputs=list_inputs(dossier, case.line, case.pantographs),
+    )
+
+
+def list_inputs(dossier: Dossier, line: LineFile, pantographs: Sequence[PantographFile]) -> dict[str, float]:
+    """Inputs whose change the dossier claims, by key as for `--set`; an input that is no number is left out."""
+    found = {claim.key: _find_input(claim.key, line, pantographs) for claim in dossier.file.validity.change}
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _find_input(key: str, line: LineFile, pantographs: Sequence[PantographFile]) -> float | None:
+    part, *names = key.split(".")
+    if part == "line":
+        return _follow(line, names)
+    values = {_follow(pantograph, names) for pantograph in pantographs} if part == "pantograph" else set()
+    return values.pop() if len(values) == 1 else None
+
+
+def _follow(table: BaseModel, names: Iterable[str]) -> float | None:
+    """Number at a path of keys in a table; items of a list count from 1. None if there is no number."""
+    content: object = table
+    for name in names:
+        if isinstance(content, BaseModel):
+            content = getattr(content, name, None)
+        elif isinstance(content, tuple) and name.isdigit() and 1 <= int(name) <= len(content):
+            content = content[int(name) - 1]
+        else:
+            return None
+    return float(content) if isinstance(content, int | float) and not isinstance(content, bool) else None

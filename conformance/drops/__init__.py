@@ -1,0 +1,1 @@
+"""Mass drops: records, identification, damping and simulation."""

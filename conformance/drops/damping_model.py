@@ -1,0 +1,183 @@
+"""Fit of piecewise Rayleigh damping to measured damping ratios.
+
+The damping ratios are linear functions of the coefficients (see `damping_terms`), and no coefficient is negative.
+The damping of all components but the wires is that of the line; its share of the measured ratios is subtracted.
+The fit is a non-negative least-squares problem.
+
+References:
+    [1] O. Vo Van, E. Balmes, X. Lorang, Damping characterization of a high speed train catenary, IAVSD 2015.
+        hdl:10985/10918
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.damping_terms import JOINED_WIRES, WIRES, DampingBasis, Term
+from pantocheck.conformance.results.damping_format import Coefficient
+from pantocheck.model.description.catenary import ModalBand
+from pantocheck.model.description.one_thread import use_one_thread
+
+MODEL_ERROR = 0.01
+"""Relative error of a computed damping ratio that is due to the line model [-]."""
+
+FIT_REPLICATES = 400
+"""Replicates of the confidence intervals."""
+
+MODAL_GROUPS = 2
+"""Groups of span modes with a band of modal damping, as in Vo Van, Balmes and Lorang (2015), section 3."""
+
+
+@dataclass(frozen=True)
+class MeasuredModes:
+    """The m measured modes with a computed counterpart."""
+
+    frequency: RealArray
+    """Frequency, (m,) [Hz]."""
+    damping_ratio: RealArray
+    std: RealArray
+    """Damping ratio and its standard deviation, (m,) [-]."""
+    group: IntegerArray
+    """Number of the group of span modes, (m,); 0: none."""
+
+    def select(self, modes: IntegerArray) -> "MeasuredModes":
+        """Selected modes, by index."""
+        return MeasuredModes(self.frequency[modes], self.damping_ratio[modes], self.std[modes], self.group[modes])
+
+
+@dataclass(frozen=True)
+class DampingFit:
+    """Fitted piecewise Rayleigh damping."""
+
+    coefficients: tuple[Coefficient, ...]
+    """Fitted coefficients."""
+    predicted: RealArray
+    """Damping ratios of the fit at the measured modes, (m,) [-]."""
+    used: NDArray[np.bool_]
+    """Mask of the modes in the fit, (m,); outliers of their group are left out."""
+    residual: float
+    """Root mean square of (measured - predicted) / measured over the modes in the fit [-]."""
+
+    @property
+    def values(self) -> dict[Term, float]:
+        """Fitted coefficients by term."""
+        return {(c.kind, c.matrix): c.value for c in self.coefficients}
+
+
+@use_one_thread
+def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFit:
+    """Fit the coefficients of the wires by non-negative least squares.
+
+    All groups of span modes have the same weight, whatever their number of modes. Within a group, the weight of a mode
+    follows from its uncertainty and that of the line model. Modes with a residual far from the median of their group
+    are left out.
+
+    Args:
+        basis: Damping ratios of the computed counterparts of the measured modes per unit of each coefficient.
+        measured: The measured modes.
+
+    Raises:
+        InputError: There are not more modes than coefficients.
+    """
+    terms = [term for term in basis.terms if term[0] in (*WIRES, JOINED_WIRES)]
+    if measured.frequency.size <= len(terms):
+        raise InputError(
+            "modes",
+            f"only {measured.frequency.size} modes for a fit of {len(terms)} coefficients",
+            f"Identify at least {len(terms) + 1} modes whose half-power bands overlap no other mode, or name the "
+            "line of the record with --line.",
+        )
+    columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
+    target, std = measured.damping_ratio - basis.stated, fit_deviation(measured)
+    used = np.ones(target.size, dtype=np.bool_)
+    for _ in range(3):
+        values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+        used = _near_their_group(target - columns @ values, std, measured.group)
+    # The last fit uses the final set of modes.
+    values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+    predicted = basis.stated + columns @ values
+    low_95, high_95 = _confidence_intervals(columns, target, measured, used)
+    relative = (measured.damping_ratio - predicted) / measured.damping_ratio
+    coefficients = tuple(
+        Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(lower), high_95=float(upper))
+        for (kind, matrix), value, lower, upper in zip(terms, values, low_95, high_95, strict=True)
+    )
+    return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
+
+
+def fit_deviation(measured: MeasuredModes) -> RealArray:
+    """Standard deviation of measured minus computed damping ratios, (m,), due to measurement and line model [-]."""
+    return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
+
+
+def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
+    """Square roots of the weights of the modes, (m,): 1 / (std sqrt(n)) with n used modes in the group.
+
+    Modes that are not used have the weight 0.
+    """
+    count = np.array([max(int(np.sum(used & (group == number))), 1) for number in group])
+    return np.where(used, 1 / (std * np.sqrt(count)), 0.0)
+
+
+def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> RealArray:
+    """Non-negative least-squares coefficients, (t,), of columns (m, t); `weight` is the square root of the weights."""
+    scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
+    solution, _ = scipy.optimize.nnls(columns * weight[:, None] / scale, target * weight)
+    return np.asarray(solution / scale)
+
+
+def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
+    near = np.ones(residual.size, dtype=np.bool_)
+    for number in np.unique(group):
+        members = np.flatnonzero(group == number)
+        distance = residual[members] - np.median(residual[members])
+        spread = 1.4826 * np.median(np.abs(distance))
+        near[members] = np.abs(distance) <= 4 * np.hypot(std[members], spread)
+    return near
+
+
+def _confidence_intervals(
+    columns: RealArray, target: RealArray, measured: MeasuredModes, used: NDArray[np.bool_]
+) -> tuple[RealArray, RealArray]:
+    """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
+    random = np.random.default_rng(20150817)
+    std, noise, group = fit_deviation(measured), measured.std, measured.group
+    group_members = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
+    group_members = [members for members in group_members if members.size]
+    replicates = np.empty((FIT_REPLICATES, columns.shape[1]))
+    for r in range(FIT_REPLICATES):
+        rows = np.concatenate([random.choice(members, members.size) for members in group_members])
+        noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
+        all_used = np.ones(rows.size, dtype=np.bool_)
+        replicates[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], all_used))
+    return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
+
+
+def fit_modal_bands(measured: MeasuredModes, groups: int = MODAL_GROUPS) -> tuple[ModalBand, ...]:
+    """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group.
+
+    Args:
+        measured: The measured modes.
+        groups: Number of groups with a band, from the first; a group without modes has none.
+
+    Returns:
+        Bands in ascending order.
+    """
+    present = [number for number in range(1, groups + 2) if np.any(measured.group == number)]
+    edges = {
+        n: (measured.frequency[measured.group == n].min(), measured.frequency[measured.group == n].max())
+        for n in present
+    }
+    bands = []
+    for number in (n for n in present if n <= groups):
+        low, high = edges[number]
+        width = max(high - low, 0.05 * low)
+        below = (edges[number - 1][1] + low) / 2 if number - 1 in edges else low - width / 2
+        above = (high + edges[number + 1][0]) / 2 if number + 1 in edges else high + width / 2
+        median = float(np.median(measured.damping_ratio[measured.group == number]))
+        bands.append(ModalBand(float(below), float(above), median))
+    return tuple(bands)

@@ -1,0 +1,214 @@
+"""Damping model of a line from its identified modes: the content of damping.json."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.drops.damping_model import MODAL_GROUPS, fit_damping_model, fit_modal_bands
+from pantocheck.conformance.drops.damping_terms import DampingBasis, build_damping_basis, list_other_damping
+from pantocheck.conformance.drops.line_comparison import compare_line, warn_about_line
+from pantocheck.conformance.drops.mode_matching import MatchedModes, match_modes, select_usable
+from pantocheck.conformance.drops.paired_shapes import (
+    THRESHOLDS,
+    compute_observability,
+    judge_coefficients,
+    list_paired_shapes,
+)
+from pantocheck.conformance.results.damping_format import (
+    Coefficient,
+    DampingResults,
+    MeasuredBand,
+    MeasuredRatios,
+    ModelComparison,
+    PairedMode,
+    StatedDamping,
+)
+from pantocheck.conformance.results.modes import Mode
+from pantocheck.model import Catenary, Rayleigh
+from pantocheck.model.description.catenary import ModalBand
+from pantocheck.model.discretisation.discretised_line import with_damping
+from pantocheck.model.modal.modal_damping import apply_modal_bands
+from pantocheck.model.modal.modes import component_energies, damping_ratios
+
+WireCoefficients = Literal["separate", "common"]
+
+COEFFICIENTS_OF_WIRES: dict[WireCoefficients, Callable[[DampingBasis], DampingBasis]] = {
+    "separate": lambda basis: basis,
+    "common": DampingBasis.join_wires,
+}
+"""Basis of the fit: each wire with its own coefficients, or both with the same."""
+
+
+NOTICEABLE_SHARE = 0.01
+"""Largest share of the measured damping of a mode by other components up to which the fit does not warn.
+
+It is the error of the line model.
+"""
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Choices for the fit of a damping model."""
+
+    wires: WireCoefficients = "separate"
+    """Whether contact and messenger wire have their own coefficients, or the same."""
+    modal_groups: int = MODAL_GROUPS
+    """Number of groups of span modes with a band of modal damping, from the first."""
+
+
+def build_damping_results(
+    modes: Sequence[Mode], line: Catenary, element: float, source: str, options: FitOptions = FitOptions()
+) -> DampingResults:
+    """Fit a damping model to identified modes.
+
+    Args:
+        modes: Identified modes; lateral, uncertain and ungrouped ones are left out.
+        line: Line of the record; its present damping is the reference of the comparison.
+        element: Element length [m].
+        source: Name of the file of the modes, for messages.
+        options: Coefficients of the wires, and bands of modal damping.
+
+    Returns:
+        Content of damping.json.
+
+    Raises:
+        InputError: There are too few modes, or too few of them have a computed counterpart.
+    """
+    usable = select_usable(modes, source)
+    comparison = compare_line(usable, line)
+    matched = match_modes(usable, line, element, source)
+    measured, shapes = matched.measured, matched.shapes
+    energies = component_energies(matched.mesh, shapes)
+    stated = _compute_stated_ratios(matched, line)
+    basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies, stated))
+    paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
+    overlapping = matched.overlapping
+    separate = np.flatnonzero(~overlapping)
+    fitted_basis, fitted_modes = paired_basis.select_modes(separate), measured.select(separate)
+    fit = fit_damping_model(fitted_basis, fitted_modes)
+    observability = tuple(
+        row for row in compute_observability(fitted_basis, fitted_modes, fit) if row.largest_share > 0
+    )
+    coefficients = judge_coefficients(fit.coefficients, observability, matched.matching)
+    bands = fit_modal_bands(measured, options.modal_groups)
+    rayleigh = basis.predict(fit.values)
+    return DampingResults(
+        modes_file=source,
+        warnings=(
+            *warn_about_line(comparison),
+            *_warn_about_overlap(measured.frequency[overlapping]),
+            *_warn_about_stated(fitted_basis.stated / fitted_modes.damping_ratio),
+            *_warn_about_coefficients(coefficients),
+        ),
+        stated=_list_stated(line) if np.any(paired_basis.stated > 0) else (),
+        line=comparison,
+        matching=matched.matching,
+        residual=fit.residual,
+        coefficients=coefficients,
+        modal=tuple(
+            MeasuredBand(from_Hz=b.from_frequency, to_Hz=b.to_frequency, damping_ratio=b.damping_ratio) for b in bands
+        ),
+        observability=observability,
+        thresholds=THRESHOLDS,
+        pairs=_list_pairs(matched, paired_basis.predict(fit.values), set(separate[fit.used])),
+        shapes=list_paired_shapes(matched, line),
+        comparison=_compare_models(matched, rayleigh, bands),
+        unpaired=tuple(mode.frequency_Hz for mode in matched.unpaired),
+    ).rounded()
+
+
+def _list_pairs(matched: MatchedModes, predicted: RealArray, used: set[int]) -> tuple[PairedMode, ...]:
+    """Pairs with their measured and predicted damping ratios; `used` holds the indices of those in the fit."""
+    return tuple(
+        PairedMode(
+            measured_Hz=mode.frequency_Hz,
+            computed_Hz=matched.shapes.frequency[pair.computed],
+            mac=pair.mac,
+            group=mode.group,
+            measured=mode.damping_ratio,
+            fitted=ratio,
+            used=i in used,
+            overlapping=bool(overlapping),
+        )
+        for i, (pair, mode, ratio, overlapping) in enumerate(
+            zip(matched.pairs, matched.paired, predicted, matched.overlapping, strict=True)
+        )
+    )
+
+
+def _compare_models(matched: MatchedModes, rayleigh: RealArray, bands: tuple[ModalBand, ...]) -> ModelComparison:
+    """Measured damping ratios beside those of the line as it is, of the fit, and of the fit with modal bands."""
+    measured, shapes = matched.measured, matched.shapes
+    return ModelComparison(
+        measured=MeasuredRatios(
+            frequency_Hz=tuple(measured.frequency),
+            damping_ratio=tuple(measured.damping_ratio),
+            std=tuple(measured.std),
+        ),
+        frequency_Hz=tuple(shapes.frequency),
+        models={
+            "line as it is": tuple(damping_ratios(matched.mesh, shapes)),
+            "Rayleigh": tuple(rayleigh),
+            "Rayleigh + modal": tuple(apply_modal_bands(rayleigh, shapes.frequency, bands)),
+        },
+    )
+
+
+def _compute_stated_ratios(matched: MatchedModes, line: Catenary) -> RealArray:
+    """Damping ratios by the components that are not fitted, as the line states them, (m,).
+
+    Modal damping of the line replaces the damping of all components in its bands, so that they add nothing there.
+    """
+    ratios = damping_ratios(with_damping(matched.mesh, list_other_damping(line)), matched.shapes)
+    bands = tuple(replace(band, damping_ratio=0.0) for band in line.modal_damping)
+    return apply_modal_bands(ratios, matched.shapes.frequency, bands)
+
+
+def _list_stated(line: Catenary) -> tuple[StatedDamping, ...]:
+    """Damping of the components that are not fitted, as the line states it."""
+    return tuple(
+        StatedDamping(
+            kind=kind.value,
+            stiffness_coefficient_s=rayleigh.stiffness_coefficient,
+            mass_coefficient_1_s=rayleigh.mass_coefficient,
+        )
+        for kind, rayleigh in list_other_damping(line).items()
+        if rayleigh != Rayleigh()
+    )
+
+
+def _warn_about_overlap(frequency: RealArray) -> list[str]:
+    """Warning about measured modes [Hz] that are left out of the fit because they overlap other modes."""
+    if not frequency.size:
+        return []
+    listed = ", ".join(f"{each:.3f}" for each in frequency)
+    return [
+        f"{count_noun(frequency.size, 'mode')} left out of the fit: {listed} Hz. Another measured or computed mode "
+        "lies within the half-power bandwidth, so that the measured damping ratio can be a mixture of both."
+    ]
+
+
+def _warn_about_stated(share: RealArray) -> list[str]:
+    """Warning if the stated damping of other components is a noticeable part of the damping ratio of any mode."""
+    if share.max(initial=0.0) <= NOTICEABLE_SHARE:
+        return []
+    modes = count_noun(int(np.sum(share > NOTICEABLE_SHARE)), "mode")
+    return [
+        "The damping of droppers, steady arms and supports that the line states is subtracted from the measured "
+        f"damping ratios. It is more than {100 * NOTICEABLE_SHARE:g} % of the damping ratio of {modes} "
+        f"(largest {100 * share.max():.2g} %, median of all modes {100 * np.median(share):.2g} %). "
+        "If it is wrong, the errors of the coefficients can exceed their intervals."
+    ]
+
+
+def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:
+    """Warnings about coefficients that are not determined, one per reason."""
+    names: dict[str, list[str]] = {}
+    for c in coefficients:
+        if not c.determined:
+            names.setdefault(c.reason, []).append(f"{c.kind.replace('_', ' ')} {c.matrix}")
+    return [f"Not determined: {', '.join(terms)} ({reason})." for reason, terms in names.items()]

@@ -1,0 +1,143 @@
+"""Writing of mass-drop records as CSV with a sidecar, and as HDF5; reading these files gives the same record."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from pantocheck.conformance.core.csv_table import write_csv_table
+from pantocheck.conformance.core.files import produce_atomically, write_atomically
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.core.units import SI_UNITS
+from pantocheck.conformance.drops.drop_record import DropRecord
+
+UNWRITABLE = ",;\t\"'"
+"""Characters that are not possible in the head line of a CSV file, because it is read without quoting."""
+
+
+SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
+"""Tables of a sidecar."""
+
+
+def write_drop_csv(record: DropRecord, path: Path) -> None:
+    """Write a record as CSV (decimal points, commas), with a sidecar beside it.
+
+    Args:
+        record: One run.
+        path: The .csv file.
+
+    Raises:
+        InputError: A file cannot be written, or the name of a channel is not possible in a head line.
+    """
+    for channel in record.channels:
+        if set(channel.name) & set(UNWRITABLE) or channel.name.strip().splitlines() != [channel.name]:
+            raise InputError(
+                f"{path.name}, channel {channel.name!r}",
+                "this name is not possible in the head line of a CSV file",
+                "Rename the channel without comma, semicolon, tab, quote and line break, or write HDF5.",
+            )
+    names = ["time_s", *(channel.name for channel in record.channels)]
+    values = np.column_stack([record.time, record.signals])
+    write_drop_sidecar(record, path)
+    produce_atomically(path, lambda temporary: write_csv_table(temporary, names, values, 9))
+
+
+def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
+    """Write the runs of one test as HDF5.
+
+    Args:
+        records: Runs of the test.
+        path: The file.
+
+    Raises:
+        InputError: The runs differ in channels, rate, quantity or drop, or the file cannot be written.
+    """
+    from pantocheck.conformance.core.hdf5_table import write_hdf5_table
+
+    first = records[0]
+    for other in records[1:]:
+        same = (other.channels, other.rate, other.drop) == (first.channels, first.rate, first.drop)
+        if not same or other.quantity != first.quantity:
+            raise InputError(
+                str(path), "the runs differ in channels, rate, quantity or drop", "Write one file per test."
+            )
+    attributes = {
+        "test": first.name,
+        "quantity": first.quantity,
+        "sampling_rate_hz": first.rate,
+        "drop_mass_kg": first.drop.mass,
+        "drop_wire": first.drop.wire,
+        "drop_position_m": first.drop.position,
+        "trigger_nominal_s": first.drop.trigger_nominal,
+        "spans_m": list(first.line.spans) or None,
+        "cw_tension_n": first.line.contact_wire_tension,
+        "mw_tension_n": first.line.messenger_wire_tension,
+    }
+    channels = _list_channels(first)
+    datasets: dict[str, Any] = {f"channels/{key}": [channel[key] for channel in channels] for key in channels[0]}
+    datasets["channels/position_m"] = [np.nan if x is None else x for x in datasets["channels/position_m"]]
+    datasets |= {f"run_{k}/{record.quantity}": record.signals.T for k, record in enumerate(records, 1)}
+    produce_atomically(path, lambda temporary: write_hdf5_table(temporary, _select_known(attributes), datasets))
+
+
+def check_drop_sidecar(path: Path) -> None:
+    """Check that the sidecar of a record replaces no other file, such as the case of the drop.
+
+    Args:
+        path: The record.
+
+    Raises:
+        InputError: The sidecar would overwrite a file that is not a sidecar of a drop record.
+    """
+    target = path.with_suffix(".toml")
+    if target.exists() and not read_toml(target, "sidecar").keys() <= SIDECAR_TABLES:
+        raise InputError(
+            f"record '{path}'",
+            f"the sidecar would overwrite {target.name}, which is not a sidecar of a drop record",
+            "Give the record another name.",
+        )
+
+
+def write_drop_sidecar(record: DropRecord, path: Path) -> None:
+    """Write the sidecar of the record at `path`; errors as in `write_drop_csv` and `check_drop_sidecar`."""
+    check_drop_sidecar(path)
+    tables: dict[str, dict[str, Any]] = {
+        "test": {
+            "name": record.name,
+            "spans_m": list(record.line.spans) or None,
+            "cw_tension_n": record.line.contact_wire_tension,
+            "mw_tension_n": record.line.messenger_wire_tension,
+        },
+        "drop": {"mass_kg": record.drop.mass, "wire": record.drop.wire, "position_m": record.drop.position},
+        "record": {
+            "sampling_rate_hz": record.rate,
+            "trigger_nominal_s": record.drop.trigger_nominal,
+            "n_channels": len(record.channels),
+            "quantity": record.quantity,
+        },
+    }
+    known: dict[str, Any] = {name: _select_known(table) for name, table in tables.items()}
+    known["channel"] = [{"column": c} | _select_known(table) for c, table in enumerate(_list_channels(record), 1)]
+    write_atomically(path.with_suffix(".toml"), tomli_w.dumps(known).encode())
+
+
+def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
+    """Description of each channel, by the keys of the files."""
+    return [
+        {
+            "name": channel.name,
+            "sensor": channel.sensor,
+            "wire": channel.wire,
+            "position_m": channel.position,
+            "direction": f"+{channel.axis}",
+            "unit": SI_UNITS[record.quantity],
+        }
+        for channel in record.channels
+    ]
+
+
+def _select_known(table: dict[str, Any]) -> dict[str, Any]:
+    """Table without the values None, which TOML and HDF5 do not have."""
+    return {key: value for key, value in table.items() if value is not None}

@@ -1,0 +1,194 @@
+"""Identification of the modes of a line from mass-drop records."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand
+from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, fit_line, share_blocks
+from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.model_order import (
+    PoleSelection,
+    estimate_block_noise,
+    find_hidden_poles,
+    select_poles,
+)
+from pantocheck.conformance.drops.pole_refinement import refine_poles
+from pantocheck.conformance.drops.projection import DataBlock, build_block, whiten
+from pantocheck.conformance.drops.start_poles import BandTrials, join_start_poles, try_orders
+from pantocheck.conformance.results.modes import Mode
+from pantocheck.model.description.one_thread import use_one_thread
+
+SHARED_POLES = 1.5
+"""Misfit above which the line is not linear, or its records have different poles [-]."""
+
+
+@dataclass(frozen=True)
+class PoleSearch:
+    """Steps of the search for the poles of a line."""
+
+    trials: tuple[BandTrials, ...] = ()
+    """Poles of all orders of the search for start poles; empty if there was none."""
+    steps: tuple[tuple[str, ComplexArray], ...] = ()
+    """Name of each step, and the poles after it, (m,) [1/s]."""
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Modes of one line."""
+
+    fit: LineFit
+    """Poles, residues and residual of its records."""
+    modes: tuple[Mode, ...]
+    """Modes in the reported band, by frequency."""
+    warnings: tuple[str, ...]
+    """Caveats on the whole identification."""
+    search: PoleSearch = PoleSearch()
+    """Steps of the search for the poles."""
+
+
+@use_one_thread
+def identify_modes(
+    records: tuple[DropRecord, ...],
+    highest: float = 10.0,
+    poles: ComplexArray | None = None,
+    progress: Callable[[str], None] = lambda text: None,
+) -> tuple[Identification, ...]:
+    """Identify the modes of each line in the records.
+
+    Records of one line (same spans and tensions) have common poles; the residues differ between records.
+
+    Args:
+        records: Repeated drops, or drops at several positions.
+        highest: Highest frequency of a reported mode [Hz].
+        poles: Start poles placed by hand, (m,) [1/s], whose number is kept; None: start poles are searched in the
+            records.
+        progress: Function that receives the name of each step.
+
+    Returns:
+        One identification per line.
+
+    Raises:
+        InputError: A record cannot be used.
+    """
+    return tuple(_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records))
+
+
+def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
+    """Records of each line, in the order of the records.
+
+    Raises:
+        InputError: There is no record.
+    """
+    if not records:
+        raise InputError("records", "missing", "Name at least one record.")
+    lines: dict[object, list[DropRecord]] = {}
+    for record in records:
+        lines.setdefault(_line_key(record), []).append(record)
+    return list(lines.values())
+
+
+def _line_key(record: DropRecord) -> object:
+    line = record.line
+    # Records without data of their line count as records of one line only if they are in the same file.
+    return line if line.spans else (line, record.file or record.source)
+
+
+def _identify_line(
+    records: list[DropRecord], highest: float, start: ComplexArray | None, progress: Callable[[str], None]
+) -> Identification:
+    band = choose_band(records, highest)
+    decays = []
+    for record in records:
+        progress(f"{record.name}: release and linear decay")
+        decays.append(prepare_decay(record, band))
+    return identify_decays(decays, band, start, progress)
+
+
+def identify_decays(
+    decays: list[PreparedDecay], band: FrequencyBand, start: ComplexArray | None, progress: Callable[[str], None]
+) -> Identification:
+    """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
+    name, spans = decays[0].record.name, decays[0].record.line.spans
+    samples, places = share_blocks(decays)
+    data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
+    progress(f"{name}: poles")
+    selection, search = _search_poles(decays, samples, data, band) if start is None else _use_poles(start, data)
+    progress(f"{name}: uncertainty")
+    fit = fit_line(decays, places, data, selection.poles, selection.noise, band)
+    return Identification(fit, build_modes(fit, len(spans) or None), _list_warnings(fit), search)
+
+
+def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
+    """Band up to a frequency [Hz], or up to a lower one if the slowest record requires it.
+
+    Raises:
+        InputError: The sampling rate of a record is too low for any mode.
+    """
+    slowest = min(records, key=lambda record: record.rate)
+    band = FrequencyBand.up_to(highest, slowest.rate)
+    if band.high < min(2 * band.low, highest):
+        raise InputError(
+            slowest.name,
+            f"the sampling rate of {slowest.rate:g} Hz is too low; it limits the modes to {band.high:.2g} Hz",
+            "Export the record at its original sampling rate, usually 50 Hz or more.",
+        )
+    return band
+
+
+def _search_poles(
+    decays: list[PreparedDecay], samples: list[tuple[RealArray, float]], data: list[DataBlock], band: FrequencyBand
+) -> tuple[PoleSelection, PoleSearch]:
+    trials = _try_start_orders(samples, band)
+    start = join_start_poles(trials) if trials else _find_longest(decays).poles
+    selected = select_poles(start, data)
+    complete = find_hidden_poles(selected, data)
+    steps = (
+        ("start poles", start),
+        ("added and removed", selected.poles),
+        ("hidden poles tried", complete.poles),
+    )
+    return complete, PoleSearch(trials, steps)
+
+
+def _find_longest(decays: list[PreparedDecay]) -> LinearDecay:
+    """Longest linear decay, whose poles are the start poles of records with different sampling rates."""
+    return max((decay.linear for decay in decays), key=lambda linear: linear.duration)
+
+
+def _try_start_orders(samples: list[tuple[RealArray, float]], band: FrequencyBand) -> tuple[BandTrials, ...]:
+    """Poles of all orders in all records together; none if their sampling rates differ: the search needs one rate."""
+    intervals = {dt for _, dt in samples}
+    if len(intervals) > 1:
+        return ()
+    scaled = [np.asarray(channels / channels.std(axis=0)) for channels, _ in samples]
+    return try_orders(scaled, 1 / intervals.pop(), band.low, band.fitted + 0.5)
+
+
+def _use_poles(start: ComplexArray, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
+    """Refine poles placed by hand, whose number is kept."""
+    poles = start
+    for _ in range(3):
+        poles = refine_poles(poles, whiten(data, estimate_block_noise(poles, data))).poles
+    steps = (("placed by hand", start), ("refined", poles))
+    return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), steps)
+
+
+def _list_warnings(fit: LineFit) -> tuple[str, ...]:
+    warnings = [text for record in fit.records for text in record.decay.warnings]
+    if fit.misfit > SHARED_POLES:
+        several = " or the records have different poles" if len(fit.records) > 1 else ""
+        warnings.append(
+            f"the squared residual of the fit is {fit.misfit:.1f} times that of the noise: the line is not "
+            f"linear{several}; uncertainties are increased"
+        )
+    lengths = [record.decay.linear.duration for record in fit.records]
+    if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
+        durations = ", ".join(f"{length:.0f} s" for length in lengths)
+        warnings.append(f"the linear decays differ in length ({durations}); each is used over its whole length")
+    return tuple(dict.fromkeys(warnings))

@@ -1,0 +1,279 @@
+"""Output error of a set of poles, with all linear parameters eliminated (variable projection).
+
+For given poles the residues and the residual terms solve a linear least-squares problem. Its residual is
+r = (I - Q Q') x, where Q is an orthonormal basis of the columns Phi of the model. With Kaufman's Jacobian,
+-(I - Q Q') dPhi a, the Gauss-Newton matrix at the minimum is the Fisher information of the poles for unknown residues.
+
+References:
+    [1] G. H. Golub, V. Pereyra, Separable nonlinear least squares: the variable projection method and its applications,
+        Inverse Problems 19 (2003) R1-R26. doi:10.1088/0266-5611/19/2/201
+    [2] E. Balmes, Frequency domain identification of structural dynamics using the pole/residue parametrization, IMAC
+        XIV (1996) 540-546.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg
+from scipy.linalg.blas import dtrsm
+from scipy.linalg.lapack import dpotrs
+
+from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.decay_kernel import (
+    decay_kernel,
+    drift_columns,
+    far_pole_columns,
+    join_conjugates,
+    real_columns,
+    stack_real_imaginary,
+)
+
+DRIFT_DEGREE = 4
+"""Degree of the polynomial in time for the drift of the offset."""
+
+FAR_DEGREE = 3
+"""Degree of the polynomial in frequency for modes outside the band."""
+
+
+@dataclass(frozen=True)
+class DataBlock:
+    """Channels with common sample times: those of one record, or of repeats with equal length."""
+
+    lines: IntegerArray
+    """Indices of the spectral lines that are used, (k,)."""
+    spectrum: ComplexArray
+    """Transforms of the channels at those lines, (k, c)."""
+    dt: float
+    """Sampling interval [s]."""
+    n: int
+    """Number of samples."""
+    residual_terms: RealArray
+    """Columns for the drift of the offset and for modes outside the band, (2 k, r)."""
+
+    @property
+    def omega(self) -> RealArray:
+        """Angular frequency of the lines [rad/s]."""
+        return np.asarray(2 * np.pi * self.lines / (self.n * self.dt))
+
+    @property
+    def duration(self) -> float:
+        """Duration [s]."""
+        return self.n * self.dt
+
+
+@dataclass(frozen=True)
+class ProjectionFit:
+    """Least-squares solution of one block for known poles."""
+
+    residues: ComplexArray
+    """Residues A at the first sample of the block, (m, c) [unit of the spectrum]."""
+    residual: ComplexArray
+    """Spectrum minus the fitted poles and residual terms, (k, c)."""
+
+
+def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataBlock:
+    """Transform channels to spectral lines of a band, and build the residual terms.
+
+    Args:
+        samples: Channels, (n, c).
+        dt: Sampling interval [s].
+        low, high: Edges of the band [Hz].
+    """
+    n = samples.shape[0]
+    lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
+    # The mean is line 0, which is not used; without it rounding errors are smaller.
+    spectrum = np.fft.rfft(samples - samples.mean(axis=0), axis=0)[lines]
+    omega = 2 * np.pi * lines / (n * dt)
+    terms = np.hstack([drift_columns(DRIFT_DEGREE, n, lines), far_pole_columns(omega, FAR_DEGREE)])
+    return DataBlock(lines, np.asarray(spectrum), dt, n, terms)
+
+
+def pole_columns(poles: ComplexArray, data: DataBlock) -> RealArray:
+    """Real columns for the residues of the poles at the lines of a block, (2 k, 2 m)."""
+    return real_columns(decay_kernel(join_conjugates(poles), data.omega, data.dt, data.n))
+
+
+def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
+    """Solve for the residues of known poles, (m,) [1/s], by least squares.
+
+    Raises:
+        InputError: The block has fewer equations than unknowns, so that the residues are not determined.
+    """
+    columns = np.hstack([pole_columns(poles, data), data.residual_terms])
+    if columns.shape[0] < columns.shape[1]:
+        raise InputError(
+            f"record of {data.n * data.dt:.3g} s",
+            f"has {data.lines.size} spectral lines in the band, too few for {poles.size} modes",
+            "Record the whole decay, or lower the highest frequency.",
+        )
+    coefficients, residual = solve_least_squares(columns, stack_real_imaginary(data.spectrum))
+    m, k = poles.size, data.lines.size
+    return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
+
+
+def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
+    """Standard deviation of the real or imaginary part of a residue for unit noise and known poles, (m,)."""
+    r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
+    inverse = np.linalg.pinv(r[: r.shape[1]])
+    variance = np.sum(inverse**2, axis=1)
+    m = poles.size
+    return np.asarray(np.sqrt((variance[:m] + variance[m : 2 * m]) / 2))
+
+
+def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray:
+    """Estimate the standard deviation of the real or imaginary part of a spectral line, per channel, (c,).
+
+    It follows from the median of the residual over the lines, which does not depend on a few peaks outside the model:
+    |r|^2 / (2 sigma^2) of white noise has the median ln 2. A factor corrects for the number of fitted parameters.
+    """
+    rows, channels = 2 * data.lines.size, data.spectrum.shape[1]
+    fitted = 2 * poles + data.residual_terms.shape[1] + 2 * poles / channels
+    share_left = max(1 - fitted / rows, 0.1)
+    median = np.median(np.abs(fit.residual) ** 2, axis=0)
+    return np.asarray(np.sqrt(np.maximum(median, np.finfo(float).tiny) / (2 * np.log(2) * share_left)))
+
+
+def whiten(blocks: list[DataBlock], noise: list[RealArray]) -> list[DataBlock]:
+    """Scale each channel of the blocks to units of its noise."""
+    return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]
+
+
+# Factors of the columns of a least-squares problem, from their Gram matrix.
+#
+# The Cholesky factor of the Gram matrix is the triangular factor R of columns = Q R. It takes a fraction of the time of
+# Householder's method, because it consists of matrix products. A second pass makes Q orthogonal to rounding, and two
+# refinements make a solution accurate to rounding, as long as the columns are not nearly dependent. Such columns are
+# left to Householder's method.
+#
+# References:
+#     [1] Y. Yamamoto, Y. Nakatsukasa, Y. Yanagisawa, T. Fukaya, Roundoff error analysis of the CholeskyQR2 algorithm,
+#         Electronic Transactions on Numerical Analysis 44 (2015) 306-326.
+LEAST_DIAGONAL = 1e-6
+"""Smallest diagonal entry of the factor of columns of unit length for which the Gram matrix is used [-].
+
+The method holds up to a condition number of 1e8; the diagonal may overestimate the smallest singular value.
+"""
+
+REFINEMENTS = 2
+"""Number of refinements of a solution; each reduces its error by 1e-16 times the squared condition number."""
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """Signals without their part in the span of columns."""
+
+    coefficients: RealArray
+    """Coefficients of the columns in x, (m, c); of dependent columns those with the smallest norm."""
+    residual: RealArray
+    """Residual of x, (n, c)."""
+    remainder: RealArray
+    """Residual of the other signals, (n, d)."""
+
+
+def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> Elimination:
+    """Subtract from signals their part in the span of columns.
+
+    Args:
+        columns: Columns, n >= m, (n, m).
+        x: Signals whose coefficients and residual are accurate to rounding, (n, c).
+        others: Signals whose coefficients are not needed, (n, d). Their solution is not refined: the error of the
+            remainder lies in the span of the columns, so that products of remainders have the square of its relative
+            error.
+
+    Returns:
+        Coefficients and residual of x, and remainder of the other signals.
+    """
+    try:
+        factor = _factor_gram_matrix(columns)
+    except np.linalg.LinAlgError:
+        q, r = _factor_by_householder(columns)
+        projected = q.T @ x
+        return Elimination(solve_factor(r, projected), x - q @ projected, others - q @ (q.T @ others))
+    coefficients, residual = factor.solve(x, 1 + REFINEMENTS)
+    return Elimination(coefficients, residual, factor.solve(others, 1)[1])
+
+
+def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
+    """Solve columns c = x by least squares.
+
+    Args:
+        columns: Columns, n >= m, (n, m).
+        x: Right-hand sides, (n, c).
+
+    Returns:
+        Coefficients, (m, c); of dependent columns those with the smallest norm.
+        Residual, (n, c).
+    """
+    solved = eliminate_columns(columns, x, np.zeros((x.shape[0], 0)))
+    return solved.coefficients, solved.residual
+
+
+def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
+    """Factor columns into an orthonormal basis and a triangular matrix, columns = Q R.
+
+    Args:
+        columns: Columns, n >= m, (n, m).
+
+    Returns:
+        Orthonormal basis Q, (n, m).
+        Upper triangular factor R, (m, m).
+    """
+    try:
+        first = _factor_gram_matrix(columns)
+        second = _factor_gram_matrix(first.orthogonalise())
+    except np.linalg.LinAlgError:
+        return _factor_by_householder(columns)
+    return second.orthogonalise(), second.upper @ first.upper
+
+
+def solve_factor(r: RealArray, projected: RealArray) -> RealArray:
+    """Solve R c = b, (m, m) and (m, c), for an upper triangular factor; of dependent columns the smallest solution."""
+    length = np.sqrt(np.einsum("ij,ij->j", r, r))
+    if np.all(np.abs(r.diagonal()) > LEAST_DIAGONAL * length):
+        return np.asarray(dtrsm(1.0, r, projected))
+    return np.asarray(np.linalg.lstsq(r, projected, rcond=1e-13)[0])
+
+
+@dataclass(frozen=True)
+class _GramFactor:
+    """Columns, (n, m), their lengths, (m,), and the upper factor of the Gram matrix of columns of unit length."""
+
+    columns: RealArray
+    length: RealArray
+    unit_upper: RealArray
+
+    @property
+    def upper(self) -> RealArray:
+        """Upper triangular factor R of the columns, (m, m)."""
+        return self.unit_upper * self.length
+
+    def orthogonalise(self) -> RealArray:
+        """Basis of the columns, (n, m): orthonormal up to rounding times the squared condition number."""
+        return np.asarray(dtrsm(1.0, self.upper, self.columns.T, trans_a=1).T)
+
+    def solve(self, x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
+        """Coefficients, (m, c), and residual, (n, c), of right-hand sides x; every pass after the first refines."""
+        length = self.length[:, None]
+        residual, solution = x, np.zeros((self.columns.shape[1], x.shape[1]))
+        for _ in range(passes):
+            solution += dpotrs(self.unit_upper, self.columns.T @ residual / length)[0] / length
+            residual = x - self.columns @ solution
+        return solution, residual
+
+
+def _factor_gram_matrix(columns: RealArray) -> _GramFactor:
+    """Cholesky factor of the Gram matrix of columns; LinAlgError if they are nearly dependent or zero."""
+    gram = columns.T @ columns
+    length = np.sqrt(gram.diagonal())
+    if not np.all(length > 0):
+        raise np.linalg.LinAlgError
+    upper = np.linalg.cholesky(gram / length / length[:, None]).T
+    if not np.all(upper.diagonal() > LEAST_DIAGONAL):
+        raise np.linalg.LinAlgError
+    return _GramFactor(columns, np.asarray(length), np.asarray(upper))
+
+
+def _factor_by_householder(columns: RealArray) -> tuple[RealArray, RealArray]:
+    q, r = scipy.linalg.qr(columns, mode="economic", check_finite=False)
+    return q, r

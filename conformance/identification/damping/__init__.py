@@ -1,1 +1,0 @@
-"""Damping model of a line from its identified modes."""

@@ -1,1 +1,0 @@
-"""From measured frequency responses of a pantograph head to a chain of lumped masses."""

@@ -1,1 +1,0 @@
-"""Files that users give to the suite: bounded reading, validation, units, tables of measured data, input errors."""

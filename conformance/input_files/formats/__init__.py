@@ -1,1 +1,0 @@
-"""Readers of measured tables, one module per file format, and writers of CSV and HDF5."""

@@ -1,1 +1,0 @@
-"""Python interface: cases, runs, graded results and mass drops for scripts and notebooks."""

@@ -1,1 +1,0 @@
-"""Tables of supports and droppers: lines from spreadsheets and back."""

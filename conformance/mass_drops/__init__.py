@@ -1,1 +1,0 @@
-"""Mass-drop records: reading and writing in the formats of measuring systems."""

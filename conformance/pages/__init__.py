@@ -1,0 +1,1 @@
+"""Pages of all reports, made from the types of the results alone."""

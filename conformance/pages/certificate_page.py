@@ -1,0 +1,161 @@
+"""The certificate: from results.json to a document. Every number of the page stands in the results."""
+
+from collections.abc import Sequence
+
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.case_section import ShownCase, build_case_section, list_shown_cases
+from pantocheck.conformance.pages.criteria_table import MARGIN_KEY
+from pantocheck.conformance.pages.document_facts import (
+    build_document_section,
+    list_suite_facts,
+    name_suite,
+    name_system,
+)
+from pantocheck.conformance.pages.embedded_results import digest_results, find_date
+from pantocheck.conformance.pages.findings_table import build_findings_section
+from pantocheck.conformance.pages.procedure_page import build_procedure_section, list_step_reasons
+from pantocheck.conformance.pages.quantity_tables import UNCERTAINTY_KEY, list_definitions
+from pantocheck.conformance.pages.scope_page import (
+    build_scope_section,
+    describe_origin,
+    list_identity_warnings,
+    prepare_results,
+)
+from pantocheck.conformance.pages.step_sections import build_step_section
+from pantocheck.conformance.pages.two_verdicts import build_verdict_section, case_verdict
+from pantocheck.conformance.pages.verdict_reasons import build_headline, count_incomplete, list_reasons, summarise_case
+from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.results.results_format import CaseResult, Results
+
+HEADING = "Conformance report"
+
+
+def build_certificate(results: Results) -> doc.Document:
+    """The certificate of a run, with the date of `find_date`."""
+    return build_dated_certificate(results, find_date(results))
+
+
+def build_dated_certificate(results: Results, date: int) -> doc.Document:
+    """The certificate of a run with a given date.
+
+    Args:
+        results: Results of a run.
+        date: Date of the document [s since 1970]; 0: not known.
+    """
+    prepared = prepare_results(results)
+    header = build_header(prepared)
+    cases = prepared.cases
+    shown = list_shown_cases(cases)
+    anchors = {one.case.id: one.anchor for one in shown}
+    warnings = list_identity_warnings(prepared)
+    steps = () if prepared.procedure is None else list_step_reasons(prepared.procedure)
+    reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
+    closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
+    return doc.Document(
+        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(prepared)}",
+        header=header,
+        blocks=(
+            *((doc.WarningBox(warnings),) if warnings else ()),
+            build_document_section(prepared, digest_results(results), date),
+            *_build_scope(prepared, anchors),
+            *build_findings_section(prepared),
+            doc.Section("Reasons", reasons, anchor="reasons"),
+            *_build_index(prepared, anchors),
+            *_build_case_sections(prepared, shown, anchors),
+            doc.Section("Explanations", _explanation_blocks(prepared), anchor="explanations"),
+            doc.Section(
+                "Reproducibility",
+                (list_suite_facts(prepared), closing),
+                anchor="reproducibility",
+            ),
+        ),
+        results=results,
+        date=date,
+    )
+
+
+def _build_scope(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
+    """Steps of the procedure of a dossier, or the verdicts and the scope of a run."""
+    if results.procedure is not None:
+        return (build_procedure_section(results.procedure, results.cases),)
+    return (*build_verdict_section(results), *build_scope_section(results, anchors))
+
+
+def _build_index(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
+    """List of the cases; with a procedure, each step lists its own."""
+    if results.procedure is not None:
+        return ()
+    return (doc.Section("Cases", (_case_index(results.cases, anchors),), anchor="cases"),)
+
+
+def _build_case_sections(results: Results, shown: list[ShownCase], anchors: dict[str, str]) -> tuple[doc.Section, ...]:
+    """Sections of the cases; with a procedure, behind the section of their step."""
+    sections = {one.case.id: build_case_section(one) for one in shown}
+    by_id = {case.id: case for case in results.cases}
+    if results.procedure is None:
+        return tuple(sections.values())
+    ordered: list[doc.Section] = []
+    for number, step in enumerate(results.procedure.steps, 1):
+        listed = [by_id[name] for name in step.cases]
+        index = (_case_index(listed, anchors),) if listed else ()
+        ordered += [build_step_section(number, step, results.procedure, results.cases, index)]
+        ordered += [sections[name] for name in step.cases if name in sections]
+    return tuple(ordered)
+
+
+def build_header(results: Results) -> doc.VerdictHeader:
+    """Head of the pages made from results.json."""
+    level = read_words()["trust"].get(results.trust)
+    system, suite = name_system(results), name_suite(results)
+    title = "" if results.procedure is None else f"{results.procedure.title}. "
+    trust = f" Lowest trust of the limits that count: {results.trust} ({level['meaning']})." if level else ""
+    return doc.VerdictHeader(
+        heading=HEADING,
+        verdict=results.verdict,
+        statement=results.statement,
+        headline=build_headline(results),
+        subject=" ".join(filter(None, (f"{title}{system}, checked with {suite}.{trust}", count_incomplete(results)))),
+        footer=f"{suite} · {system}",
+    )
+
+
+def _case_index(cases: Sequence[CaseResult], anchors: dict[str, str]) -> doc.Table:
+    """Table of all cases; a case without a section has no link."""
+    shares = {"Case": 2.0, "Origin": 2.0, "Verdict": 0.0, "Criteria": 3.0}
+    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
+        (
+            doc.Link(case.id, anchors[case.id]) if case.id in anchors else case.id,
+            describe_origin(case),
+            doc.VerdictMark(case_verdict(case, "criteria") or ""),
+            summarise_case(case),
+        )
+        for case in cases
+    )
+    if any(case.verification for case in cases):
+        shares["Verification"] = 0.0
+        rows = tuple((*row, _mark(case, "verification")) for row, case in zip(rows, cases, strict=True))
+    if any(case.baseline for case in cases):
+        shares["Baseline"] = 0.0
+        rows = tuple((*row, _mark(case, "baseline")) for row, case in zip(rows, cases, strict=True))
+    return doc.Table(tuple(doc.Column(heading, share) for heading, share in shares.items()), rows)
+
+
+def _mark(case: CaseResult, name: str) -> doc.RichText:
+    """One of the verdicts of a case as a mark; a dash without this verdict."""
+    verdict = case_verdict(case, name)
+    return "–" if verdict is None else doc.VerdictMark(verdict)
+
+
+def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
+    """Meaning of margins, uncertainties, trust and definitions, once for all cases."""
+    trusts = read_words()["trust"].items()
+    levels = doc.BulletList(tuple((doc.TrustMark(name), f": {level['meaning']}") for name, level in trusts))
+    graded = any(case.criteria for case in results.cases)
+    uncertain = any(case.uncertainty_basis for case in results.cases)
+    definitions = list_definitions(results.cases)
+    return (
+        *((doc.SmallPrint(MARGIN_KEY),) if graded else ()),
+        *((doc.SmallPrint(UNCERTAINTY_KEY),) if uncertain else ()),
+        doc.Section("Levels of trust", (levels,)),
+        *((doc.Section("Definitions", (doc.BulletList(definitions),)),) if definitions else ()),
+    )

@@ -1,0 +1,260 @@
+"""Table of the criteria of a case."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from pantocheck.conformance.core.criterion import ComponentName, Criterion
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.case_figures import name_figure
+from pantocheck.conformance.pages.reference_values import insert_reference
+from pantocheck.conformance.pages.words import (
+    format_beside_limits,
+    format_plain,
+    format_value,
+    name_owner,
+    quantity_label,
+    read_words,
+    replace_minus,
+)
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin
+from pantocheck.conformance.results.incomplete_uncertainty import (
+    explain_mark,
+    list_missing,
+    list_unknown,
+    mark_half_width,
+)
+from pantocheck.conformance.results.results_format import CaseResult
+
+MARGIN_KEY = (
+    "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
+    "0 on a limit and negative outside. With one limit, the distance is divided by this limit; if it is 0, the margin "
+    "is the distance itself with its unit. Bars: the grey band shows the range between the limits. A disc is a value "
+    "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
+    "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known."
+)
+"""Meaning of the margins and bars of all tables of criteria."""
+SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
+"""Headings of the errors on paper."""
+Basis = Mapping[ComponentName, str]
+"""How each component of an uncertainty was determined, or why it is not known: `uncertainty_basis` of a case."""
+
+NO_BASIS: Basis = MappingProxyType({})
+"""Basis of the uncertainty of criteria that belong to no case."""
+
+
+@dataclass(frozen=True)
+class CriterionTexts:
+    """Texts of one criterion."""
+
+    label: str
+    pantograph: str
+    value: str
+    error: str
+    limits: str
+    margin: str
+    trust: str
+    """Trust of the limits; empty if there are none, or if they are bounds of a baseline."""
+    remarks: tuple[str, ...]
+
+
+def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> CriterionTexts:
+    """Texts of a criterion of results.json.
+
+    Args:
+        criterion: Criterion of results.json.
+        basis: `uncertainty_basis` of its case.
+    """
+    value, lower, upper = criterion.value, criterion.lower, criterion.upper
+    error, margin = criterion.error, criterion.margin
+    missing = list_missing(basis, criterion.uncertainty, criterion.trust)
+    unit = "" if value is None else criterion.unit
+    shown, limits = format_beside_limits(value, lower, upper)
+    ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
+    close = criterion.close if criterion.is_close else ()
+    return CriterionTexts(
+        label=criterion_title(criterion),
+        pantograph=name_owner(criterion).removeprefix("pantograph "),
+        value=f"{shown} {unit}".rstrip(),
+        error="–" if error is None else mark_half_width(error, format_value(error, 2), missing, "± "),
+        limits=limits,
+        margin="–" if margin is None else replace_minus(ascii_margin),
+        trust="" if lower is None and upper is None else criterion.trust or "",
+        remarks=tuple(filter(None, (criterion.reason, *close, remark_shift(criterion), _remark_limit(criterion)))),
+    )
+
+
+def criteria_blocks(
+    criteria: Sequence[Criterion], anchor: str, source_anchor: str, case: CaseResult | None = None
+) -> tuple[doc.Block, ...]:
+    """The table of criteria and the sources of their limits.
+
+    Args:
+        criteria: Criteria of one of the verdicts of a case, or of a step of a procedure.
+        anchor: Anchor of the section of the case or step.
+        source_anchor: Anchor of the sources, before their number.
+        case: Case of the criteria; None: they belong to no case.
+    """
+    sources = list(dict.fromkeys(criterion.source for criterion in criteria if criterion.source))
+    error = error_name(criteria)
+    columns = (
+        doc.Column("Quantity", share=1),
+        doc.Column("Pantograph", short="Pant."),
+        doc.Column("Value", number=True),
+        doc.Column(error, number=True, short=SHORT_NAMES[error]),
+        doc.Column("Limits", number=True),
+        *map(doc.Column, ("Margin", "Verdict", "Trust", "Source")),
+    )
+    basis = NO_BASIS if case is None else case.uncertainty_basis
+    rows = tuple(
+        _row(criterion, basis, sources, (source_anchor, () if case is None else _link_place(case, criterion, anchor)))
+        for criterion in criteria
+    )
+    table = doc.Table(columns, rows, layout="cards")
+    if case is not None:
+        table = insert_reference(case, table, criteria)
+    listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
+    return (table, *note_incomplete(criteria, basis), *listed)
+
+
+def note_incomplete(criteria: Sequence[Criterion], basis: Basis) -> tuple[doc.Block, ...]:
+    """Explanation of the mark of half-widths that lack a component; empty if none of the criteria has the mark."""
+    missing = [list_missing(basis, row.uncertainty, row.trust) for row in criteria]
+    return (doc.SmallPrint(explain_mark(list_unknown(basis))),) if any(missing) else ()
+
+
+def _link_place(case: CaseResult, criterion: Criterion, anchor: str) -> tuple[doc.Inline, ...]:
+    """Link to the figure that shows the place of an extreme; empty for a quantity without a place."""
+    owner = str(criterion.pantograph)
+    place = case.places.get(owner, {}).get(criterion.quantity)
+    if place is None:
+        return ()
+    if place.time_s is not None:
+        owner = "0"
+    drawn = any(support.time_s for support in case.uplift) if owner == "0" else owner in case.traces
+    if not drawn:
+        return ()
+    return (
+        " ",
+        doc.Link(f"at {format_plain(round(place.position_m, 1))} m", name_figure(anchor, owner)),
+    )
+
+
+def _row(
+    criterion: Criterion, basis: Basis, sources: list[str], links: tuple[str, tuple[doc.Inline, ...]]
+) -> tuple[doc.RichText, ...]:
+    texts, (source_anchor, place) = describe_criterion(criterion, basis), links
+    number = sources.index(criterion.source) + 1 if criterion.source else None
+    bar = None if texts.limits == "none" or criterion.value is None else _bar(criterion, criterion.value)
+    return (
+        (f"{texts.label} ", doc.Code(criterion.quantity), *place, *map(doc.Remark, texts.remarks)),
+        texts.pantograph,
+        texts.value,
+        texts.error,
+        texts.limits,
+        texts.margin if bar is None else (bar, f" {texts.margin}"),
+        doc.VerdictMark(criterion.verdict),
+        doc.TrustMark(texts.trust),
+        "–" if number is None else doc.Link(f"[{number}]", f"{source_anchor}-{number}"),
+    )
+
+
+def _bar(criterion: Criterion, value: float) -> doc.Drawing:
+    lower, upper, verdict = criterion.lower, criterion.upper, criterion.verdict
+    meaning = read_words()["verdict"][verdict]["meaning"]
+    text = "{}, limits {}".format(*format_beside_limits(value, lower, upper))
+    return doc.Drawing(draw_margin_bar(value, lower, upper, criterion.error, verdict), f"{meaning}: {text}")
+
+
+def error_name(criteria: Sequence[Criterion]) -> str:
+    """Heading of the errors of criteria: their uncertainty, or their discretisation error."""
+    uncertain = any(criterion.uncertainty is not None for criterion in criteria)
+    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
+
+
+def criterion_title(criterion: Criterion) -> str:
+    """Label of the quantity, or of its drift from a baseline."""
+    drift = "" if criterion.baseline is None else ", drift from the baseline"
+    return f"{quantity_label(criterion.quantity)}{drift}"
+
+
+def _remark_limit(criterion: Criterion) -> str | None:
+    """A remark on the uncertainty of the measurement behind a limit, if it is known."""
+    if not criterion.limit_uncertainty:
+        return None
+    width = f"{format_value(criterion.limit_uncertainty, 2)} {criterion.unit}".rstrip()
+    return f"uncertainty of the measurement ± {width}"
+
+
+def remark_shift(criterion: Criterion) -> str | None:
+    """A remark on the change of a value over the compared spans of its case, if it has any."""
+    if criterion.spread is None or criterion.value is None:
+        return None
+    change = f"{format_value(criterion.spread, 2)} {criterion.unit}".rstrip()
+    return f"changes by up to {change} when the analysis section is shifted span by span"
+
+
+# A margin drawn as a bar: where a value lies between its limits.
+#
+#   outside   |      inside      |   outside
+# ------------|========+---O-----|------------
+#           lower    middle    upper
+#
+# A filled disc is inside the limits, a cross is outside, an open ring does not count; the shapes differ without colour.
+# A value beyond the drawing is an arrow at its edge. The whisker is the error of the value.
+WIDTH, HEIGHT = 100.0, 18.0
+MIDDLE = HEIGHT / 2
+# Distance of a limit from the middle, as a share of half the width.
+BAR_REACH = 0.56
+# A value closer to an edge is drawn as an arrow.
+EDGE = 6.0
+
+
+def draw_margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
+    """SVG of the bar without text; the error is half the length of the whisker, the verdict selects the marker."""
+    centre, half = _scale(lower, upper)
+
+    def across(x: float) -> float:
+        return WIDTH / 2 * (1 + BAR_REACH * (x - centre) / half)
+
+    left = 0.0 if lower is None else across(lower)
+    right = WIDTH if upper is None else across(upper)
+    parts = [
+        f'<line x1="0" y1="{MIDDLE:g}" x2="{WIDTH:g}" y2="{MIDDLE:g}" stroke="#8a929b" stroke-width="1"/>',
+        f'<rect x="{left:.2f}" y="4" width="{max(right - left, 0):.2f}" height="{HEIGHT - 8:g}" fill="#d5dbe1"/>',
+    ]
+    parts += [
+        f'<line x1="{x:.2f}" y1="1" x2="{x:.2f}" y2="{HEIGHT - 1:g}" stroke="#1a1d21" stroke-width="1.6"/>'
+        for limit, x in ((lower, left), (upper, right))
+        if limit is not None
+    ]
+    x = across(value)
+    if error and EDGE <= x <= WIDTH - EDGE:
+        low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
+        whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
+        parts.append(f'<path d="{whisker}" stroke="#1a1d21" stroke-width="1"/>')
+    parts.append(_marker(x, verdict))
+    size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
+
+
+def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:
+    """Middle of the drawing and the distance that fills `BAR_REACH` of its half, in the unit of the quantity."""
+    if lower is not None and upper is not None:
+        return (lower + upper) / 2, (upper - lower) / 2 or max(abs(lower), 1.0)
+    if upper is not None:
+        return upper - (abs(upper) or 1.0), abs(upper) or 1.0
+    return (0.0, 1.0) if lower is None else (lower + (abs(lower) or 1.0), abs(lower) or 1.0)
+
+
+def _marker(x: float, verdict: str) -> str:
+    ink = {"pass": "#1b5e3a", "fail": "#8c1d18"}.get(verdict, "#1a1d21")
+    if x < EDGE:
+        return f'<path d="M1 {MIDDLE:g}l9 -6v12z" fill="{ink}"/>'
+    if x > WIDTH - EDGE:
+        return f'<path d="M{WIDTH - 1:g} {MIDDLE:g}l-9 -6v12z" fill="{ink}"/>'
+    if verdict == "fail":
+        cross = f"M{x - 4.5:.2f} {MIDDLE - 4.5:g}l9 9m0 -9l-9 9"
+        return f'<path d="{cross}" stroke="{ink}" stroke-width="2.6" fill="none"/>'
+    fill, edge = (ink, "#ffffff") if verdict == "pass" else ("#ffffff", ink)
+    return f'<circle cx="{x:.2f}" cy="{MIDDLE:g}" r="4.5" fill="{fill}" stroke="{edge}" stroke-width="1.4"/>'

@@ -1,0 +1,156 @@
+"""Report on a damping fit, from damping.json."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.damping_figures import draw_comparison, draw_observability
+from pantocheck.conformance.pages.shape_figure import draw_shapes, list_paired_rows
+from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
+from pantocheck.conformance.results.damping_format import (
+    Coefficient,
+    DampingResults,
+    Matching,
+    Observability,
+    PairedMode,
+    PairedShapes,
+    Thresholds,
+)
+
+COEFFICIENT_UNITS = {"stiffness": "s", "mass": "1/s"}
+RESULT = (
+    "The block replaces [damping] in the line file. Mass coefficients multiply M, stiffness coefficients multiply K."
+)
+LINE_STATES = {
+    "verified": "The line of the fit is the line of the record.",
+    "unverified": "The line of the fit is not verified.",
+    "contradicted": "The line of the fit is NOT the line of the record.",
+}
+COMPARISON = "The line as it is: the line with the damping of its line file."
+
+
+def build_damping_document(results: DampingResults, block: str) -> doc.Document:
+    """The report on a damping fit; the block is its result as TOML for the line file."""
+    results = clean_tree(results.rounded())
+    kinds = dict.fromkeys(_component(row) for row in results.observability if row.observable)
+    headline = (
+        f"Rayleigh damping is fitted to {sum(pair.used for pair in results.pairs)} modes; the residual is "
+        f"{100 * results.residual:.2g} % of their damping ratios. Observable: {', '.join(kinds) or 'nothing'}. "
+        f"{sum(row.determined for row in results.coefficients)} of {len(results.coefficients)} coefficients "
+        f"are determined. {LINE_STATES[results.line.state]}"
+    )
+    header = doc.PlainHeader("Damping model from mass drops", headline)
+    warnings = list(results.warnings)
+    if results.unpaired:
+        frequencies = ", ".join(format_value(frequency) for frequency in results.unpaired)
+        warnings.append(f"measured modes without a counterpart in the model: {frequencies} Hz")
+    blocks: list[doc.Block] = [doc.WarningBox(tuple(warnings))] if warnings else []
+    blocks.append(doc.Paragraph(describe_matching(results.matching, results.thresholds)))
+    comparison = doc.Figure(
+        draw_comparison(results.comparison),
+        "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
+        "Damping ratio: measured (95 % intervals), of the line as it is, of Rayleigh, and of Rayleigh + modal damping.",
+    )
+    observability = doc.Figure(
+        draw_observability(results.observability, results.thresholds),
+        "Bars of the numbers in the table; filled bars are observable.",
+        "Observability: filled bars are observable, dashed lines are the thresholds.",
+    )
+    explanation = describe_observability(results.thresholds)
+    sections: dict[str, tuple[doc.Block, ...]] = {
+        "Result": (doc.Paragraph(RESULT), doc.CodeBlock(block), _coefficient_table(results.coefficients)),
+        "Comparison": (doc.Paragraph(COMPARISON), doc.Figures((comparison,))),
+        "Mode shapes": tuple(_list_shape_figures(results.shapes)),
+        "Observability": (
+            doc.Paragraph(explanation),
+            doc.Figures((observability,)),
+            _observability_table(results.observability),
+        ),
+        "Pairs of modes": (_pair_table(results.pairs),),
+    }
+    blocks += (doc.Section(heading, parts) for heading, parts in sections.items() if parts)
+    return doc.Document(header.heading, header, tuple(blocks))
+
+
+def describe_observability(thresholds: Thresholds) -> str:
+    """Meaning of an observable coefficient, by the `thresholds` of damping.json."""
+    return (
+        "A coefficient is observable if its plausible value contributes at least "
+        f"{100 * thresholds.largest_share:g} % of the damping of some mode and is at least "
+        f"{thresholds.plausible_over_std:g} times its standard deviation. "
+        "The standard deviation takes the coefficients of the wires as unknown as well."
+    )
+
+
+def describe_matching(matching: Matching, thresholds: Thresholds) -> str:
+    """Share and MAC of the matched modes, and the thresholds of a determined coefficient."""
+    return (
+        f"{matching.matched} of {matching.modes} identified modes "
+        f"({format_percent(matching.matched_share, 3)} %) have a counterpart in the model of the line. "
+        f"MAC of the matched modes: median {format_value(matching.median_mac, 3)}, "
+        f"lowest {format_value(matching.lowest_mac, 3)}. A coefficient is determined if it is observable, if at "
+        f"least {100 * thresholds.matched_share:g} % of the modes are matched, and if their median MAC is at least "
+        f"{thresholds.median_mac:g}."
+    )
+
+
+def _list_shape_figures(shapes: PairedShapes) -> Iterator[doc.Figures]:
+    """One figure with the shapes of all listed groups; none without modes of two sensors."""
+    if columns := list_paired_rows(shapes.modes):
+        values = "; ".join(row.label.replace("\n", ", ") for column in columns for row in column.rows)
+        figure = doc.Figure(
+            draw_shapes(columns, shapes.supports_m),
+            f"Computed shapes of contact and messenger wire with the measured values at the sensors: {values}.",
+            "Mode shapes: computed along the line, and measured at the sensors (real part), with the frequency and the "
+            "MAC; vertical lines are supports.",
+        )
+        yield doc.Figures((figure,))
+
+
+def _component(row: Coefficient | Observability) -> str:
+    return row.kind.replace("_", " ")
+
+
+def _matrix(row: Coefficient | Observability) -> str:
+    return row.matrix
+
+
+def _coefficient_table(rows: Sequence[Coefficient]) -> doc.Table:
+    cells: dict[str, Callable[[Coefficient], str]] = {
+        "Component": _component,
+        "Multiplies": _matrix,
+        "Value": lambda row: f"{format_value(row.value)} {COEFFICIENT_UNITS[row.matrix]}",
+        "95 % interval": lambda row: f"{format_value(row.low_95, 3)} to {format_value(row.high_95, 3)}",
+        "Determined": lambda row: "yes" if row.determined else "not determined",
+    }
+    return doc.make_grid("Coefficients", rows, cells)
+
+
+def _observability_table(rows: Sequence[Observability]) -> doc.Table:
+    cells: dict[str, Callable[[Observability], str]] = {
+        "Component": _component,
+        "Multiplies": _matrix,
+        "Share [%]": lambda row: format_percent(row.largest_share, 3),
+        "Std": lambda row: format_value(row.std, 2),
+        "Plausible / std": lambda row: format_value(row.plausible_over_std, 3),
+        "Inflation": lambda row: format_value(row.variance_inflation, 3),
+        "Residual without": lambda row: format_value(row.residual_without, 3),
+        "Observable": lambda row: "yes" if row.observable else "no",
+    }
+    return doc.make_grid("Information of the modes on each coefficient", rows, cells)
+
+
+def _explain_omission(pair: PairedMode) -> str:
+    return "no: overlaps another mode" if pair.overlapping else "no: outlier of its group"
+
+
+def _pair_table(pairs: Sequence[PairedMode]) -> doc.Table:
+    cells: dict[str, Callable[[PairedMode], str]] = {
+        "Measured [Hz]": lambda pair: format_value(pair.measured_Hz, 5),
+        "Computed [Hz]": lambda pair: format_value(pair.computed_Hz, 5),
+        "MAC": lambda pair: format_value(pair.mac, 4),
+        "Group": lambda pair: str(pair.group),
+        "Measured ζ [%]": lambda pair: format_percent(pair.measured),
+        "Fitted ζ [%]": lambda pair: format_percent(pair.fitted),
+        "Used": lambda pair: "yes" if pair.used else _explain_omission(pair),
+    }
+    return doc.make_grid("Measured modes and their computed counterparts", pairs, cells)

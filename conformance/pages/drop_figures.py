@@ -1,0 +1,148 @@
+"""Figures of a drop comparison: motion of record and models laid over each other, and residual energy against time."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LINES, SHADES, add_legend, render_svg, use_decades
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
+from pantocheck.conformance.results.drop_comparison_format import EnergyCurve, MotionCurve
+from pantocheck.conformance.results.identification_format import Curve, CurveWindow, OverlayRun
+
+RECORD_WIDTH = 2.2
+"""Width of the pale line of the record [pt]; the lines of the models lie on it."""
+
+
+@render_svg
+def draw_drop_motion(curves: Sequence[MotionCurve]) -> Figure:
+    """Velocity and acceleration of one place in every window."""
+    figure = Figure(figsize=(FULL, 0.6 + 1.7 * len(curves)))
+    panels = np.atleast_1d(figure.subplots(len(curves), 1))
+    for axes, curve in zip(panels, curves, strict=True):
+        if curve.record is not None:
+            axes.plot(curve.time_s, curve.record, color=SHADES[3], linewidth=RECORD_WIDTH, label="record")
+        _plot_models(axes, curve.time_s, curve.models)
+        unit = "m/s" if curve.motion == "velocity" else "m/s²"
+        axes.set_ylabel(f"{curve.motion} [{unit}]")
+        axes.margins(x=0)
+    panels[-1].set_xlabel("time after the release [s]")
+    add_legend(panels[0])
+    return figure
+
+
+@render_svg
+def draw_residual_energy(energy: EnergyCurve, graded: str) -> Figure:
+    """Mean square of the velocity against time, and of the difference of the graded model."""
+    figure = Figure(figsize=(FULL, 2.4))
+    axes = figure.subplots()
+    if energy.record is not None:
+        axes.plot(energy.time_s, energy.record, color=SHADES[3], linewidth=RECORD_WIDTH, label="record")
+    _plot_models(axes, energy.time_s, energy.models)
+    if graded in energy.differences:
+        label = f"{graded} − record"
+        axes.plot(energy.time_s, energy.differences[graded], ":", color=GREY, linewidth=1.0, label=label)
+    use_decades(axes)
+    axes.margins(x=0)
+    axes.set(xlabel="time after the release [s]", ylabel="mean square [m²/s²]")
+    add_legend(axes)
+    return figure
+
+
+def _plot_models(axes: Axes, time: Sequence[float], models: Mapping[str, Sequence[float]]) -> None:
+    for number, (name, values) in enumerate(models.items()):
+        style, shade = LINES[number % len(LINES)], (INK, *SHADES[1:3])[number % 3]
+        axes.plot(time, values, style, color=shade, linewidth=0.8, label=name)
+
+
+# Schematic of a mass drop: supports, wires, sensors and masses along the line, without a scale of the heights.
+DRAWN_SAG = 0.4
+"""Sag of the messenger wire in the drawing; the contact wire has height 0, the messenger wire at a support height 1."""
+
+DRAWN_DROPPERS = 5
+"""Droppers drawn in a span; their real number is not known."""
+
+NAME_OFFSET = 0.16
+"""Distance of a text from its point in the drawing."""
+
+
+@dataclass(frozen=True)
+class DrawnPlace:
+    """Sensor or mass on a wire: its text, wire, and position [m]."""
+
+    label: str
+    wire: str
+    position_m: float
+
+
+@render_svg
+def draw_drop_layout(spans: Sequence[float], sensors: Sequence[DrawnPlace], masses: Sequence[DrawnPlace]) -> Figure:
+    """Wires over spans [m]; sensors stand above and masses below their wires."""
+    figure, panels = add_panels(PanelGrid(FULL, 1.1, left=0.15, right=0.15, top=0.02))
+    axes = panels[0][0]
+    supports = np.concatenate([[0.0], np.cumsum(spans)])
+    for start, end in pairwise(supports):
+        x = np.linspace(start, end, 21)
+        places = start + (np.arange(DRAWN_DROPPERS) + 0.5) / DRAWN_DROPPERS * (end - start)
+        axes.plot(x, _messenger_height(x, supports), color=INK, linewidth=0.8)
+        axes.vlines(places, 0.0, _messenger_height(places, supports), color=GREY, linewidth=0.5)
+    axes.plot(supports[[0, -1]], [0.0, 0.0], color=INK, linewidth=1.4)
+    axes.vlines(supports, -0.15, 1.15, color=GREY, linewidth=1.8)
+    _draw_points(axes, supports, sensors, "s", NAME_OFFSET)
+    _draw_points(axes, supports, masses, "v", -NAME_OFFSET - 0.1)
+    axes.set(xlim=(supports[0] - 2, supports[-1] + 2), ylim=(-0.7, 1.4), xlabel="position along the line [m]")
+    axes.set_xticks(supports, [f"{x:g}" for x in supports])
+    axes.set_yticks([])
+    axes.spines.left.set_visible(False)
+    return figure
+
+
+def _draw_points(axes: Axes, supports: RealArray, points: Sequence[DrawnPlace], marker: str, offset: float) -> None:
+    for point in points:
+        x = np.array([point.position_m])
+        height = float(_messenger_height(x, supports)[0]) if point.wire == "MW" else 0.0
+        # A mass hangs below its wire.
+        axes.plot(x, [height - 0.1 * (marker == "v")], marker, color=INK, markersize=6 if marker == "v" else 4)
+        side = "bottom" if offset > 0 else "top"
+        ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
+        axes.text(x[0], height + offset, point.label, ha="center", va=side, size=7, bbox=ground)
+
+
+def _messenger_height(x: RealArray, supports: RealArray) -> RealArray:
+    """Height of the messenger wire in the drawing: a parabola in each span."""
+    span = np.clip(np.searchsorted(supports, x, side="right") - 1, 0, supports.size - 2)
+    s = (x - supports[span]) / (supports[span + 1] - supports[span])
+    return np.asarray(1.0 - 4 * DRAWN_SAG * s * (1 - s))
+
+
+# Velocity and acceleration at one sensor after the release and a minute later.
+MOTIONS: dict[str, Callable[[CurveWindow], Curve]] = {
+    "velocity [m/s]": lambda window: window.velocity_m_s,
+    "acceleration [m/s²]": lambda window: window.acceleration_m_s2,
+}
+"""Curve of each row by its label."""
+
+
+@render_svg
+def draw_motion(runs: Sequence[OverlayRun]) -> Figure:
+    """Records of one drop laid over each other, one column per window; `runs` of an entry of `overlays`."""
+    windows = max(len(run.windows) for run in runs)
+    grid = PanelGrid(FULL, 1.5, rows=len(MOTIONS), columns=windows, between_rows=0.15, between_columns=0.5)
+    figure, panels = add_panels(grid)
+    for row, (label, select) in zip(panels, MOTIONS.items(), strict=True):
+        for window, axes in enumerate(row):
+            for number, run in enumerate(runs):
+                if window < len(run.windows):
+                    data = run.windows[window]
+                    shade, style = SHADES[number % len(SHADES)], LINES[number % len(LINES)]
+                    axes.plot(data.time_s, select(data), style, color=shade, linewidth=1.0, label=run.name)
+            axes.tick_params(labelbottom=row is panels[-1])
+        row[0].set_ylabel(label)
+    for axes in panels[-1]:
+        axes.set_xlabel("time after the release [s]")
+    panels[0][0].legend(loc="lower left", bbox_to_anchor=(0, 1.02), ncols=5, borderaxespad=0.2)
+    return figure

@@ -1,0 +1,172 @@
+"""A document as one HTML file: complete without its script, nothing fetched, every text escaped."""
+
+import re
+from base64 import b64encode
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from hashlib import sha256
+from html import escape
+from itertools import count
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup
+
+from pantocheck.conformance.core.figure_style import format_date
+from pantocheck.conformance.core.texts import TEMPLATES
+from pantocheck.conformance.pages.document import Document, to_plain
+from pantocheck.conformance.pages.embedded_results import BLOCK_ID, encode_data_block
+from pantocheck.conformance.pages.words import bind_page_units, read_words
+
+
+def render_html(document: Document) -> str:
+    """HTML text of a document; its results are embedded as a data block."""
+    # The encoded results hold no character that HTML interprets.
+    block = None if document.results is None else Markup(encode_data_block(document.results))
+    code = read_plain_code() if document.results is None else read_results_code()
+    page = _build_environment().get_template("page.html")
+    return page.render(
+        document=bind_page_units(to_plain(replace(document, results=None))),
+        styles=tuple(map(Markup, code.styles)),
+        scripts=tuple(map(Markup, code.scripts)),
+        policy=Markup(code.policy),
+        notice=Markup(code.notice),
+        results=block,
+        date="" if document.results is None else format_date(document.date),
+        results_id=BLOCK_ID,
+        figure_numbers=count(1),
+    )
+
+
+@cache
+def _build_environment() -> Environment:
+    environment = Environment(
+        loader=FunctionLoader(lambda name: (TEMPLATES / name).read_text("utf-8")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        keep_trailing_newline=True,
+    )
+    # Figures and drawings are made by this project, with every text escaped, and may enter the page as markup.
+    environment.filters |= {"inline_svg": Markup, "inline_figure": _inline}
+    environment.globals |= {"verdicts": read_words()["verdict"], "trusts": read_words()["trust"]}
+    return environment
+
+
+@pass_context
+def _inline(context: Context, figure: Mapping[str, str]) -> Markup:
+    """Markup of a figure, with a number of its own on the page."""
+    return Markup(inline_figure(figure["svg"], figure["alternative"], f"figure-{next(context['figure_numbers'])}-"))
+
+
+# Styles and scripts of a page, and the security policy that admits them by their digests and nothing else.
+PAGE_STYLE, PLOT_STYLE = "page.css", "uplot/uPlot.min.css"
+
+PLOT_LIBRARY = "uplot/uPlot.iife.min.js"
+"""Unmodified file of the release 1.6.32 of uPlot, from its package of the npm registry; licence in the same folder."""
+
+PLOT_LICENCE = "uplot/LICENSE"
+
+TABLE_SCRIPTS = ("elements", "folding", "tables")
+"""Parts of the script of every page."""
+
+CURVE_SCRIPTS = (
+    *("results", "download", "spectrum", "spans"),
+    *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
+    *("force_view", "curves_view", "uplift_view", "measured_view", "views"),
+)
+"""Further parts of the script of a page with results, in the order of their use."""
+
+
+@dataclass(frozen=True)
+class PageCode:
+    """Style sheets and scripts of a page."""
+
+    styles: tuple[str, ...]
+    scripts: tuple[str, ...]
+    notice: str = ""
+    """Licence of the scripts of others, which has to stand in every copy of them."""
+
+    @property
+    def policy(self) -> str:
+        """Content security policy: no request, no code but these texts; `data:` admits images inside figures."""
+        sources = {"script-src": self.scripts, "style-src": self.styles}
+        admitted = (f"{name} {' '.join(map(_digest, texts))}" for name, texts in sources.items())
+        return "; ".join(("default-src 'none'", *admitted, "img-src data:", "base-uri 'none'", "form-action 'none'"))
+
+
+@cache
+def read_plain_code() -> PageCode:
+    """Styles and scripts of a page without results."""
+    return PageCode((_read(PAGE_STYLE),), (_join_parts(TABLE_SCRIPTS),))
+
+
+@cache
+def read_results_code() -> PageCode:
+    """Styles and scripts of a page with results, whose curves the library for plots draws."""
+    scripts = (_read(PLOT_LIBRARY), _join_parts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)))
+    return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts, f"uPlot: {_read(PLOT_LICENCE)}")
+
+
+def _read(name: str) -> str:
+    return (TEMPLATES / name).read_text("utf-8")
+
+
+def _join_parts(names: tuple[str, ...]) -> str:
+    """Parts of a script in one scope, so that their names do not reach the page."""
+    parts = (_read(f"scripts/{name}.js") for name in names)
+    return "\n".join(("(() => {", '"use strict";', *parts, "})();"))
+
+
+def _digest(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+
+
+# A figure as a part of an HTML page: its text can be searched, and no style of it reaches the page.
+#
+# The policy of the page refuses style attributes, and the ids of all figures of a page share one name space. Text of a
+# figure may come from a file of unknown origin; matplotlib escapes it, and only tags are changed here.
+TAG = re.compile(r"<[^/>][^>]*>")
+"""A tag, but not the end of an element: matplotlib escapes `>` in texts and in attributes."""
+
+STYLE_ELEMENT = re.compile(r"<style\b[^>]*>[^<]*</style>")
+STYLE_ATTRIBUTE = re.compile(r'\bstyle="([^"]*)"')
+SIZE = re.compile(r'\s(?:width|height)="[^"]*"')
+IDENTITY = re.compile(r'\sid="([^"]*)"')
+REFERENCE = re.compile(r'(?<=href="#)[^"]+|(?<=url\(#)[^)"]+')
+
+DEFAULTS = {"stroke-linejoin": "round", "stroke-linecap": "butt"}
+"""Presentation attributes that matplotlib states in a style element."""
+
+
+def inline_figure(svg: str, alternative: str, prefix: str) -> str:
+    """Markup of a figure inside a page.
+
+    Args:
+        svg: Figure of this project.
+        alternative: Alternative text.
+        prefix: Prefix of every id of the figure, not used by another figure of the page.
+
+    Returns:
+        An element `svg` with the role of an image, without style attributes; ids that nothing refers to are left out.
+    """
+    drawing = STYLE_ELEMENT.sub("", svg)
+    used = frozenset(REFERENCE.findall(drawing))
+    start, end = TAG.match(drawing).span()  # type: ignore[union-attr]  # a figure begins with its tag
+    attributes = {"role": "img", "aria-label": escape(alternative), **DEFAULTS}
+    root = SIZE.sub("", drawing[start + len("<svg") : end])
+    written = "".join(f' {name}="{value}"' for name, value in attributes.items())
+
+    def change_tag(match: re.Match[str]) -> str:
+        tag = STYLE_ATTRIBUTE.sub(lambda found: _state_attributes(found[1]), match[0])
+        tag = IDENTITY.sub(lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", tag)
+        return REFERENCE.sub(lambda found: prefix + found[0], tag) if "#" in tag else tag
+
+    return f"<svg{written}{root}{TAG.sub(change_tag, drawing[end:])}"
+
+
+@lru_cache(maxsize=1000)  # a figure has few styles and many elements
+def _state_attributes(style: str) -> str:
+    """Presentation attributes instead of a style attribute."""
+    pairs = (declaration.split(":", 1) for declaration in style.split(";") if ":" in declaration)
+    return " ".join(f'{name.strip()}="{value.strip()}"' for name, value in pairs)

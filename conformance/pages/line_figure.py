@@ -1,0 +1,168 @@
+"""Line at rest around the analysis section: side view and, of a line with stagger, plan view."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from pantocheck.conformance.core.figure_data import DrawnView, LineShape
+from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, PlotStyle, render_svg
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
+from pantocheck.conformance.pages.words import format_plain
+
+WIRE_WIDTHS = {"contact_wire": 1.4, "messenger_wire": 0.9, "stitch_wire": 0.6}
+POINT_SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "mass": "v"}
+"""Marker of each part that is drawn as a point."""
+
+MOST_LABELLED = 14
+"""Largest number of supports whose positions have room below the axis; of more, every second one is written."""
+
+
+@render_svg
+def draw_line_shape(shape: LineShape, section: tuple[float, float] | None) -> Figure:
+    """Draw a line at rest, with the analysis section [m] on a grey ground."""
+    views = [("height [m]", shape.side)] + ([] if shape.plan is None else [("y [m]", shape.plan)])
+    figure, panels = add_panels(PanelGrid(FULL, 1.0, rows=len(views), right=0.2, between_rows=0.12))
+    for (axes,), (name, view) in zip(panels, views, strict=True):
+        if section is not None:
+            axes.axvspan(*section, color=PALE, zorder=0)
+        _draw_view(axes, view)
+        supports = shape.supports_m
+        axes.set(xlim=(supports[0], supports[-1]), ylabel=name)
+        axes.margins(y=0.12)
+        axes.yaxis.set_label_coords(-0.065, 0.5)
+        axes.set_xticks(supports[:: 1 if len(supports) <= MOST_LABELLED else 2])
+        axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
+        axes.tick_params(labelbottom=axes is panels[-1][0])
+    panels[-1][0].set_xlabel("position along the line [m]")
+    _add_symbols(panels[0][0], shape.side)
+    return figure
+
+
+def _draw_view(axes: Axes, view: DrawnView) -> None:
+    droppers = view.droppers
+    axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, color=GREY, linewidth=0.6)
+    for curve in view.curves:
+        axes.plot(curve.x_m, curve.y_m, color=INK, linewidth=WIRE_WIDTHS[curve.kind])
+    for point in view.points:
+        axes.plot(point.x_m, point.y_m, clip_on=False, **_style(point.symbol))
+        if point.text:
+            place = (point.x_m, point.y_m)
+            axes.annotate(
+                point.text, place, xytext=(0, -5), textcoords="offset points", fontsize=6, ha="center", va="top"
+            )
+
+
+def _style(symbol: str) -> PlotStyle:
+    ground = "white" if symbol == "steady arm" else INK
+    return {"marker": POINT_SYMBOLS[symbol], "linestyle": "", "color": INK, "markersize": 3, "markerfacecolor": ground}
+
+
+def _add_symbols(axes: Axes, view: DrawnView) -> None:
+    """Names of the symbols that the drawing has."""
+    shown = {point.symbol for point in view.points}
+    handles = [Line2D([], [], label=symbol, **_style(symbol)) for symbol in POINT_SYMBOLS if symbol in shown]
+    axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=len(handles) or 1, borderaxespad=0.1)
+
+
+# Scheme of a pantograph that is a chain: base, masses, springs, dampers and contact, with their values.
+BOTTOM, GAP, BOX = 0.16, 0.38, 0.24
+"""Height of the base, length of a spring, height of a mass [in]."""
+
+LEFT, RIGHT = 1.05, 2.35
+"""Edges of a mass [in]."""
+
+SPRING_X, DAMPER_X = 1.45, 1.95
+"""Positions of springs and dampers [in]."""
+
+LONGEST_MASS_NAME = 14
+"""Largest number of characters of the name of a mass, which its box holds."""
+
+
+@dataclass(frozen=True)
+class DrawnChain:
+    """Chain of masses from base to head."""
+
+    masses: tuple[float, ...]
+    stiffness: tuple[float, ...]
+    damping: tuple[float, ...]
+    """Masses [kg], and spring [N/m] and damper [N s/m] below each of them."""
+    names: tuple[str, ...]
+    """Name of each mass."""
+    lifted: int
+    """Index of the mass on which the uplift force acts."""
+    contact_stiffness: float
+    """Stiffness of the contact [N/m]."""
+
+
+@render_svg
+def draw_chain(chain: DrawnChain) -> Figure:
+    """Scheme of a chain; a spring or damper of 0 is left out."""
+    wire = BOTTOM + len(chain.masses) * (GAP + BOX) + GAP
+    figure = Figure(figsize=(HALF, wire + 0.1))
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0, HALF), ylim=(0, wire + 0.1))
+    axes.set_axis_off()
+    _draw_base(axes)
+    values = zip(chain.masses, chain.stiffness, chain.damping, chain.names, strict=True)
+    for number, (mass, stiffness, damping, name) in enumerate(values):
+        below = BOTTOM + number * (GAP + BOX)
+        _draw_spring(axes, SPRING_X, below, stiffness)
+        _draw_damper(axes, below, damping)
+        middle = below + GAP + BOX / 2
+        axes.fill_between([LEFT, RIGHT], middle - BOX / 2, middle + BOX / 2, facecolor=PALE, edgecolor=INK)
+        _write(axes, (LEFT + RIGHT) / 2, middle, f"{_shorten(name)} {format_plain(mass)} kg", "center")
+        if number == chain.lifted:
+            _draw_uplift_force(axes, middle)
+    _draw_spring(axes, (LEFT + RIGHT) / 2, wire - GAP, chain.contact_stiffness)
+    axes.plot([0.7, 2.7], [wire, wire], color=INK, linewidth=1.8)
+    _write(axes, 2.75, wire, "contact wire", "left")
+    return figure
+
+
+def _draw_base(axes: Axes) -> None:
+    axes.plot([LEFT, RIGHT], [BOTTOM, BOTTOM], color=INK, linewidth=1.2)
+    for x in np.linspace(LEFT + 0.1, RIGHT, 10):
+        axes.plot([x - 0.08, x], [BOTTOM - 0.08, BOTTOM], color=GREY, linewidth=0.7)
+
+
+def _draw_spring(axes: Axes, x: float, below: float, stiffness: float) -> None:
+    """Spring from `below` upwards, with its stiffness on the left."""
+    if stiffness == 0:
+        return
+    offset = 0.06 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 0, 0])
+    height = np.array([0.0, 0.18, 0.24, 0.35, 0.46, 0.57, 0.68, 0.77, 0.82, 1.0])
+    axes.plot(x + offset, below + GAP * height, color=INK, linewidth=0.9)
+    _write(axes, x - 0.12, below + GAP / 2, f"{format_plain(stiffness)} N/m", "right")
+
+
+def _draw_damper(axes: Axes, below: float, damping: float) -> None:
+    """Damper from `below` upwards, a piston in a cylinder, with its value on the right."""
+    if damping == 0:
+        return
+    low, piston, top = below + 0.3 * GAP, below + 0.52 * GAP, below + 0.7 * GAP
+    cylinder = [(-0.07, top), (-0.07, low), (0.07, low), (0.07, top)]
+    axes.plot([DAMPER_X + x for x, _ in cylinder], [y for _, y in cylinder], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X, DAMPER_X], [below, low], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X, DAMPER_X], [piston, below + GAP], color=INK, linewidth=0.9)
+    axes.plot([DAMPER_X - 0.05, DAMPER_X + 0.05], [piston, piston], color=INK, linewidth=1.6)
+    _write(axes, DAMPER_X + 0.12, below + GAP / 2, f"{format_plain(damping)} N s/m", "left")
+
+
+def _draw_uplift_force(axes: Axes, middle: float) -> None:
+    x = RIGHT + 0.12
+    axes.plot([RIGHT, x], [middle, middle], color=INK, linewidth=0.7)
+    arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7}
+    axes.annotate("", xy=(x, middle + 0.2), xytext=(x, middle - 0.08), arrowprops=arrow)
+    _write(axes, x + 0.08, middle, "uplift force", "left")
+
+
+def _write(axes: Axes, x: float, y: float, text: str, side: str) -> None:
+    axes.text(x, y, text, ha=side, va="center", fontsize=7)
+
+
+def _shorten(name: str) -> str:
+    return name if len(name) <= LONGEST_MASS_NAME else f"{name[: LONGEST_MASS_NAME - 1]}…"

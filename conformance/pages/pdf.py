@@ -1,0 +1,85 @@
+"""A document as PDF, typeset by Typst; with embedded results it is PDF/A-3a."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.ft2font import FT2Font
+
+from pantocheck.conformance.core.extras import refuse_missing_package
+from pantocheck.conformance.core.texts import TEMPLATES
+from pantocheck.conformance.pages.document import Document, to_plain
+from pantocheck.conformance.pages.embedded_results import NAME, encode_attachment
+from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
+
+# Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
+FONTS = Path(matplotlib.get_data_path(), "fonts", "ttf")
+
+
+def render_pdf(document: Document) -> bytes:
+    """PDF of a document.
+
+    The same document gives the same bytes. A document without results bears no date. A character without a glyph is
+    printed as U+FFFD; the embedded results keep it.
+    """
+    words = read_words()
+    data = {
+        "document": bind_page_units(to_plain(replace(document, results=None))),
+        "attachment": None,
+        "verdicts": words["verdict"],
+        "trusts": words["trust"],
+    }
+    files = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
+    options: dict[str, Any] = {}
+    if document.results is not None:
+        data["attachment"] = NAME
+        files[NAME] = encode_attachment(document.results)
+        options = {"pdf_standards": "a-3a", "timestamp": document.date}
+    files["main.typ"] = files.pop("page.typ")
+    files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
+    return typeset(files, **options)
+
+
+def typeset(files: dict[str, bytes], **options: Any) -> bytes:
+    """PDF of a source `main.typ` with its other files, with the fonts of the suite alone.
+
+    Raises:
+        InputError: The extra `pdf` is not installed.
+    """
+    with refuse_missing_package("a report as PDF"):
+        import typst
+    # typst takes a dictionary of files, which its type hints do not know.
+    sources: Any = files
+    return bytes(typst.compile(sources, ignore_system_fonts=True, font_paths=[str(FONTS)], **options))
+
+
+@cache
+def _glyphs() -> frozenset[int]:
+    return frozenset(FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap())
+
+
+def replace_missing_glyphs(text: str) -> str:
+    """A text with every character that has no glyph replaced by U+FFFD."""
+    if text.isascii():  # most texts, and all figures
+        return text
+    return "".join(c if c.isascii() or ord(c) in _glyphs() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+# Appearance of a visible signature, typeset by Typst as a page of its own.
+def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:
+    """PDF of one untagged page with lines of text in a frame.
+
+    Args:
+        lines: Lines of text; each is shrunk to the width of the box.
+        width, height: Size of the box [points].
+    """
+    data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
+    files = {
+        "main.typ": (TEMPLATES / "signature-box.typ").read_bytes(),
+        "box.json": json.dumps(data).encode("ascii"),
+    }
+    return typeset(files, pdf_tags=False)

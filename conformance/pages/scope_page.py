@@ -1,0 +1,167 @@
+"""Identity and scope of a run on page 1: origin of the cases, weakened limits, steps of the procedure."""
+
+from collections.abc import Iterator, Mapping
+from typing import TypeVar
+
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.words import clean_tree, read_words
+from pantocheck.conformance.quantities.limit_text import raises_trust_only
+from pantocheck.conformance.results.procedure_format import ProcedureStep
+from pantocheck.conformance.results.results_format import CaseResult, Results, ScopeStep, name_case
+
+AnyStep = TypeVar("AnyStep", ScopeStep, ProcedureStep)
+
+SCOPE_HEADING = "Scope: steps of the EN 50318 procedure"
+
+CASES_SHOWN = 10
+"""Number of cases outside the steps that page 1 names; the table of cases has all."""
+
+SOURCE_LABEL = "Cases from outside the library"
+
+CHANGES_SHOWN = 5
+"""Number of weakened limits of a case on page 1; the section of the case shows all."""
+
+
+def prepare_results(results: Results) -> Results:
+    """Results for all pages: cleaned texts, and modified copies of library cases under their full name."""
+    cleaned = clean_tree(results)
+    names = {case.id: name_case(case.id, case.library) for case in cleaned.cases}
+    changes: dict[str, object] = {
+        "cases": [_rename_case(case, names[case.id]) for case in cleaned.cases],
+        "scope": [_rename_cases(step, names) for step in cleaned.scope],
+        "information": [names.get(case, case) for case in cleaned.information],
+        "verification_only": [names.get(case, case) for case in cleaned.verification_only],
+    }
+    if (procedure := cleaned.procedure) is not None:
+        steps = [_rename_cases(step, names) for step in procedure.steps]
+        changes["procedure"] = procedure.model_copy(update={"steps": steps})
+    return cleaned.model_copy(update=changes)
+
+
+def _rename_case(case: CaseResult, name: str) -> CaseResult:
+    title = f"Modified copy: {case.title}" if case.library == "modified" else case.title
+    return case.model_copy(update={"id": name, "title": title})
+
+
+def _rename_cases(step: AnyStep, names: Mapping[str, str]) -> AnyStep:
+    return step.model_copy(update={"cases": [names[case] for case in step.cases]})
+
+
+def list_identity_warnings(results: Results) -> tuple[str, ...]:
+    """Warnings on modified copies of library cases, excluded stretches, changed inputs and weakened limits."""
+    copies = [
+        f"The {case.id} has other inputs, limits or sources than the library {_kind(case)}."
+        for case in results.cases
+        if case.library == "modified"
+    ]
+    shorter = [
+        f"{case.id}: stretches of the analysis section are left out of the force statistics, as its profile permits."
+        for case in results.cases
+        if any(event.excluded for event in case.events or ())
+    ]
+    inputs = [f"{case.id}: {text}." for case in results.cases if (text := describe_changes(case))]
+    return (*copies, *shorter, *inputs, *(warn_of_changes(case) for case in results.cases if case.limit_changes))
+
+
+def summarise_identity(results: Results) -> list[str]:
+    """Sentences for the headline on modified copies, changed inputs and weakened limits."""
+    copies = sum(case.library == "modified" for case in results.cases)
+    changes = [case.limit_changes for case in results.cases if case.limit_changes]
+    inputs = sum(bool(case.changes) for case in results.cases)
+    sentences = [f"Modified copies of the library: {copies}."] if copies else []
+    sentences += [f"Cases with inputs changed with --set: {inputs}."] if inputs else []
+    if not changes:
+        return sentences
+    cases = count_noun(len(changes), "case")
+    raised = all(raises_trust_only(change) for stated in changes for change in stated)
+    effect = "raises the trust of limits" if raised else "weakens limits or changes their trust"
+    return [*sentences, f"The limits file {effect} in {cases}."]
+
+
+def describe_changes(case: CaseResult) -> str:
+    """Inputs of a case that were changed on the command line, without a full stop; empty if there are none."""
+    if not case.changes:
+        return ""
+    limits = "The limits of the library do not apply. " if case.library == "modified" else ""
+    return f"{limits}Inputs changed with --set: {'; '.join(case.changes)}"
+
+
+def warn_of_changes(case: CaseResult) -> str:
+    """Warning on the limits of a case that a limits file weakens."""
+    changes = case.limit_changes
+    more = len(changes) - CHANGES_SHOWN
+    shown = [*changes[:CHANGES_SHOWN], *([f"and {more} more"] if more > 0 else [])]
+    return f"The limits file changes limits of {case.id}. {'; '.join(shown)}."
+
+
+def describe_origin(case: CaseResult) -> str:
+    """Origin of a case or profile: the library with the edition, a modified copy, or a user; a dash if unknown."""
+    kind = _kind(case)
+    if case.library != "identical":
+        text = {"modified": "modified copy", "own": f"own {kind}", None: "–"}[case.library]
+        return f"{text}, {case.origin.text}" if case.origin else text
+    edition = f" of {case.edition}" if case.edition else ""
+    return f"library {kind}{edition}" + (f", superseded by {case.superseded_by}" if case.superseded_by else "")
+
+
+def list_sources(results: Results) -> list[tuple[str, str]]:
+    """Label and text for each source of cases from outside that took part."""
+    cases: dict[tuple[str, str], list[str]] = {}
+    for case in results.cases:
+        if origin := case.origin:
+            cases.setdefault((origin.text, origin.digest), []).append(case.id)
+    return [(SOURCE_LABEL, _describe_source(*source, names)) for source, names in cases.items()]
+
+
+def _describe_source(name: str, digest: str, cases: list[str]) -> str:
+    shown, more = cases[:CASES_SHOWN], len(cases) - CASES_SHOWN
+    listed = f"{', '.join(shown)}{f' and {more} more' if more > 0 else ''}"
+    return f"{name}, {digest}: {listed}. Inputs, limits and their trust are stated by the author of this source."
+
+
+def _kind(case: CaseResult) -> str:
+    return "profile" if case.profile else "case"
+
+
+def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
+    """Table of the steps of the procedure with the verdicts of their cases.
+
+    Args:
+        results: Results from `prepare_results`.
+        anchors: Anchor of the section of each case, by its name; empty: no links.
+    """
+    if not results.scope:
+        return ()
+    verdicts = {case.id: case.criteria_verdict or case.verdict for case in results.cases}
+    steps = [step for step in results.scope if step.state != "not done"]
+    rows = tuple(_step_row(step, verdicts, anchors) for step in steps)
+    columns = (doc.Column("Step", share=2), doc.Column("State"), doc.Column("Cases", share=3))
+    table = (doc.Table(columns, rows),) if rows else ()
+    sentences = _describe_rest(results, list(verdicts), {step.state for step in steps})
+    return (doc.Section(SCOPE_HEADING, (*table, doc.SmallPrint(" ".join(sentences))), anchor="scope"),)
+
+
+def _step_row(step: ScopeStep, verdicts: Mapping[str, Verdict], anchors: dict[str, str]) -> tuple[doc.RichText, ...]:
+    """Step of the procedure, its state, and its cases with their verdicts."""
+    cases: list[doc.Inline] = []
+    for name in step.cases:
+        label = doc.Link(name, anchors[name]) if name in anchors else name
+        cases += [", " if cases else "", label]
+        if step.state != "informative":  # a verdict belongs to other steps of the case, or to a modified copy
+            cases += [" ", doc.VerdictMark(verdicts[name])]
+    return read_words()["step"][step.step], step.state, tuple(cases) or "–"
+
+
+def _describe_rest(results: Results, cases: list[str], states: set[str]) -> Iterator[str]:
+    """Sentences on the steps that were not done, on cases outside the steps, and on the states in the table."""
+    words = read_words()
+    missing = [words["step"][step.step].lower() for step in results.scope if step.state == "not done"]
+    if missing:
+        yield f"Not done ({words['state']['not done']}): {', '.join(missing)}."
+    listed = {name for step in results.scope for name in step.cases}
+    if outside := [name for name in cases if name not in listed]:
+        shown, more = outside[:CASES_SHOWN], len(outside) - CASES_SHOWN
+        yield f"Cases outside these steps: {', '.join(shown)}{f' and {more} more' if more > 0 else ''}."
+    yield from (f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items() if name in states)

@@ -1,0 +1,170 @@
+"""Verdicts side by side: EN 50318 criteria, verification against the converged solution, drift from a baseline."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.results_format import CaseResult, Results
+
+NAMES = {
+    "criteria": "EN 50318 criteria",
+    "verification": "Verification against the converged solution, up to 50 Hz",
+    "baseline": "Drift from the baseline",
+}
+"""Title of each verdict."""
+
+SHORT_TITLES = NAMES | {"verification": "Verification up to 50 Hz"}
+
+NUMBERS = {2: "Two", 3: "Three"}
+"""Words for the number of verdicts."""
+
+MEANING = (
+    "The verdict of the report is the worse of those that decide. Verification compares with the solution of the same "
+    "equations, on which two formulations without common code agree. It is no criterion of EN 50318 and never improves "
+    "the verdict by the criteria."
+)
+
+BASELINE_MEANING = (
+    "Drift from the baseline compares with earlier results of the user. It is no criterion of EN 50318. It always "
+    "counts in the verdict of the report, and never improves it."
+)
+
+
+def case_verdict(case: CaseResult, name: str) -> Verdict | None:
+    """One of the verdicts of a case; None if the case has no converged values, or no baseline."""
+    if name == "criteria":
+        return case.criteria_verdict or case.verdict
+    part = case.verification if name == "verification" else case.baseline
+    return None if part is None else part.verdict
+
+
+def list_criteria(case: CaseResult, name: str) -> list[Criterion]:
+    """Criteria of one of the verdicts of a case."""
+    if name == "verification":
+        return [] if case.verification is None else case.verification.criteria
+    return [row for row in case.criteria if row.is_drift == (name == "baseline")]
+
+
+def select_criteria(results: Results, case: CaseResult) -> Iterator[Criterion]:
+    """Criteria of the verdicts that decide on a case; its drift from a baseline always belongs to them."""
+    for name in NAMES:
+        left_out = name == "criteria" and case.id in results.verification_only
+        decides = name in results.requested and not left_out
+        yield from (row for row in list_criteria(case, name) if decides or row.is_drift)
+
+
+def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
+    """The verdicts of a run side by side; empty if there is one only."""
+    names = _list_names(results)
+    if len(names) == 1:
+        return ()
+    rows = tuple(_verdict_row(results, name) for name in names)
+    meanings = [text for name, text in (("verification", MEANING), ("baseline", BASELINE_MEANING)) if name in names]
+    columns = (doc.Column("Verdict on", 2), doc.Column("Verdict"), doc.Column("Part"), doc.Column("Cases and basis", 3))
+    blocks = (doc.Table(columns, rows), doc.SmallPrint(" ".join(meanings)))
+    return (doc.Section(f"{NUMBERS[len(names)]} verdicts", blocks, anchor="verdicts"),)
+
+
+def _list_names(results: Results) -> list[str]:
+    """Verdicts of a run: by the criteria, and by verification and baseline if there are any."""
+    verified = results.verification_verdict is not None or "verification" in results.requested
+    compared = results.baseline_verdict is not None
+    return ["criteria", *(["verification"] if verified else []), *(["baseline"] if compared else [])]
+
+
+def _run_verdict(results: Results, name: str) -> Verdict:
+    """One of the verdicts of a run; `info` if it has none."""
+    verdicts = {
+        "criteria": results.criteria_verdict,
+        "verification": results.verification_verdict,
+        "baseline": results.baseline_verdict,
+    }
+    return verdicts[name] or "info"
+
+
+def _verdict_row(results: Results, name: str) -> tuple[doc.RichText, ...]:
+    verdict = _run_verdict(results, name)
+    part = "decides" if name == "baseline" or name in results.requested else "for information"
+    return NAMES[name], doc.VerdictMark(verdict), part, " ".join(_describe_basis(results, name))
+
+
+def _describe_basis(results: Results, name: str) -> Iterator[str]:
+    shown = {*results.information, *(results.verification_only if name == "criteria" else ())}
+    cases = [case for case in results.cases if case.id not in shown and case_verdict(case, name) is not None]
+    verdicts = Counter(case_verdict(case, name) for case in cases)
+    if not cases:
+        yield "No case takes part."
+    elif name == "criteria" and verdicts["info"] == len(cases):
+        yield "No case has a limit that counts."
+    else:
+        passed = f"{verdicts['pass']} of {count_noun(len(cases), 'case')}"
+        yield f"{passed} {'passes' if 1 in (verdicts['pass'], len(cases)) else 'pass'}."
+    if name == "baseline":
+        yield from dict.fromkeys(describe_comparison(case.baseline) for case in cases if case.baseline is not None)
+        others = [case for case in results.cases if case.id not in shown and case.baseline is None]
+        if others:
+            yield f"{count_noun(len(others), 'case was', 'cases were')} not compared."
+        return
+    rows = Counter(row.verdict for case in cases for row in list_criteria(case, name))
+    counted = sum(rows[verdict] for verdict in ("pass", "fail", "skip"))
+    if counted:
+        yield f"{rows['pass']} of {counted} counted criteria are inside their limits."
+    if name == "verification":
+        for text in dict.fromkeys(case.verification.confirmed_by for case in cases if case.verification is not None):
+            yield f"Confirmed by {text}."
+
+
+def verdict_sentences(results: Results) -> list[str]:
+    """Sentence for the headline on the verdicts; none if there is one only."""
+    names = _list_names(results)
+    if len(names) == 1:
+        return []
+    words = read_words()["verdict"]
+    parts = []
+    for name in names:
+        note = "" if name == "baseline" or name in results.requested else " (for information)"
+        parts.append(f"{SHORT_TITLES[name]}: {words[_run_verdict(results, name)]['word']}{note}")
+    return [f"{'; '.join(parts)}."]
+
+
+def describe_comparison(comparison: BaselineComparison) -> str:
+    """Numbers of compared and of drifted values of a case in one sentence."""
+    values, drifted = comparison.values, comparison.drifted
+    if not values:
+        return f"No value was compared with {comparison.name}."
+    drift = f"drifted by more than {comparison.drift_pct:g} % from {comparison.name}"
+    return f"{drifted} of {values} values {drift}, or are missing."
+
+
+def baseline_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
+    """Section on the drift of a case from its baseline; empty if it was not compared with one."""
+    comparison = case.baseline
+    if comparison is None:
+        return ()
+    mark = doc.VerdictMark(comparison.verdict)
+    blocks: list[doc.Block] = [doc.Paragraph((mark, f"\N{EN SPACE}{describe_comparison(comparison)}"))]
+    if rows := list_criteria(case, "baseline"):
+        blocks += criteria_blocks(rows, anchor, f"{anchor}-baseline-source", case)
+    return (doc.Section(NAMES["baseline"], tuple(blocks)),)
+
+
+def verification_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
+    """Section on the verification of a case; empty if the case has no converged values."""
+    verification = case.verification
+    if verification is None:
+        return ()
+    basis = f"\N{EN SPACE}Converged values of the reference simulator, confirmed by {verification.confirmed_by}."
+    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(verification.verdict), basis))]
+    if verification.reason and verification.reason != case.reason:
+        blocks.append(doc.Paragraph(verification.reason))
+    if verification.criteria:
+        blocks += criteria_blocks(verification.criteria, anchor, f"{anchor}-verification-source", case)
+    if verification.omitted:
+        blocks.append(doc.Section("Without a confirmed value", (doc.BulletList(tuple(verification.omitted)),)))
+    return (doc.Section(NAMES["verification"], tuple(blocks)),)

@@ -1,0 +1,202 @@
+"""Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.pages.criteria_table import criterion_title
+from pantocheck.conformance.pages.document import BulletList, Section
+from pantocheck.conformance.pages.findings_table import count_sentences
+from pantocheck.conformance.pages.procedure_page import build_procedure_headline
+from pantocheck.conformance.pages.scope_page import summarise_identity
+from pantocheck.conformance.pages.two_verdicts import list_criteria, select_criteria, verdict_sentences
+from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
+from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
+from pantocheck.conformance.results.results_format import CaseResult, Results
+
+MARGINS_SHOWN = 3
+"""Number of the smallest margins in the reasons."""
+
+
+NAMES_SHOWN = 5
+"""Number of cases for information that the headline names."""
+
+CLAUSES = {
+    "error": ("ends in an error", "end in an error"),
+    "fail": ("fails", "fail"),
+    "skip": ("could not be evaluated completely", "could not be evaluated completely"),
+    "info": ("has no limit that counts", "have no limit that counts"),
+    "unverified": ("has an unverified record", "have an unverified record"),
+}
+"""Parts of the headline by verdict, in the singular and the plural, the worst first."""
+
+
+CaseCriterion = tuple[CaseResult, Criterion]
+"""A case and one of its criteria."""
+
+
+def build_headline(results: Results) -> str:
+    """The verdict in sentences: passed cases, reasons against a better verdict, and the exceptions of the user."""
+    if results.procedure is not None:
+        return build_procedure_headline(results, results.procedure)
+    cases = [case for case in results.cases if case.id not in results.information]
+    verdicts: Counter[str] = Counter(case.verdict for case in cases)
+    accepted = verdicts["unverified"] if results.system.name in results.accepted_unverified else 0
+    passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
+    pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
+    grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
+    counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
+    total = count_noun(len(cases), "case")
+    if not cases:
+        sentences = ["No case takes part in the verdict."]
+    elif passed == len(cases) and results.verdict in ("pass", "unverified"):
+        sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
+    else:
+        parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
+        for verdict, (one, many) in CLAUSES.items():
+            if number := verdicts[verdict]:
+                outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if pair[1].is_drift])
+                parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
+        sentences = [f"{', '.join(parts)}."]
+    if accepted:
+        sentences.append(f"Accepted by the user: unverified records of {results.system.name}.")
+    if shown := results.information:
+        more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
+        sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
+    return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
+
+
+def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
+    """Numbers of criteria outside their limits and of drifted values, with the largest drift; empty without any."""
+    parts = [f"{failed} of {counted} counted criteria outside their limits"] if counted else []
+    if drifted := [pair for pair in drifts if pair[1].verdict == "fail"]:
+        # The margin is the drift in units of the accepted one.
+        case, row = min(drifted, key=lambda pair: pair[1].margin or 0.0)
+        change = (row.reason or "").partition(" from ")[0].removeprefix("drifted ")
+        largest = f"{row.quantity} of {case.id} {change}".rstrip()
+        parts.append(f"{count_noun(len(drifted), 'value')} drifted from the baseline, most {largest}")
+    return f" ({', '.join(parts)})" if parts else ""
+
+
+def describe_record(case: CaseResult) -> str | None:
+    """The state of the record of a case in one sentence; None without a record."""
+    record = case.record
+    if record is None:
+        return None
+    remark = "" if record.demanded else " The profile does not demand verification."
+    return f"Record {record.state}: {record.reason}.{remark}"
+
+
+def list_reasons(results: Results) -> tuple[Section, ...]:
+    """Sentences under headings, errors first; a heading without sentences is left out."""
+    passed = _select(results, "pass")
+    drifts = [(case, row) for case in results.cases for row in select_criteria(results, case) if row.is_drift]
+    ranked = [
+        (case, row) for case, row in passed if row.lower != row.upper and is_relative_margin(row.lower, row.upper)
+    ]
+    groups = {
+        "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
+        "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
+        "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
+        "Drift from the baseline": [_reason(pair) for pair in drifts],
+        "Not verified": _record_reasons(results),
+        "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
+        "Closer to a limit than the uncertainty": [
+            _close_value(pair) for pair in _criteria(results) if pair[1].is_close
+        ],
+        # Between two equal limits a margin is 0 at best and says nothing about closeness.
+        "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],
+    }
+    return tuple(
+        Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
+    )
+
+
+def count_incomplete(results: Results) -> str | None:
+    """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
+    counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "fail")]
+    missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]
+    number = sum(map(bool, missing))
+    if not number:
+        return None
+    names = [name for name in COMPONENT_NAMES if any(name in names for names in missing)]
+    listed = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return (
+        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete "
+        f"({INCOMPLETE_MARK}: {listed} not known), so that more of them may lie closer to a limit than stated."
+    )
+
+
+def summarise_case(case: CaseResult) -> str:
+    """The verdict of one case in one sentence."""
+    if case.reason:
+        return case.reason
+    verdicts = Counter(criterion.verdict for criterion in list_criteria(case, "criteria"))
+    words = read_words()["verdict"]
+    parts = [
+        f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'with a limit that does not count'}"
+        for verdict in ("error", "fail", "skip", "pass", "info")
+        if verdicts[verdict]
+    ]
+    return (
+        f"{sum(verdicts.values())} criteria: {', '.join(parts)}."
+        if parts
+        else "No criteria: there is no published limit."
+    )
+
+
+def _criteria(results: Results) -> Iterator[CaseCriterion]:
+    """Criteria of the verdicts that decide, without those of drift."""
+    return ((case, row) for case in results.cases for row in select_criteria(results, case) if not row.is_drift)
+
+
+def _select(results: Results, verdict: str) -> list[CaseCriterion]:
+    """Criteria with one verdict, the smallest margin first."""
+    pairs = [pair for pair in _criteria(results) if pair[1].verdict == verdict]
+    return sorted(pairs, key=lambda pair: pair[1].margin or 0.0)
+
+
+def _case_reasons(results: Results, verdict: str) -> list[str]:
+    """Reasons of cases; cases with the same reason share a sentence."""
+    cases: dict[str, list[str]] = {}
+    for case in results.cases:
+        if case.verdict == verdict and case.reason:
+            cases.setdefault(case.reason, []).append(case.id)
+    return [f"{', '.join(ids)}: {reason}" for reason, ids in cases.items()]
+
+
+def _record_reasons(results: Results) -> list[str]:
+    cases = [case for case in results.cases if case.record and case.record.state == "unverified"]
+    return [f"{case.id}: {describe_record(case)}" for case in cases]
+
+
+def _value(pair: CaseCriterion) -> str:
+    case, criterion = pair
+    value, limits = format_beside_limits(criterion.value, criterion.lower, criterion.upper)
+    shown = format_criterion_margin(criterion.margin, criterion.lower, criterion.upper, criterion.unit)
+    margin = "" if criterion.margin is None else f", margin {replace_minus(shown)}"
+    text = f"{_subject(case, criterion)}: {value} {criterion.unit}".rstrip()
+    return f"{text}, limits {limits}{margin}."
+
+
+def _close_value(pair: CaseCriterion) -> str:
+    """A value and its limits with its uncertainty, which is the reason why it is close."""
+    case, row = pair
+    uncertainty, unit = row.uncertainty, row.unit
+    missing = list_missing(case.uncertainty_basis, uncertainty, row.trust)
+    if uncertainty is None:
+        return _value(pair)
+    width = f"{mark_half_width(uncertainty, format_value(uncertainty, 2), missing, '± ')} {unit}".rstrip()
+    return f"{_value(pair).removesuffix('.')}, uncertainty {width}."
+
+
+def _reason(pair: CaseCriterion) -> str:
+    case, criterion = pair
+    return f"{_subject(case, criterion)}: {criterion.reason or 'no reason given'}"
+
+
+def _subject(case: CaseResult, criterion: Criterion) -> str:
+    verification = ", verification" if criterion.trust == "computed" else ""
+    return f"{case.id}, {name_owner(criterion)}, {criterion_title(criterion)}{verification}"

@@ -1,0 +1,1 @@
+"""Pantograph files, force laws, responses and fits."""

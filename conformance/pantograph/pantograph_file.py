@@ -1,0 +1,199 @@
+"""Pantograph files: a chain of lumped masses, or the matrices or modes of a linear model."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.sourced_table import (
+    InputTable,
+    NonNegativeList,
+    NumberList,
+    Positive,
+    PositiveList,
+    Problems,
+    SourcedTable,
+    cross_check,
+    is_absent,
+    validation_problem,
+)
+from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
+
+
+class ContactTable(SourcedTable):
+    """Contact between head and contact wire: a spring that acts in compression only."""
+
+    stiffness_N_m: Annotated[Positive, Field(le=1e8)]
+    """Stiffness of the contact [N/m]."""
+
+
+class ChainTable(SourcedTable):
+    """Lumped masses, base to head; spring and damper i connect masses i - 1 and i, the first ones mass 1 and base."""
+
+    names: Annotated[tuple[str, ...] | None, Field(strict=False), NO_FEATURE] = None
+    """Names of the masses, base to head, e.g. frame and head."""
+    masses_kg: Annotated[PositiveList, Field(max_length=20)]
+    """Lumped masses, base to head [kg]."""
+    stiffness_N_m: Annotated[NonNegativeList, Field(max_length=20)]
+    """Springs, base to head [N/m]."""
+    damping_N_s_m: Annotated[NonNegativeList, Field(max_length=20)]
+    """Dampers, base to head [N s/m]."""
+
+    uplift_force_on: Annotated[int | str, Feature("chain")] = 1
+    """Mass on which the uplift force acts: number from the base, from 1, or name."""
+    base_spring_unstretched: Annotated[
+        Literal["working_height", "wire_height"], Feature("base_spring_at_wire_height")
+    ] = "working_height"
+    """Height from which the displacements of all masses count: with every mass at this height, all springs are
+    without force; working_height: static height of the head under the uplift force; wire_height: nominal height of
+    the contact wire.
+    """
+
+    @cross_check
+    def _consistent(self) -> Problems:
+        lists = ("stiffness_N_m", "damping_N_s_m", "names")
+        yield from _find_wrong_lengths(self, lists, len(self.masses_kg), "mass", "masses")
+        yield from self.find_wrong_mass("uplift_force_on", self.uplift_force_on)
+
+    def find_wrong_mass(self, key: str, mass: int | str) -> Problems:
+        """Problem of a mass, by number from the base or by name, that the chain does not have; `key` states it."""
+        names = self.names or ()
+        if isinstance(mass, str) and mass not in names:
+            yield validation_problem(
+                key, f"there is no mass {mass!r}", f"Known names are {', '.join(names) or 'not given'}."
+            )
+        if isinstance(mass, int) and not 1 <= mass <= len(self.masses_kg):
+            yield validation_problem(key, f"there is no mass {mass}", f"Give a number from 1 to {len(self.masses_kg)}.")
+
+    def mass_index(self, mass: int | str) -> int:
+        """Index from 0 at the base of a mass, by number from the base, from 1, or by name."""
+        return (self.names or ()).index(mass) if isinstance(mass, str) else mass - 1
+
+    @property
+    def uplift_mass(self) -> int:
+        """Index of the mass on which the uplift force acts, from 0 at the base."""
+        return self.mass_index(self.uplift_force_on)
+
+
+Matrix = Annotated[tuple[NumberList, ...], Field(strict=False, min_length=1, max_length=50)]
+
+
+class MatricesTable(SourcedTable):
+    """Matrices of a linear pantograph with fixed base; springs are without force at the static working height."""
+
+    mass_kg: Matrix
+    """Mass matrix, row by row [kg]."""
+    damping_N_s_m: Matrix
+    """Damping matrix, row by row [N s/m]."""
+    stiffness_N_m: Matrix
+    """Stiffness matrix, row by row [N/m]."""
+    head: Annotated[NumberList, Field(max_length=50)]
+    """Displacement of the head per unit of each degree of freedom, e.g. [0, 0, 1]."""
+    uplift_force_on: Annotated[NumberList | None, Field(max_length=50), Feature("matrices")] = None
+    """Displacement of the point of the uplift force per unit of each degree of freedom, e.g. [1, 0, 0] for the
+    lowest mass of a chain; default: the head, so that the static contact force at the working height equals the
+    uplift force.
+    """
+
+    @cross_check
+    def _possible(self) -> Problems:
+        n = len(self.head)
+        yield from _find_wrong_lengths(self, ("uplift_force_on",), n, "degree of freedom", "degrees of freedom")
+        if not any(self.head):
+            yield validation_problem("head", "all values are 0", "Give at least one value that is not 0.")
+        for key in ("mass_kg", "damping_N_s_m", "stiffness_N_m"):
+            rows = getattr(self, key)
+            if len(rows) != n or any(len(row) != n for row in rows):
+                yield validation_problem(
+                    key, f"not {n} rows of {n} values", "Give a square matrix with one row per value of head."
+                )
+                continue
+            matrix = np.array(rows)
+            if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * float(np.abs(matrix).max())):
+                yield validation_problem(key, "not symmetric", "Give a symmetric matrix, row by row.")
+                continue
+            lowest, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
+            if lowest < -1e-9 * abs(largest) or (key == "mass_kg" and lowest <= 1e-12 * largest):
+                yield validation_problem(
+                    key,
+                    f"the lowest eigenvalue is {lowest:.3g}",
+                    "Eigenvalues of the mass matrix are positive, those of damping and stiffness not negative.",
+                )
+
+
+class ModesTable(SourcedTable):
+    """Mass-normalised modes of a linear pantograph with fixed base, free head; working height as for matrices."""
+
+    frequency_Hz: Annotated[NonNegativeList, Field(max_length=200)]
+    """Natural frequency of each mode, 0 for a rigid-body mode [Hz]."""
+    damping_ratio: Annotated[NonNegativeList, Field(max_length=200)]
+    """Damping ratio of each mode [-]."""
+    head_shape: Annotated[NumberList, Field(max_length=200)]
+    """Displacement of the head in each mode [kg^-1/2]."""
+    uplift_force_on: Annotated[NumberList | None, Field(max_length=200), Feature("modes")] = None
+    """Displacement of the point of the uplift force in each mode [kg^-1/2]; default: the head, as for matrices."""
+
+    @cross_check
+    def _same_length(self) -> Problems:
+        yield from _find_wrong_lengths(
+            self, ("damping_ratio", "head_shape", "uplift_force_on"), len(self.frequency_Hz), "mode", "modes"
+        )
+        if not any(self.head_shape):
+            yield validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
+
+
+class PantographFile(InputTable):
+    """Content of a pantograph file: contact, one of the tables chain, matrices and modes, and its force law."""
+
+    title: Annotated[str, Field(max_length=200)]
+    """Title in reports."""
+    chain: Annotated[ChainTable | None, Feature("chain")] = None
+    matrices: Annotated[MatricesTable | None, Feature("matrices")] = None
+    modes: Annotated[ModesTable | None, Feature("modes")] = None
+    contact: ContactTable
+    force_law: Annotated[
+        ForceLaw | None,
+        Field(
+            exclude_if=is_absent,
+            description="mean contact force or applied forces as a function of speed, for cases with "
+            "force_from = 'law'; default: every case states a force",
+        ),
+        NO_FEATURE,  # a program receives the forces of the law at the speed of the case
+    ] = None
+    note: Annotated[str | None, Field(max_length=4000)] = None
+    """Remark for the reader."""
+
+    @cross_check
+    def _has_one_model(self) -> Problems:
+        models = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
+        hint = "Give one of the tables chain, matrices and modes."
+        if not models:
+            yield validation_problem("chain", "missing", hint)
+        if len(models) > 1:
+            yield validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
+
+    @cross_check
+    def _law_fits_the_model(self) -> Problems:
+        if isinstance(self.force_law, AppliedForceLaw):
+            yield from self._find_wrong_point("force_law.aerodynamic_force.on", self.force_law.aerodynamic_force.on)
+
+    def _find_wrong_point(self, key: str, point: int | str | tuple[float, ...]) -> Problems:
+        """Problem of a point of application that does not have the form of the model."""
+        if self.chain is not None:
+            if isinstance(point, tuple):
+                yield validation_problem(key, "found a list", "Give the mass of the chain, by number or name.")
+            else:
+                yield from self.chain.find_wrong_mass(key, point)
+            return
+        size = len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
+        if not isinstance(point, tuple) or len(point) != size:
+            yield validation_problem(
+                key, "does not fit the model", f"Give the displacement of the point in each of its {size} unknowns."
+            )
+
+
+def _find_wrong_lengths(table: InputTable, keys: tuple[str, ...], n: int, item: str, items: str) -> Problems:
+    for key in keys:
+        if (values := getattr(table, key)) is not None and len(values) != n:
+            yield validation_problem(key, f"{len(values)} values for {n} {items}", f"Give one value per {item}.")

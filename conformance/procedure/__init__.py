@@ -1,1 +1,0 @@
-"""Procedure of EN 50318 for a dossier: one file per step."""

@@ -1,0 +1,98 @@
+"""Uncertainty of values: half-widths of 95 % intervals by component, combined by the root of the sum of squares.
+
+The components are independent, so that their variances add up (JCGM 100:2008, 5.1.2; ASME V&V 20-2009). A component
+that cannot be determined is named with the reason; it is not zero.
+"""
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+
+from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
+
+
+@dataclass(frozen=True)
+class Component:
+    """One component of the uncertainty of all values of a case."""
+
+    basis: str
+    """How the half-widths were determined, or why there are none."""
+    half_widths: ValuesByOwner = field(default_factory=dict)
+    """Half-widths in the units of the quantities, by pantograph (0: the line) and name."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Uncertainty of all values of a case."""
+
+    components: Mapping[ComponentName, Component] = field(default_factory=dict)
+    """Components; those without half-widths included."""
+
+    def list_components(self, owner: int, quantity: str) -> dict[ComponentName, Value]:
+        """Half-widths of a quantity by component; an unknown component is left out."""
+        parts = ((name, part.half_widths.get(owner, {}).get(quantity)) for name, part in self.components.items())
+        return {name: half_width for name, half_width in parts if half_width is not None and _is_finite(half_width)}
+
+    def select(self, names: Collection[ComponentName]) -> "Uncertainty":
+        """Uncertainty with some of the components only."""
+        return Uncertainty({name: part for name, part in self.components.items() if name in names})
+
+    @property
+    def unknown_components(self) -> tuple[ComponentName, ...]:
+        """Components without a half-width of any quantity."""
+        return tuple(name for name, part in self.components.items() if not part.half_widths)
+
+    @property
+    def basis(self) -> dict[ComponentName, str]:
+        """How each component was determined, or why it is not known."""
+        return {name: part.basis for name, part in self.components.items()}
+
+    @property
+    def by_quantity(self) -> dict[int, dict[str, dict[ComponentName, Value]]]:
+        """Half-widths by pantograph, quantity and component, for all quantities with a component."""
+        found: dict[int, dict[str, None]] = {}
+        for part in self.components.values():
+            for owner, quantities in part.half_widths.items():
+                found.setdefault(owner, {}).update(dict.fromkeys(quantities))
+        listed = {
+            owner: {name: self.list_components(owner, name) for name in quantities}
+            for owner, quantities in sorted(found.items())
+        }
+        return {owner: {name: parts for name, parts in part.items() if parts} for owner, part in listed.items()}
+
+    @property
+    def combined(self) -> dict[int, dict[str, Value]]:
+        """Combined half-widths by pantograph and quantity."""
+        return {
+            owner: {name: combine_half_widths(parts) for name, parts in quantities.items()}
+            for owner, quantities in self.by_quantity.items()
+        }
+
+
+def combine_half_widths(components: Mapping[ComponentName, Value]) -> Value:
+    """Combine the half-widths of independent components: the root of the sum of their squares.
+
+    Args:
+        components: Half-widths; of a quantity with several values, one per item.
+
+    Returns:
+        Combined half-width; zero without a component.
+    """
+    return map_items(math.hypot, *components.values())
+
+
+def _is_finite(value: Value) -> bool:
+    return all(map(math.isfinite, value if isinstance(value, tuple) else (value,)))
+
+
+def map_items(function: Callable[..., float], *values: Value) -> Value:
+    """Apply a function to numbers, or item by item to tuples of equal length.
+
+    Raises:
+        ValueError: The values have different numbers of items.
+    """
+    if all(isinstance(value, float | int) for value in values):
+        return function(*values)
+    rows = [value if isinstance(value, tuple) else (value,) for value in values]
+    return tuple(function(*items) for items in zip(*rows, strict=True))

@@ -1,1 +1,0 @@
-"""Records of data loggers: columns with other names and units, sums of force sensors, positions and events."""

@@ -1,1 +1,0 @@
-"""Pages and machine-readable summaries made from results.json alone."""

@@ -1,1 +1,0 @@
-"""Reports on comparisons of measured values with a model."""

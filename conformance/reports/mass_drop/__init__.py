@@ -1,1 +1,0 @@
-"""Reports on identification and on fitted damping."""

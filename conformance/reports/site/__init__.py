@@ -1,1 +1,0 @@
-"""Static site of results: systems against cases, and versions over time."""

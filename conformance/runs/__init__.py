@@ -1,0 +1,1 @@
+"""Runs of a case on a system, and checks of their records."""

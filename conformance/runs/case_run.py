@@ -1,0 +1,212 @@
+"""Run of a case on the reference simulator: passage, simulation and record."""
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import count
+
+import numpy as np
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
+from pantocheck.conformance.cases.start_and_section import RunStart
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.extras import refuse_missing_package
+from pantocheck.conformance.core.step_log import ShareCallback, ignore_progress
+from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.runs.uplift_tuning import build_pantographs, estimate_uplift_forces, tune_uplift
+from pantocheck.model import Pantograph
+from pantocheck.model.description.catenary import Catenary
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
+from pantocheck.model.dynamics.passage import History, Passage
+from pantocheck.model.statics.contact_wires import touched_wires
+
+KEPT_SPANS = 1.5
+"""Smallest distance behind the train with known uplift at the end of a run [spans]: the check of the support passing
+shifts the pantographs by 1.2 spans."""
+
+
+@dataclass(frozen=True)
+class PassageRun:
+    """Simulated passage of a case."""
+
+    record: Record
+    """Record of the passage."""
+    run: RunTable
+    """Simulated time, computing time, time step and element length."""
+    uplift_forces: tuple[float, ...]
+    """Uplift force of every pantograph [N]."""
+
+
+def run_passage(
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...] | None = None,
+    progress: ShareCallback = ignore_progress,
+) -> PassageRun:
+    """Simulate the passage of a case on a discretised line.
+
+    Args:
+        case: Case with a speed.
+        line: Line of the case, discretised with the element length of `discretisation`.
+        discretisation: Element length and time step.
+        uplift_forces: Uplift force of every pantograph [N]; default: forces of the case, tuned if a mean contact force
+            is required.
+        progress: Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not
+            known: each is half of the rest.
+
+    Returns:
+        Record, run facts and uplift forces.
+
+    Raises:
+        TuningFailed: No uplift force gives the mean contact force that the case requires.
+    """
+    start = uplift_forces or estimate_uplift_forces(case, line)
+    # The computing time must not include the compilation of the kernels: one time step compiles all of them.
+    first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
+    integrate_passage(line, first_step)
+    targets = [None if uplift_forces else lift.target_mean_force for lift in case.lift_forces]
+    shares = _halve_rest(progress) if any(targets) else iter([progress])
+    return tune_uplift(
+        lambda forces: _run_once(case, line, discretisation, forces, next(shares)),
+        lambda passage_run: _mean_forces(case, passage_run.record),
+        start,
+        targets,
+    )
+
+
+def _halve_rest(progress: ShareCallback) -> Iterator[ShareCallback]:
+    """Progress of the runs of a tuning: the first covers half of the whole, each further one half of the rest."""
+
+    def follow(run: int) -> ShareCallback:
+        return lambda share: progress(1 - 0.5**run * (1 - 0.5 * share))
+
+    return map(follow, count())
+
+
+def run_starts(
+    starts: Iterable[RunStart],
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...],
+) -> Iterator[Record]:
+    """Simulate the passage of a case from other starts; parameters as in `run_passage`."""
+    pantographs = build_pantographs(case, line, uplift_forces)
+    for start in starts:
+        passage = replace(_place_train(start.case, line, discretisation, pantographs), ramp=start.ramp_s)
+        yield record_passage(start.case, passage, integrate_passage(line, passage))
+
+
+def _run_once(
+    case: Case,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...],
+    progress: ShareCallback,
+) -> PassageRun:
+    passage = build_passage(case, line, discretisation, uplift_forces)
+    begin = time.perf_counter()
+    history = integrate_passage(line, passage, progress)
+    record = record_passage(case, passage, history)
+    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces)
+
+
+def build_run_table(discretisation: Discretisation, simulated_s: float, begin: float) -> RunTable:
+    """Run facts of a simulation that began at `begin` on the clock `time.perf_counter` [s] and ends now."""
+    wall_s = time.perf_counter() - begin
+    return RunTable(
+        simulated_s=simulated_s, wall_s=wall_s, dt_s=discretisation.time_step_s, element_m=discretisation.element_m
+    )
+
+
+def _mean_forces(case: Case, record: Record) -> RealArray:
+    """Mean contact force of every pantograph over the analysis section [N]."""
+    signals = RecordSignals(record, case.file.filter.low_pass)
+    return np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
+
+
+def build_passage(
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, uplift_forces: tuple[float, ...]
+) -> Passage:
+    """Passage of a case on a discretised line, with given uplift forces [N]."""
+    return _place_train(case, line, discretisation, build_pantographs(case, line, uplift_forces))
+
+
+def _place_train(
+    case: Case, line: DiscretisedLine, discretisation: Discretisation, pantographs: tuple[Pantograph, ...]
+) -> Passage:
+    """Passage of given pantographs from the start of a case to its end."""
+    duration = (case.end - case.start) / case.speed
+    return Passage(
+        pantographs=pantographs,
+        start=case.start_positions,
+        speed=case.speed,
+        duration=duration,
+        time_step=discretisation.time_step_s,
+        watched=_watched_supports(case, line),
+        kept_behind=max(KEPT_SPANS * case.line.geometry.longest_span, UPLIFT_STRETCH_M),
+        reach=math.inf if discretisation.reach_m is None else discretisation.reach_m,
+    )
+
+
+def start_forces(case: Case) -> tuple[float, ...]:
+    """Uplift force of every pantograph, or start value of its tuning [N]."""
+    return tuple(lift.uplift_force for lift in case.lift_forces)
+
+
+def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, float], ...]:
+    """Contact wire and position of every support of the recorded section, its ends included.
+
+    It is the first one of parallel wires; in an overlap it is the lowest wire, which the pantograph lifts.
+    """
+    (first, last), wires = case.recorded_section, line.catenary.contact_wires
+    supports = [x for x in case.line.geometry.supports if first - 1e-6 <= x <= last + 1e-6]
+    return tuple((wires[touched_wires(line, x)[0]].name, x) for x in supports)
+
+
+def record_passage(case: Case, passage: Passage, history: History) -> Record:
+    """Record of the passage of a case."""
+    return Record(
+        time=history.time,
+        speed=passage.speed,
+        position=history.position,
+        force=history.force,
+        evaluated=case.analysis_section,
+        contact_height=history.height,
+        support_position=np.array([position for _, position in passage.watched]),
+        support_uplift=history.motion[:, :, 0],
+    )
+
+
+# Compiled simulations of the model. They need the extra `simulator`; the first simulation loads them.
+def integrate_passage(
+    line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
+) -> History:
+    """Simulate a passage; parameters and errors as in `model.simulate_passage`.
+
+    Raises:
+        InputError: The extra `simulator` is not installed.
+    """
+    with refuse_missing_package("the simulation of a passage"):
+        from pantocheck.model.dynamics.simulation import simulate_passage
+    return simulate_passage(line, passage, progress)
+
+
+def integrate_mass_drop(
+    catenary: Catenary, element_length: float, test: MassDropSetup, progress: Callable[[float], None] | None = None
+) -> FreeDecay:
+    """Simulate a mass drop; parameters and errors as in `model.dynamics.mass_drop.simulate_mass_drop`.
+
+    Raises:
+        InputError: The extra `simulator` is not installed.
+    """
+    with refuse_missing_package("the simulation of a mass drop"):
+        from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
+    return simulate_mass_drop(catenary, element_length, test, progress)

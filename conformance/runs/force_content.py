@@ -1,0 +1,268 @@
+"""Content of the contact force above the cut-off, against the least content that kinks of the wire cause.
+
+Force and contact height that pass the same filter still obey the equations of the pantograph. The filter shows in the
+spectrum. The wire has kinks at droppers and supports. A kink passed at constant speed is a motion with the spectrum
+1 / f^2. Pantograph, contact spring and wire in series turn it into the force
+
+    F  ~  1 / [(H + 1 / k + W) f^2],        W = 1 / (2 i w sqrt(T m)),
+
+with the receptance H of the head, the contact stiffness k and the receptance W of an infinite string with tension T and
+mass m per length. Waves and loss of contact add content. A filter of order 6 falls by another factor of f^-6.
+
+Bending rounds a kink over the length sqrt(EI / T). The content is compared only if the train passes this length fast
+enough for 50 Hz.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import permutations
+
+import numpy as np
+from scipy.signal import correlate
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.pantograph.pantograph_model import head_receptance
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
+from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.runs.check import Check, Finding, worst_finding
+from pantocheck.conformance.runs.force_dynamics import TINY
+
+LOWER_BAND_HZ = (5.0, 20.0)
+"""Edges of the band of reference [Hz]."""
+
+UPPER_BAND_HZ = (30.0, 50.0)
+"""Edges of the compared band [Hz]; a low sampling rate cuts its upper edge."""
+
+LOWEST_EDGE_HZ = 40.0
+"""Smallest upper edge of the compared band [Hz]: 100 samples per second."""
+
+SMALLEST_CONTENT = 0.08
+"""Smallest content of the force over that of kinks.
+
+Library cases have 0.9 to 2.0, extreme lines 0.4 or more, and 0.18 after a stated causal filter. A filter of order 6 at
+15 Hz that is not stated leaves 0.014 to 0.03, one at 10 Hz that is stated as 20 Hz leaves 0.02 to 0.05."""
+
+FREQUENCY_STEP_HZ = 0.1
+"""Step of the frequencies at which the content of kinks is computed [Hz]; resonances are wider."""
+
+
+def _check_content(case: Case, signals: RecordSignals) -> Finding | None:
+    record = signals.record
+    if record.speed < 2 * np.pi * UPPER_BAND_HZ[1] * bending_length(case):
+        return None
+    upper = min(UPPER_BAND_HZ[1], HIGHEST_SHARE_OF_RATE * record.rate)
+    if upper < LOWEST_EDGE_HZ:
+        return Finding("unchecked", f"the content check was not made: a rate of {record.rate:g} Hz is too low")
+    findings = []
+    for number in signals.pantographs:
+        try:
+            share = force_content(signals, number, upper) / kink_content(case, number, upper)
+        except QuantityUnavailable:
+            return None  # other checks state which channel is missing
+        if share < SMALLEST_CONTENT:
+            findings.append(
+                Finding(
+                    "doubt",
+                    f"pantograph {number}: the force has {share:.1g} times the content at {UPPER_BAND_HZ[0]:g}-"
+                    f"{upper:g} Hz that kinks of the wire cause, as after a filter that is not stated, or by a model "
+                    "without droppers or with a coarse mesh; deliver force and contact height without a filter, or "
+                    "refine the model",
+                )
+            )
+    return worst_finding(findings)
+
+
+def bending_length(case: Case) -> float:
+    """Length over which bending rounds a kink of the contact wire, sqrt(EI / T) [m]."""
+    wire = case.line.contact_wire
+    return float(np.sqrt(wire.bending_stiffness_N_m2 / wire.tension_N))
+
+
+def force_content(signals: RecordSignals, number: int, upper: float) -> float:
+    """RMS of the force in the upper band over that in the lower band, before the stated filter [-].
+
+    Args:
+        signals: Signals of a record.
+        number: Number of the pantograph from 1.
+        upper: Upper edge of the upper band [Hz].
+    """
+    record, force = signals.record, signals.pantographs[number].delivered
+    frequency = np.asarray(np.fft.rfftfreq(force.size, 1 / record.rate), dtype=np.float64)
+    amplitude = np.abs(np.fft.rfft((force - force.mean()) * np.hanning(force.size)))
+    frequency, amplitude = frequency[frequency <= upper], amplitude[frequency <= upper]
+    stated = record.filter_applied_Hz
+    if stated is not None and stated <= HIGHEST_SHARE_OF_RATE * record.rate:
+        amplitude = amplitude / replace(signals.low_pass, cutoff_Hz=stated).gain(frequency, record.rate)
+    return _compare_bands(frequency, amplitude)
+
+
+def kink_content(case: Case, number: int, upper: float) -> float:
+    """The same ratio of the force that a kink of the contact wire causes [-].
+
+    Args:
+        case: Case with line and pantographs.
+        number: Number of the pantograph from 1.
+        upper: Upper edge of the upper band [Hz].
+    """
+    file, wire = case.pantographs[number - 1], case.line.contact_wire
+    frequency = np.arange(LOWER_BAND_HZ[0], upper, FREQUENCY_STEP_HZ)
+    omega = 2 * np.pi * frequency
+    string = 1 / (2j * omega * wire.number * np.sqrt(wire.tension_N * wire.mass_kg_m))
+    compliance = head_receptance(file, omega) + 1 / file.contact.stiffness_N_m + string
+    return _compare_bands(frequency, np.abs(1 / compliance) / frequency**2)
+
+
+def _compare_bands(frequency: RealArray, amplitude: RealArray) -> float:
+    """RMS above the lower edge of the upper band over that in the lower band [-]."""
+    low, high = LOWER_BAND_HZ
+    lower_rms = np.linalg.norm(amplitude[(frequency > low) & (frequency <= high)])
+    return float(np.linalg.norm(amplitude[frequency > UPPER_BAND_HZ[0]]) / max(float(lower_rms), TINY))
+
+
+CONTENT = Check(
+    name="content",
+    must_hold="at 30-50 Hz, the force has at least 0.08 times the content that kinks of the wire cause",
+    why="force and contact height that pass the same filter still agree with each other",
+    needs="contact force at 100 samples per second or more",
+    run=_check_content,
+)
+
+
+# Copied force: two pantographs of a train have the same contact force only where they meet the same line.
+#
+# The second pantograph meets the waves of the first. A record in which both have the force and the height of one of
+# them obeys the equations of the pantograph all the same. The uplift does not: equal forces in the same part of a span
+# need equal uplifts at the supports. Pantographs that a train at low speed or a long distance keeps apart meet this
+# condition.
+LARGEST_REMAINDER = 0.01
+"""Remainder below which a force is a copy, over its standard deviation.
+
+Forces rounded to 1 N at 200 samples per second leave 0.007. Simulated trains have 0.4 or more at the spacings of the
+library; pantographs 880 m apart on a heavily damped line have 0.015."""
+
+SMALLEST_DIFFERENCE_M = 0.5e-3
+"""Smallest difference of the uplift at equal passages [m]: five steps of 0.1 mm.
+
+Where the forces of simulated trains differ by less than 0.1 of their standard deviation, it is 0.14 mm or less."""
+
+SMALLEST_VARIANCE = 0.01
+"""Smallest variance of a part over the largest variance of all parts: a part that hardly varies has no correlation."""
+
+SMALLEST_SQUARE = 1e-12
+"""Smallest square of a correlation remainder; rounding of the sums."""
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """Part of a force that is most like a part of another force."""
+
+    remainder: float
+    """Standard deviation of the difference after a fit of gain and constant, over the standard deviation [-]."""
+    lag: float
+    """Time of the part in the other force less that in the force [samples]."""
+
+
+def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
+    findings = []
+    for number, other in permutations(signals.pantographs, 2):
+        pantograph = signals.pantographs[number]
+        try:
+            likeness = find_likeness(pantograph.graded, signals.pantographs[other].force.graded)
+            if likeness is None or likeness.remainder > LARGEST_REMAINDER:
+                continue
+            delay = (likeness.lag - pantograph.inside.start) / signals.record.rate
+            differences = _compare_uplifts(case, signals, (number, other), delay)
+        except QuantityUnavailable:
+            return None  # other checks state which channel is missing
+        findings.append(_judge(number, other, differences))
+    return worst_finding([finding for finding in findings if finding is not None])
+
+
+def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
+    """Find the part of a force that is most like a part of another force.
+
+    Args:
+        part: Part of a force, (n,) [N].
+        force: Other force, (m,) [N].
+
+    Returns:
+        The best part, between samples by a parabola; None if the force is shorter than the part, or constant.
+    """
+    n = part.size
+    deviation, whole = part - part.mean(), force - force.mean()
+    energy = float(deviation @ deviation)
+    if n < 2 or n > force.size or energy == 0.0:
+        return None
+    products = correlate(whole, deviation, mode="valid", method="fft")
+    sums, squares = (np.cumsum(np.concatenate([[0.0], values])) for values in (whole, whole**2))
+    variance = squares[n:] - squares[:-n] - (sums[n:] - sums[:-n]) ** 2 / n
+    varies = variance > SMALLEST_VARIANCE * variance.max()
+    correlation = np.where(varies, products / np.sqrt(np.where(varies, variance, 1.0) * energy), -1.0)
+    best = int(correlation.argmax())
+    peak, shift = float(correlation[best]), 0.0
+    if 0 < best < correlation.size - 1:
+        before, after = correlation[best - 1], correlation[best + 1]
+        curvature = before - 2 * peak + after
+        if curvature < 0:
+            shift = float((before - after) / (2 * curvature))
+            peak -= float((before - after) ** 2 / (8 * curvature))
+    return Likeness(float(np.sqrt(max(1 - min(peak, 1.0) ** 2, SMALLEST_SQUARE))), best + shift)
+
+
+def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], delay: float) -> RealArray:
+    """Differences between the uplifts where both pantographs of a pair have the same force, (k,) [m].
+
+    Where the first passes one of the k supports of the analysis section, the second, later by the delay [s], must pass
+    a support too; otherwise the difference is infinite. It is NaN if the uplift is not recorded there.
+    """
+    record = signals.record
+    inside = zip(signals.line.supports, signals.line.uplift, strict=True)
+    position, other = (record.position[number - 1] for number in pair)
+    recorded, channels = record.support_position, record.support_uplift
+    assert recorded is not None
+    assert channels is not None
+    supports = np.asarray(case.line.geometry.span_limits)
+    differences = []
+    for support, uplift in inside:
+        time = float(np.interp(support, position, record.time))
+        place = float(np.interp(time + delay, record.time, other))
+        nearest = int(np.abs(recorded - place).argmin())
+        if abs(recorded[nearest] - place) <= SUPPORT_TOLERANCE_M:
+            passage = float(np.interp(recorded[nearest], other, record.time))
+            at_passage = np.interp(passage, record.time, channels[nearest])
+            differences.append(abs(float(at_passage - np.interp(time, record.time, uplift))))
+        else:
+            passes = np.abs(supports - place).min() <= SUPPORT_TOLERANCE_M
+            differences.append(np.nan if passes else np.inf)
+    return np.array(differences)
+
+
+def _judge(number: int, other: int, differences: RealArray) -> Finding | None:
+    """Finding on a force that equals that of another pantograph; None if the uplifts are equal as well."""
+    known = differences[~np.isnan(differences)]
+    largest = float(known.max(initial=0.0))
+    if largest > SMALLEST_DIFFERENCE_M:
+        where = (
+            f"with uplifts at the supports that differ by {1e3 * largest:.2g} mm"
+            if np.isfinite(largest)
+            else "in another part of the span"
+        )
+        return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
+    if known.size < differences.size:
+        return Finding(
+            "unchecked",
+            f"the copy check was not made: pantographs {number} and {other} have the same force, and the record lacks "
+            f"the uplift at {differences.size - known.size} of {differences.size} supports to compare",
+        )
+    return None
+
+
+COPY = Check(
+    name="copy",
+    must_hold="pantographs have the same force only in the same part of a span, with the same uplift at the supports",
+    why="force and height of the other pantograph agree with each other",
+    needs="position, contact force and uplift at supports",
+    run=_check_copy,
+)

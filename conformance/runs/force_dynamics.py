@@ -1,0 +1,187 @@
+"""Dynamics check: the pantograph of the case, driven by the recorded force, must move like the contact height.
+
+A chain of masses M z'' + C z' + K z = f - F(t) e_head is linear. The motion of its head is the response to F from rest,
+plus the free motion of an initial state, plus a constant. The last two are fitted. The response has no free parameter:
+its amplitude and its lag reveal a wrong gain or unit of the force, or a shift in time.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import lsim
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
+from pantocheck.conformance.quantities.filters import is_observable
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.runs.check import Check, Finding, worst_finding
+
+LARGEST_MISFIT = 0.1
+"""Largest accepted misfit. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
+
+LARGEST_GAIN_ERROR = 0.03
+"""Largest relative error of the gain; correct records stay below 0.005."""
+
+CLEAR = 0.05
+"""Unexplained share below which the cause of a misfit is named."""
+
+SMALLEST_MOTION_M = 0.001
+"""Smallest RMS of the motion that can be compared [m]; heights are often rounded to a millimetre."""
+
+LONGEST_S, LONGEST_LAG_S = 300.0, 0.5
+"""Longest part of a record that is compared, and longest lag that is searched [s]."""
+
+CAUSAL_DELAY_PERIODS = 0.75
+"""Largest delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
+
+TINY = float(np.finfo(float).tiny)
+
+SAMPLES_PER_PERIOD = 20
+"""Samples per period of the cut-off: straight lines between them follow the force within a percent."""
+
+
+@dataclass(frozen=True)
+class ResponseFit:
+    """Fit of the recorded motion by the response to the force."""
+
+    misfit: float
+    """RMS of motion minus response, over RMS of the response."""
+    gain: float
+    """Gain of the force that explains the motion best; 1 for a correct record."""
+    unexplained: float
+    """Share of the motion that remains with that gain."""
+    motion: RealArray
+    response: RealArray
+    """Compared motions, without their free parts, (n,) [m]."""
+
+
+def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
+    record, low_pass = signals.record, case.file.filter.low_pass
+    if record.contact_height is None:
+        return Finding("unchecked", "the dynamics check was not made: the record has no contact height")
+    if not is_observable(low_pass.cutoff_Hz, record.rate):
+        return Finding("unchecked", f"the dynamics check was not made: a rate of {record.rate:g} Hz is too low")
+    findings = []
+    step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
+    for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
+        window = _compared_samples(pantograph)
+        force = low_pass(pantograph.force.delivered, record.rate)[window][::step]
+        height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
+        fit = fit_motion(file, force, height, step / record.rate)
+        if fit is None:
+            reason = f"the head of pantograph {number} hardly moves"
+            findings.append(Finding("unchecked", f"the dynamics check was not made: {reason}"))
+        elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
+            findings.append(_diagnose(number, fit, step / record.rate, record.filter_applied_Hz))
+    return worst_finding(findings)
+
+
+def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
+    """Compare a motion with the response of a pantograph.
+
+    Args:
+        file: Pantograph of the case.
+        force, height: Contact force [N] and height of the contact point [m], (n,).
+        step: Time between samples [s].
+
+    Returns:
+        The fit; None if both the recorded and the computed motion are too small.
+    """
+    response, free = head_responses(file, force, step)
+    response, motion = remove_free_motion(response, free), remove_free_motion(height, free)
+    if max(response.std(), motion.std()) < SMALLEST_MOTION_M:
+        return None
+    # The contact point is the head, or the wire, which the head penetrates by force over contact stiffness.
+    head = _fit(motion, response)
+    wire = _fit(remove_free_motion(height + force / file.contact.stiffness_N_m, free), response)
+    return wire if wire.unexplained < head.unexplained / 2 else head
+
+
+def _fit(motion: RealArray, response: RealArray) -> ResponseFit:
+    scale = float(motion @ response / max(float(response @ response), TINY))
+    remainder = motion - scale * response
+    return ResponseFit(
+        misfit=float((motion - response).std() / max(float(response.std()), TINY)),
+        gain=1 / scale if scale else np.inf,
+        unexplained=float(remainder.std() / max(motion.std(), TINY)),
+        motion=motion,
+        response=response,
+    )
+
+
+def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple[RealArray, RealArray]:
+    """Response of the head to the force from rest, and its (n, k) free motions: a constant and the slow modes.
+
+    Modes faster than the samples do not appear in filtered motions.
+
+    Args:
+        file: Pantograph of the case.
+        force: Contact force, (n,) [N].
+        step: Time between samples [s].
+    """
+    model = build_pantograph(file, 0.0, 0.0)
+    m = model.head.size
+    inverse = np.linalg.inv(model.mass)
+    state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
+    drive = np.concatenate([np.zeros(m), -inverse @ model.head])[:, None]
+    head = np.concatenate([model.head, np.zeros(m)])[None]
+    time = step * np.arange(force.size)
+    response = lsim((state, drive, head, np.zeros((1, 1))), force - force.mean(), time)[1]
+    poles = np.linalg.eigvals(state)
+    slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]
+    modes = np.exp(time[:, None] * slow)
+    drift = [time] if np.abs(poles).min() < 1e-3 else []  # without a spring to the base
+    return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
+
+
+def remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:
+    """Residual of a signal after a least-squares fit of the free motions."""
+    scaled = free / np.maximum(np.abs(free).max(axis=0), TINY)
+    return np.asarray(signal - scaled @ np.linalg.lstsq(scaled, signal, rcond=1e-9)[0])
+
+
+def _compared_samples(pantograph: PantographSignals) -> slice:
+    first, last = np.searchsorted(pantograph.position, pantograph.section)
+    return slice(int(first), min(int(last), int(first) + int(LONGEST_S * pantograph.force.rate)))
+
+
+def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
+    mismatch = f"pantograph {number}: the contact force contradicts the contact height"
+    if fit.unexplained < CLEAR:
+        cause = f"the height corresponds to {1 / fit.gain:.3g} times the force; check gain and unit of the force"
+        return Finding("contradiction", f"{mismatch}: {cause}")
+    samples, correlation = _find_lag(fit, round(LONGEST_LAG_S / step))
+    delay = -samples * step
+    if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
+        share = 100 * max(0.0, 1 - fit.unexplained)
+        return Finding("contradiction", f"{mismatch}: the force explains only {share:.0f} % of the motion")
+    lags = delay > 0
+    text = f"{mismatch}: the force {'lags' if lags else 'leads'} the height by about {abs(delay):.1g} s"
+    if lags and filter_applied_Hz is not None and delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
+        return Finding("doubt", f"{text}, as after a causal filter")
+    return Finding("contradiction", text)
+
+
+def _find_lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
+    """Lag of the motion behind the response [samples], and their correlation at this lag."""
+    n = fit.motion.size
+    limit = min(longest, n // 3)
+    correlation = {}
+    for lag in range(-limit, limit + 1):
+        motion, response = fit.motion[max(0, lag) : n + min(0, lag)], fit.response[max(0, -lag) : n - max(0, lag)]
+        with np.errstate(invalid="ignore"):
+            correlation[lag] = float(np.corrcoef(motion, response)[0, 1])
+    best = max(correlation, key=lambda lag: correlation[lag])
+    return best, correlation[best]
+
+
+DYNAMICS = Check(
+    name="dynamics",
+    must_hold="the pantograph of the case, driven by the force, moves like the contact height",
+    why="a wrong gain, unit, sign or time of the force shows in the motion",
+    needs="contact force and contact height",
+    run=_check_force_dynamics,
+)

@@ -1,1 +1,0 @@
-"""Translation of a case for the reference simulator: catenary, passage, static quantities, tuning, mass drops."""

@@ -1,1 +1,0 @@
-"""Systems under test: the reference simulator, a folder of records, a command."""

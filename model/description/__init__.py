@@ -1,0 +1,1 @@
+"""Description of lines and pantographs as values."""

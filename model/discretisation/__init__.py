@@ -1,0 +1,1 @@
+"""Finite elements of a line in its initial state."""

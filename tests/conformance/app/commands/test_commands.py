@@ -1,0 +1,427 @@
+"""Commands: exit codes, messages and files."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+import typer
+from typer.testing import CliRunner, Result
+
+from helpers.case_fixtures import EditedCase
+from pantocheck.conformance.app.commands import line_draw_command, run_command, system_self_test_command
+from pantocheck.conformance.app.commands.command_list import COMMANDS, app
+from pantocheck.conformance.app.commands.guard import guard_command
+from pantocheck.conformance.app.schemas import build_schema
+from pantocheck.conformance.app.self_test.bench import SelfTest
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import list_library, select_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.record_reading import read_record
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.runs.record_folder import RecordFolder
+from pantocheck.conformance.runs.system import Outcome
+from pantocheck.conformance.runs.uplift_tuning import TuningFailed
+from pantocheck.model.description.failures import (
+    DidNotConverge,
+    ImpossiblePassage,
+    NoEquilibrium,
+    NoInitialState,
+    SimulationError,
+)
+
+
+def pantocheck(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def records(wave: Any, tmp_path: Path) -> Path:
+    """Records of both cases with a sinusoidal force, which fails the limits of the extremes."""
+    for case in select_cases(["en50318-2002/*"]):
+        write_record(tmp_path / "records" / f"{case.file.speed_km_h:g}.csv", wave().record(case), case.id)
+    return tmp_path / "records"
+
+
+@pytest.fixture
+def lenient(tmp_path: Path) -> Path:
+    """Limits that the sinusoidal force at 250 km/h meets."""
+    path = tmp_path / "lenient.toml"
+    entry = '[[limit]]\nquantity = "{}"\nlower = 0.0\nupper = 300.0\ntrust = "primary"\nsource = "own"\n'
+    path.write_text("".join(entry.format(name) for name in ("max_force_N", "min_force_N")))
+    return path
+
+
+def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    result = pantocheck("run", "en50318-2002/*", "--system", f"record:{records}", "--out", out, "--formats", "json")
+    assert result.exit_code == 1
+    assert result.output.startswith("FAIL ")
+    assert "16.4 N below the lower limit" in result.output
+    assert str(out / "results.json") in result.output
+    results = json.loads((out / "results.json").read_text())
+    jsonschema.validate(results, build_schema("results"))
+    assert [case["id"] for case in results["cases"]] == ["en50318-2002/250", "en50318-2002/300"]
+    assert [path.name for path in out.iterdir()] == ["results.json"]
+
+
+def test_run_passes_with_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
+    result = pantocheck(
+        "run", "en50318-2002/250", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json",
+        "--limits", lenient, "--verdicts", "criteria",
+    )  # fmt: skip
+    assert (result.exit_code, result.output.split()[0]) == (0, "PASS")
+
+
+def test_skipped_case_gives_exit_code_1(records: Path, lenient: Path, tmp_path: Path) -> None:
+    (records / "300.toml").unlink()
+    result = pantocheck(
+        "run", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient,
+        "--verdicts", "criteria", "en50318-2002/250", "en50318-2002/300",
+    )  # fmt: skip
+    assert (result.exit_code, result.output.split()[0]) == (1, "SKIP")
+    assert "there is no record of this case" in result.output
+
+
+def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, lenient: Path, tmp_path: Path) -> None:
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        'cases = ["en50318-2002/250"]\nsystem = "record:records"\nout = "planned"\n'
+        'formats = ["json"]\nlimits = "lenient.toml"\nverdicts = "criteria"\n'
+    )
+    assert pantocheck("run", "--plan", plan).exit_code == 0
+    assert pantocheck("run", "--plan", plan, "--verdicts", "both").exit_code == 1  # a sine is not the solution
+    assert (tmp_path / "planned" / "results.json").exists()
+    assert pantocheck("run", "--plan", plan, "--out", tmp_path / "replaced", "en50318-2002/300").exit_code == 1
+    assert json.loads((tmp_path / "replaced" / "results.json").read_text())["cases"][0]["id"] == "en50318-2002/300"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "en50318-2002/251"], "there is no case with this id.\n  Did you mean en50318-2002/250"),
+        (["run", "--trust", "absolute"], "option --trust: found 'absolute', expected 'primary'"),
+        (["run", "--formats", "pdff"], "format 'pdff': there is no such format.\n  Did you mean pdf ?"),
+        (["run", "--drift", "0"], "option --drift: 0 must be greater than 0"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--drift", "0"], "option --drift: 0 must be greater than 0"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--trust", "absolute"], "option --trust: found 'absolute'"),
+        (["assess", "a.csv", "--profile", "acceptance-ac", "--formats", "json, pdff"], "format 'pdff'"),
+        (["run", "--jobs", "0"], "option --jobs: 0 must be at least 1"),
+        (["run", "--system", "magic"], "system 'magic': there is no such system"),
+        (["run", "--plan", "none.toml"], "plan 'none.toml': cannot be read"),
+        (["run", "none.toml"], "case 'none.toml': cannot be read"),
+        (["show", "vovan2015/nothing"], "there is no case with this id"),
+        (["schema", "cases"], "schema 'cases': there is no such format.\n  Did you mean case ?"),
+        (
+            ["simulate", "en50318-2002/*", "--out", "a.csv"],
+            "expected one case with a train, found en50318-2002/250, en50318-2002/300",
+        ),
+        (["simulate", "en50318-2002/250", "--out", "a.xls"], "has the unknown suffix '.xls'"),
+    ],
+)
+def test_bad_input_ends_with_one_message_and_exit_code_2(
+    arguments: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = pantocheck(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert result.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_self_test_needs_a_case_with_a_train() -> None:
+    """A static case has no mutants: 0 of 0 detected must not pass."""
+    result = pantocheck("system", "self-test", "en50318-2018/ac-simple/static")
+    assert result.exit_code == 2
+    assert "no case with a train is selected" in result.output
+
+
+def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both speeds by default; the static case of a selection is left out."""
+    tested: list[list[str]] = []
+
+    def run(cases: list[Case], _: object) -> SelfTest:
+        tested.append([case.id for case in cases])
+        return SelfTest({"en50318-2002/300": ("fail", "a limit")} if len(tested) > 1 else {}, (), ())
+
+    monkeypatch.setattr(system_self_test_command, "run_self_test", run)
+    monkeypatch.setattr(system_self_test_command, "run_numerical_faults", lambda *_: ())
+    assert pantocheck("system", "self-test").exit_code == 0
+    assert pantocheck("system", "self-test", "en50318-2018/ac-stitched/*").exit_code == 1, "the reference must pass"
+    assert tested == [
+        ["en50318-2002/250", "en50318-2002/300"],
+        ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"],
+    ]
+
+
+@pytest.mark.parametrize(
+    "command", [("show", "--at-rest"), ("show", "--derived"), ("line", "draw", "--out"), ("simulate", "--out")]
+)
+def test_line_without_an_equilibrium_ends_with_one_message_and_exit_code_2(
+    command: tuple[str, ...], edited_case: EditedCase, tmp_path: Path
+) -> None:
+    """A pre-sag of 2 m in every span requires droppers in compression: there is no equilibrium."""
+    path = edited_case("line.toml", {"droppers.presag_m": [2.0] * 9})
+    *name, option = command
+    file = () if option in {"--at-rest", "--derived"} else (tmp_path / ("line.svg" if "draw" in name else "out.csv"),)
+    result = pantocheck(*name, path, option, *file)
+    assert result.exit_code == 2
+    assert "Check the data of the line" in result.output
+
+
+def fail_with(error: BaseException) -> Callable[[], None]:
+    """Command that raises an error."""
+
+    def command() -> None:
+        raise error
+
+    return guard_command(command)
+
+
+def test_internal_error_is_a_message_without_traceback(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        fail_with(ValueError("a mistake\x1b of the program"))()
+    assert ended.value.exit_code == 2
+    message = capsys.readouterr().err
+    assert message.startswith("internal error: ValueError: a mistake? of the program\n")
+    assert "PANTOCHECK_TRACEBACK=1" in message
+    assert "Traceback" not in message
+
+
+def test_traceback_of_an_internal_error_is_printed_on_request(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PANTOCHECK_TRACEBACK", "1")
+    with pytest.raises(typer.Exit):
+        fail_with(ValueError("a mistake"))()
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "failure",
+    [NoInitialState, NoEquilibrium, ImpossiblePassage, DidNotConverge, TuningFailed],
+)
+def test_every_failure_of_the_simulation_is_a_message(
+    failure: type[SimulationError], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        fail_with(failure("no state"))()
+    assert ended.value.exit_code == 2
+    assert capsys.readouterr().err == "no state\n  Check the data of the line and of the pantographs.\n"
+
+
+def test_ctrl_c_ends_with_exit_code_130(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(typer.Exit) as ended:
+        fail_with(KeyboardInterrupt())()
+    assert ended.value.exit_code == 130
+    assert capsys.readouterr().err == "Interrupted.\n"
+
+
+def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(
+    records: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setattr(run_command, "run_cases", lambda *_: pytest.fail("computed"))
+    result = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
+
+
+def test_interrupted_run_writes_the_finished_cases(
+    records: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = RecordFolder.run
+
+    def interrupted(self: RecordFolder, case: Case) -> Outcome:
+        if case.id.endswith("300"):
+            raise KeyboardInterrupt
+        return read(self, case)
+
+    monkeypatch.setattr(RecordFolder, "run", interrupted)
+    result = pantocheck(
+        "run", "en50318-2002/*", "--system", f"record:{records}", "--out", tmp_path, "--formats", "json"
+    )
+    assert result.exit_code == 130
+    assert "Interrupted" in result.stderr
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert [case["verdict"] for case in results["cases"]] == ["fail", "skip"]
+    assert len(results["cases"][0]["criteria"]) == 8
+
+
+def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Path) -> None:
+    out = tmp_path / "again" / "a.h5"
+    result = pantocheck("simulate", "en50318-2002/250", "--system", f"record:{records}", "--out", out)
+    assert result.exit_code == 0
+    record, sidecar = read_record(tmp_path / "again" / "a.h5")
+    assert (sidecar.case, record.pantographs) == ("en50318-2002/250", 1)
+    assert sidecar.case_digest is None  # a record of unknown origin does not become one of this version of the case
+    assert sidecar.start is None  # nor does it get a start that its simulator has not stated
+    assert sidecar.line.span_m == 60
+
+
+def test_cases_and_show_state_trust_and_source() -> None:
+    listed = pantocheck("cases").output
+    assert "en50318-2002/250" in listed
+    assert "8 secondary" in listed
+    shown = pantocheck("show", "en50318-2002/250").output
+    for text in ("provisional", "Wang, Liu, Mu", "max_uplift_at_support_mm", "masses_kg", "15.0, 7.2", "sha256:"):
+        assert text in shown
+
+
+def test_show_states_the_forces_of_a_force_law_and_their_sources() -> None:
+    shown = " ".join(pantocheck("show", "force-law/300").output.split())
+    assert "force law of pantograph 1: applied forces of 155.81 N: static force 70.00 N, aerodynamic" in shown
+    assert "pantograph 1.force_law.aerodynamic_force source: wang2016 constant_N -0.2 secondary" in shown
+    assert "force law" not in pantocheck("show", "en50318-2002/250").output
+
+
+def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> None:
+    """Their imports take longer than the list itself."""
+    code = "import sys; from pantocheck.conformance.app.main import cases_command; print(*sys.modules)"
+    output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
+    assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
+
+
+def test_every_case_of_the_library_is_listed() -> None:
+    """One row per case; a case without limits has none."""
+    rows = {line.split()[0]: line for line in pantocheck("cases").output.splitlines()[1:] if line.strip()}
+    assert set(list_library(library_folder())) <= set(rows)
+    assert rows["en50318-2002/300"].split()[-2:] == ["8", "secondary"]
+
+
+def test_show_leaves_out_required_cases_only() -> None:
+    """An exact id is shown alone, even if other cases require it; a glob shows the cases that it selects."""
+
+    def shown(pattern: str) -> list[str]:
+        return re.findall(r"^(en50318-\S+) ", pantocheck("show", pattern).output, re.MULTILINE)
+
+    assert shown("en50318-2018/ac-simple/static") == ["en50318-2018/ac-simple/static"]
+    assert shown("en50318-2002/*") == ["en50318-2002/250", "en50318-2002/300"]
+    assert shown("en50318-2018/ac-stitched/*") == ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"]
+
+
+def test_show_states_requirements_start_and_section() -> None:
+    """Both pantographs are 200 m apart; the last one starts at 55 m."""
+    name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
+    text = " ".join(pantocheck("show", name).output.split())
+    assert "analysis section 1650 m to 2200 m" in text
+    assert "start of the pantographs: 255 m, 55 m" in text
+    assert f"requires: {required}" in text
+    (facts,) = json.loads(pantocheck("show", name, "--json").output)["result"]
+    assert (facts["requires"], facts["start_m"]) == ([required], [255.0, 55.0])
+    static = pantocheck("show", required).output
+    assert "requires" not in static
+    assert "start of" not in static
+
+
+def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
+    """Only cases that no name selects are added, and the line precedes the results."""
+    program = f"command:{sys.executable} {write_refusal(tmp_path)}"
+    name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
+    out = ("--system", program, "--out", tmp_path / "out", "--formats", "json")
+    assert pantocheck("run", name, *out).stderr.startswith(f"cases added: {required} (required by {name})\n")
+    assert "cases added" not in pantocheck("run", name, required, *out).stderr
+    assert "cases added" not in pantocheck("-q", "run", name, *out).stderr
+
+
+def write_refusal(folder: Path) -> Path:
+    """Program that skips every case."""
+    path = folder / "refusal.py"
+    path.write_text(
+        "import json, sys\n"
+        "for line in sys.stdin:\n"
+        "    message = json.loads(line)\n"
+        "    started = {'message': 'started', 'protocol': 'pantocheck.command/1', 'name': 'none', 'version': ''}\n"
+        "    started['features'] = 'bending_stiffness chain droppers presag rayleigh_damping steady_arms'.split()\n"
+        "    skipped = {'message': 'skipped', 'id': message.get('id'), 'reason': 'no solver'}\n"
+        "    answer = {'start': started, 'run': skipped}.get(message['message'])\n"
+        "    if answer is None:\n"
+        "        break\n"
+        "    print(json.dumps(answer), flush=True)\n"
+    )
+    return path
+
+
+def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(line_draw_command, "discretise", lambda *_: pytest.fail("drawn"))
+    result = pantocheck("line", "draw", "en50318-2002/250", "--out", tmp_path / "file" / "line.svg")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
+
+
+def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: EditedCase) -> None:
+    path = edited_case("250.toml", {"title": "\x1b[31m[bold]EN 50318"})
+    shown = pantocheck("show", path).output
+    assert "\x1b" not in shown
+    assert "[31m[bold]EN" in shown
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_a_command_fits_80_columns(name: str) -> None:
+    result = pantocheck(*name.split(), "--help")
+    assert result.exit_code == 0
+    assert max(map(len, result.output.splitlines())) <= 80
+    assert COMMANDS[name] in " ".join(result.output.split()), "the summary is the first line of the docstring"
+    assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), "an example on one line"
+
+
+def test_help_imports_no_command_and_nothing_heavy() -> None:
+    code = (
+        "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
+        "try: app(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'pydantic', 'matplotlib', 'typst', 'h5py'} & set(sys.modules)\n"
+        "print(sorted(heavy), [name for name in sys.modules if name.endswith('_command')])"
+    )
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
+    assert result.stdout.splitlines()[-1] == "[] []"
+
+
+def test_unknown_command_suggests_a_known_one() -> None:
+    result = pantocheck("simulat")
+    assert result.exit_code == 2
+    assert "Did you mean 'simulate'?" in result.output
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("assess", "bad.toml", "--profile", "acceptance-ac"),
+        ("drop", "identify", "bad.csv"),
+        ("drop", "identify", "bad.csv", "--poles", "bad.toml"),
+        ("drop", "fit", "bad.json", "--line", "en50318-2002/250"),
+        ("run", "bad.toml"),
+        ("run", "en50318-2002/250", "--system", "record:absent"),
+        ("run", "en50318-2002/250", "--baseline", "bad.json"),
+        ("drop", "simulate", "bad.toml"),
+        ("simulate", "bad.toml"),
+    ],
+)
+def test_bad_input_leaves_no_folder(command: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("bad.toml", "bad.csv", "bad.json"):
+        Path(name).write_text("{")
+    out = Path("new") / ("out.csv" if "simulate" in command else "out")
+    assert pantocheck(*command, "--out", out).exit_code == 2
+    assert not Path("new").exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is a device of Linux")
+@pytest.mark.parametrize("redirection", ["> /dev/full", "| head -1 > /dev/null"])
+def test_output_that_cannot_be_written_gives_no_traceback(redirection: str) -> None:
+    command = f"{sys.executable} -c 'from pantocheck.conformance.app.main import main; main()'"
+    shell = f"{command} show en50318-2002/250 {redirection}; {command} --help {redirection}"
+    result = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False, timeout=60)
+    assert "Traceback" not in result.stderr
+    assert "internal error" not in result.stderr
+    assert ("cannot be written" in result.stderr) == ("full" in redirection)

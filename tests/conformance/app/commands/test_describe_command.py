@@ -1,0 +1,169 @@
+"""`pantocheck describe`: the facts about a file at 80 columns, and a sidecar that leads to a readable record."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+from helpers.foreign_tables import FOREIGN_WRITERS
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.records.channel_facts import describe_time, list_channel_facts
+from pantocheck.conformance.records.sidecar_tables import LineTable
+
+RATE, SPEED = 500.0, 70.0
+TIME = np.arange(12_000) / RATE
+PLACE = SPEED * TIME
+
+
+def describe(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["describe", *map(str, arguments)])
+
+
+@pytest.fixture
+def logger(tmp_path: Path) -> Path:
+    """German logger file: time stamp, decimal commas, units, decreasing kilometres, two pantographs."""
+    force = [0.12 + 0.03 * np.sin(2 * np.pi * (PLACE - behind) / 60) for behind in (0, 200)]
+    rows = [
+        f"10:00:{t:06.3f};{t:.3f};{87.25 - x / 1000:.5f};252,0;{a:.6f};{b:.6f};12,5"
+        for t, x, a, b in zip(TIME, PLACE, *force, strict=True)
+    ]
+    head = [
+        "Messzug;707",
+        "Strecke;Süd",
+        "",
+        "Uhr;Messzeit;Kilometer;Geschwindigkeit;Kraft vorn;Kraft hinten;Temperatur",
+    ]
+    text = "\n".join([*head, ";s;km;km/h;kN;kN;°C", *rows]).replace(".", ",")
+    (tmp_path / "m.csv").write_text(text, encoding="cp1252")
+    return tmp_path / "m.csv"
+
+
+def complete(sidecar: Path, values: dict[str, str]) -> None:
+    """Complete commented keys of a sidecar, as a user does."""
+    text = sidecar.read_text(encoding="utf-8")
+    for key, value in values.items():
+        text, count = re.subn(rf"(?m)^# {re.escape(key)} = [^#\n]*", f"{key} = {value} ", text)
+        assert count == 1, key
+    sidecar.write_text(text.replace("# [track]", "[track]"), encoding="utf-8")
+
+
+def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
+    """Four keys and the kilometres are completed; the statistics are those of the sine: 120 N and 30/sqrt(2) N."""
+    sidecar = logger.with_suffix(".toml")
+    result = describe(logger, "--sidecar", sidecar)
+    assert result.exit_code == 0
+    assert max(map(len, result.output.splitlines())) <= 80 or str(logger.parent) in result.output
+    for text in ("encoding Windows-1252", "separator semicolon", "decimal comma", "| Strecke;Süd", "500 Hz", "text or"):
+        assert text in result.output
+    assert "constant" in result.output
+    decided = {"speed_km_h": "252.0", "filter_applied_Hz": '"none"', "evaluated_m": "[300.0, 1380.0]"}
+    complete(sidecar, {**decided, "spacing_m": "[200.0]", "zero_km": "87.25", "kilometres": '"decreasing"'})
+    assessed = load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
+    for number in (1, 2):
+        values = assessed.values.values[number]
+        # Six decimals of kilonewtons; 1080 m are eighteen spans of 60 m.
+        assert values["mean_force_N"] == pytest.approx(120.0, abs=0.01)
+        assert values["std_force_N"] == pytest.approx(30 / np.sqrt(2), abs=0.05)
+
+
+def test_sidecar_is_never_overwritten(logger: Path) -> None:
+    sidecar = logger.with_suffix(".toml")
+    sidecar.write_text("mine")
+    result = describe(logger, "--out", sidecar)
+    assert result.exit_code == 2
+    assert "exists already" in result.output
+    assert sidecar.read_text() == "mine"
+
+
+def test_ambiguous_table_names_the_options(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("0,1\n2,3\n4,5\n")
+    result = describe(tmp_path / "a.csv")
+    assert result.exit_code == 2
+    assert "--separator" in result.output
+    result = describe(tmp_path / "a.csv", "--separator", ",", "--sidecar", tmp_path / "a.toml")
+    assert result.exit_code == 0
+    assert 'separator = ","' in (tmp_path / "a.toml").read_text()
+
+
+@pytest.mark.parametrize("name", FOREIGN_WRITERS)
+def test_drop_of_every_format_is_described_and_its_sidecar_is_read(name: str, tmp_path: Path) -> None:
+    """Accelerations without a force are a mass drop; the sidecar is read without a change."""
+    time = np.arange(2000) / 200
+    signals = {f"S{k}_z": np.random.default_rng(k).standard_normal(2000) for k in (1, 2)}
+    FOREIGN_WRITERS[name](tmp_path / name, {"time_s": time, **signals})
+    sidecar = (tmp_path / name).with_suffix(".toml")
+    result = describe(tmp_path / name, "--sidecar", sidecar)
+    assert result.exit_code == 0, result.output
+    assert "[[channel]]" in sidecar.read_text()
+    if name == "groups.h5":
+        return  # read_drop_records needs runs, or data sets in the root group
+    (record,) = read_drop_records(tmp_path / name)
+    assert record.rate == pytest.approx(200.0)
+    assert record.signals.shape == (2000, 2)
+
+
+@pytest.mark.parametrize("name", FOREIGN_WRITERS)
+def test_force_record_of_every_format_is_described(name: str, tmp_path: Path) -> None:
+    channels = {"time_s": TIME, "Kraft_1": 120 + np.sin(PLACE), "Kraft_2": 121 + np.cos(PLACE), "v": 0 * TIME + SPEED}
+    FOREIGN_WRITERS[name](tmp_path / name, channels)
+    result = describe(tmp_path / name, "--sidecar", tmp_path / "s.toml", "--kind", "record")
+    assert result.exit_code == 0, result.output
+    assert "500 Hz" in result.output
+    draft = (tmp_path / "s.toml").read_text()
+    assert re.search(r'force_2_N = \{ column = "(daq/)?Kraft_2" \}   # COMPLETE: unit', draft)
+
+
+def test_force_sensors_in_volts_are_proposed_with_a_scale(tmp_path: Path) -> None:
+    rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 2 + np.sin(PLACE), strict=True))
+    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;V;V\n" + rows)
+    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
+    draft = (tmp_path / "a.toml").read_text()
+    assert '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V' in draft
+    assert "the sum of several sensors" in draft
+
+
+def test_draft_of_several_forces_points_to_their_sum(tmp_path: Path) -> None:
+    """Two sensors of one pantograph have the same units as the forces of two pantographs."""
+    rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 60 + np.sin(PLACE), strict=True))
+    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;N;N\n" + rows)
+    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
+    draft = (tmp_path / "a.toml").read_text()
+    assert 'force_2_N = { column = "Kraft rechts", unit = "N" }' in draft
+    assert "[columns.force_1_N] with sum = [...]" in draft
+
+
+def test_suspicious_contents_are_named() -> None:
+    values = np.column_stack(
+        [
+            np.sin(PLACE),
+            np.sin(PLACE),
+            np.clip(np.sin(PLACE), -0.5, 0.5),
+            np.repeat(np.sin(PLACE), 4)[: TIME.size],
+            0 * TIME,
+            np.round(200 + TIME / TIME[-1], 1),
+        ]
+    )
+    table = MeasuredTable("a.csv", values, tuple(TableColumn(name) for name in "abcdef"))
+    remarks = [fact.remarks for fact in list_channel_facts(table)]
+    assert remarks[0] == ()
+    assert remarks[1] == ("same numbers as 'a'",)
+    assert "overloaded" in remarks[2][0]
+    assert "repeat the one before: recorded at a lower rate?" in remarks[3][0]
+    assert remarks[4] == ("constant",)
+    # A speed with a resolution of 0.1 km/h is no dead channel.
+    assert remarks[5][0].startswith(f"changes seldom: 11 different values in {TIME.size} samples, at least 0.1 apart. ")
+
+
+def test_gaps_and_repetitions_of_the_time_are_named() -> None:
+    """Samples 100 to 149 are missing, sample 500 is repeated."""
+    time = np.r_[np.arange(100), np.arange(150, 500), 499, np.arange(500, 900)] / 100
+    facts = describe_time("t", None, time)
+    assert facts is not None
+    assert facts.rate == pytest.approx(100.0)
+    assert facts.remarks == ("1 times repeated, first at 4.99 s", "1 gaps, the longest of 0.51 s at 0.99 s")

@@ -1,0 +1,69 @@
+"""`pantocheck doctor`: packages that are missing or too old, and facts on the environment."""
+
+import json
+from importlib.metadata import PackageNotFoundError
+
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.app.commands import doctor_command
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.commands.doctor_command import DeclaredPackage, list_requirements
+
+
+def provide_versions(monkeypatch: pytest.MonkeyPatch, **installed: str) -> None:
+    """Let the named packages be the only ones that are installed."""
+
+    def version(name: str) -> str:
+        if name in installed:
+            return installed[name]
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(doctor_command, "version", version)
+
+
+@pytest.mark.parametrize(
+    ("installed", "state"),
+    [
+        ("2.10.0", "installed"),
+        ("2.9", "installed"),
+        ("2.9.0rc1", "installed"),
+        ("2.8.9", "too old"),
+        ("10", "installed"),
+    ],
+)
+def test_versions_are_compared_as_numbers(monkeypatch: pytest.MonkeyPatch, installed: str, state: str) -> None:
+    provide_versions(monkeypatch, example=installed)
+    assert DeclaredPackage("example", "2.9", "").state == state
+
+
+def test_requirements_are_those_of_the_distribution(monkeypatch: pytest.MonkeyPatch) -> None:
+    declared = ["numpy>=2.0", 'nptdms>=1.9; extra == "tdms"', "dask-jobqueue>=0.9,<2; extra == 'cluster'"]
+    monkeypatch.setattr(doctor_command, "requires", lambda name: declared)
+    assert list_requirements() == (
+        DeclaredPackage("numpy", "2.0", ""),
+        DeclaredPackage("dask-jobqueue", "0.9", "cluster"),
+        DeclaredPackage("nptdms", "1.9", "tdms"),
+    )
+
+
+def test_a_missing_package_of_an_extra_is_named_with_its_installation(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor_command, "requires", lambda name: ["numpy>=2.0", 'nptdms>=1.9; extra == "tdms"'])
+    provide_versions(monkeypatch, numpy="2.4", pantocheck="0.1.0")
+    monkeypatch.setenv("COLUMNS", "80")
+    done = CliRunner().invoke(app, ["doctor"])
+    assert done.exit_code == 0, done.output
+    assert "extra tdms: not complete; pip install 'pantocheck[tdms]'" in done.output
+    assert max(map(len, done.output.splitlines())) <= 80
+
+
+def test_a_package_that_is_too_old_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor_command, "requires", lambda name: ["numpy>=2.0"])
+    provide_versions(monkeypatch, numpy="1.26", pantocheck="0.1.0")
+    done = CliRunner().invoke(app, ["doctor", "--json"])
+    assert done.exit_code == 1
+    report = json.loads(done.output)["result"]
+    assert report["packages"] == [
+        {"name": "numpy", "extra": "", "lowest": "2.0", "installed": "1.26", "state": "too old"}
+    ]
+    assert {"Python", "processors", "compiled kernels", "digest of the suite"} <= report["environment"].keys()

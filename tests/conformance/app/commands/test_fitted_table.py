@@ -1,0 +1,73 @@
+"""Tables for any width: three layouts, none of which breaks a name or a number."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from pantocheck.conformance.app.commands.console import FittedTable, build_table
+
+NAME = "elasticity_non_uniformity_pct"
+
+
+def shown(table: FittedTable, width: int) -> list[str]:
+    output = io.StringIO()
+    Console(file=output, width=width).print(table)
+    return [line.rstrip() for line in output.getvalue().splitlines()]
+
+
+@pytest.fixture
+def table() -> FittedTable:
+    table = build_table("criterion", "value", "limits", unbroken=("criterion", "value", "limits"), right=("value",))
+    table.add_row(NAME, "41.52", "40.28 to 42.83")
+    table.add_row("std_force_N", "26.6", "")
+    return table
+
+
+def test_columns_are_aligned_where_they_fit(table: FittedTable) -> None:
+    """29 + 5 + 14 columns and two spaces."""
+    assert shown(table, 50) == [
+        f"{'criterion':29} value limits",
+        f"{NAME} 41.52 40.28 to 42.83",
+        f"{'std_force_N':29}  26.6",
+    ]
+
+
+def test_names_stand_above_their_numbers_where_columns_do_not_fit(table: FittedTable) -> None:
+    assert shown(table, 49) == [
+        "criterion",
+        "  value limits",
+        NAME,
+        "  41.52 40.28 to 42.83",
+        "std_force_N",
+        "   26.6",
+    ]
+
+
+def test_rows_become_paragraphs_on_the_narrowest_terminal(table: FittedTable) -> None:
+    """An empty cell is left out."""
+    assert shown(table, 21) == [
+        "elasticity_non_unifor",
+        "mity_pct",
+        "  value 41.52, limits",
+        "  40.28 to 42.83",
+        "std_force_N",
+        "  value 26.6",
+    ]
+
+
+def test_sentences_wrap_beside_whole_names() -> None:
+    table = build_table("case", "title", unbroken=("case",))
+    table.add_row("en50318-2002/250", "EN 50318:2002 reference model, 250 km/h")
+    assert shown(table, 45) == [
+        "case             title",
+        "en50318-2002/250 EN 50318:2002 reference",
+        "                 model, 250 km/h",
+    ]
+
+
+def test_row_without_further_cells_takes_one_line() -> None:
+    table = build_table("input", "value", unbroken=("input", "value"))
+    table.add_row("line.damping", "")
+    table.add_row("  tension_N", "20000.0")
+    assert shown(table, 15) == ["input", "  value", "line.damping", "  tension_N", "  20000.0"]

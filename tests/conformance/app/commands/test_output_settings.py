@@ -1,0 +1,151 @@
+"""Options -v, -q, --json and --no-color: one meaning for every command, before and after its name."""
+
+import json
+import logging
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from helpers.case_fixtures import EditedCase
+from pantocheck.conformance.app.commands import console
+from pantocheck.conformance.app.commands.command_list import COMMANDS, app
+from pantocheck.conformance.app.commands.output_settings import OutputSettings, combine_flags, use_settings
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.records.record_writing import write_record
+
+
+@pytest.fixture
+def records(wave: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Folder `records` in the current one, with a record of 250 km/h."""
+    monkeypatch.chdir(tmp_path)
+    (case,) = select_cases(["en50318-2002/250"])
+    write_record(Path("records", "250.csv"), wave().record(case), case.id)
+
+
+def run(*options: str) -> Result:
+    command = ["run", "en50318-2002/250", "--system", "record:records", "--out", "out", "--formats", "json"]
+    return CliRunner().invoke(app, [*command, *options])
+
+
+@pytest.mark.usefixtures("records")
+def test_quiet_prints_the_verdict_line_alone() -> None:
+    done = run("-q")
+    assert done.exit_code == 1
+    assert done.stdout.startswith("FAIL ")
+    assert "criterion" not in done.stdout
+    assert "results.json" not in done.stdout
+    assert done.stderr == ""
+
+
+@pytest.mark.usefixtures("records")
+def test_quiet_prints_errors() -> None:
+    done = CliRunner().invoke(app, ["-q", "show", "none/250"])
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "none/250" in done.stderr
+
+
+@pytest.mark.usefixtures("records")
+def test_verbose_prints_all_values_and_the_log() -> None:
+    """The quantity has no limit. The log goes to standard error with the name of the module."""
+    plain, verbose = run(), run("-v")
+    assert "contact_height_range_mm" not in plain.stdout
+    assert "contact_height_range_mm" in verbose.stdout
+    assert plain.stderr == ""
+    assert "pantocheck.conformance.execution.runner: en50318-2002/250: fail" in verbose.stderr
+
+
+@pytest.mark.usefixtures("records")
+def test_json_is_one_object_and_nothing_else() -> None:
+    done = run("--json")
+    content = json.loads(done.stdout)
+    assert (content["schema"], content["command"], content["exit_code"]) == ("pantocheck.output/1", "run", 1)
+    assert done.exit_code == 1
+    assert content["result"] == json.loads(Path("out", "results.json").read_text())
+    assert content["files"] == [str(Path("out", "results.json"))]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["cases"],
+        ["show", "en50318-2002/250"],
+        ["show", "en50318-2018/ac-simple/static", "--derived"],
+        ["doctor"],
+        ["schema", "case"],
+        ["check", "records"],
+        ["describe", "records/250.csv"],
+        ["new", "line", "new.toml"],
+        ["assess", "records/250.toml", "--profile", "acceptance-ac", "--out", "out", "--formats", "json"],
+        ["compare", "records/250.csv", "records/250.csv"],
+        ["line", "export", "en50318-2002/250", "--out", "tables"],
+    ],
+    ids=lambda command: command[0],
+)
+@pytest.mark.usefixtures("records")
+def test_every_command_gives_its_result_as_json(command: list[str]) -> None:
+    content = json.loads(CliRunner().invoke(app, ["--json", *command]).stdout)
+    assert content["command"] == " ".join(command[:2] if command[0] == "line" else command[:1])
+    assert content["result"]
+
+
+@pytest.mark.usefixtures("records")
+def test_failure_is_json_too() -> None:
+    """The message stays on standard error."""
+    Path("line.toml").write_text("geometry = 3\n")
+    done = CliRunner().invoke(app, ["line", "export", "line.toml", "--out", "tables", "--json"])
+    content = json.loads(done.stdout)
+    assert (done.exit_code, content["exit_code"]) == (2, 2)
+    assert content["problems"][0].keys() == {"where", "found", "hint"}
+    assert content["problems"][0]["where"] in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["--json", "cases"], ["cases", "--json"], ["--json", "cases", "--json"]])
+def test_options_count_before_and_after_the_command(arguments: list[str]) -> None:
+    assert json.loads(CliRunner().invoke(app, arguments).stdout)["command"] == "cases"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_takes_the_options(name: str) -> None:
+    """The help of a command refers to that of `pantocheck`, which lists them."""
+    done = CliRunner().invoke(app, [*name.split(), "-q", "--json", "--no-color", "--help"])
+    assert (done.exit_code, "see `pantocheck --help`" in done.stdout) == (0, True)
+
+
+def test_more_and_less_output_at_once_is_refused() -> None:
+    done = CliRunner().invoke(app, ["-v", "cases", "-q"])
+    assert done.exit_code == 2
+    assert "contradict" in done.stderr
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_texts_of_a_file_stay_escaped(form: str, edited_case: EditedCase) -> None:
+    """Neither a control sequence of a terminal, nor a mark that reverses text, reaches standard output."""
+    path = edited_case("250.toml", {"title": "\x1b[31m\u202egpj.exe"})
+    done = CliRunner().invoke(app, ["show", str(path), *(["--json"] if form == "json" else [])])
+    assert "\x1b" not in done.stdout
+    assert "\u202e" not in done.stdout
+    assert "gpj.exe" in done.stdout
+
+
+def test_no_color_leaves_no_bold_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm-256color")
+    assert "\x1b[1" in CliRunner().invoke(app, ["cases"]).stdout
+    assert "\x1b" not in CliRunner().invoke(app, ["cases", "--no-color"]).stdout
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b" not in CliRunner().invoke(app, ["cases"]).stdout
+
+
+def test_library_is_silent_without_a_handler(capfd: pytest.CaptureFixture[str]) -> None:
+    logging.getLogger("pantocheck.conformance.execution.runner").warning("a step")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_settings_hold_while_a_command_runs() -> None:
+    settings = combine_flags({"quiet", "no_color"})
+    assert settings == OutputSettings(detail="quiet", colour="none")
+    with use_settings(settings):
+        assert console.console().color_system is None
+    assert combine_flags(()) == OutputSettings()

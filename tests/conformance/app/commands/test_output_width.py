@@ -1,0 +1,71 @@
+"""Width of the output: no line is longer than the terminal, and no name of a quantity or case is cut."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.commands.console import LONGEST_WORD
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.records.record_writing import write_record
+
+COMMANDS = {
+    "cases": ["cases"],
+    "show": ["show", "en50318-2002/*"],
+    "static": ["show", "en50318-2018/ac-stitched/static", "--derived"],
+    "doctor": ["doctor"],
+    "check": ["check", "records"],
+    "describe": ["describe", "records/250.csv"],
+    "run": ["run", "en50318-2002/*", "--system", "record:records", "--out", "out", "--formats", "json", "-v"],
+    "assess": ["assess", "records/250.toml", "--profile", "acceptance-ac", "--out", "out", "--formats", "json"],
+    "compare": ["compare", "records/250.csv", "records/300.csv"],
+}
+
+
+@pytest.fixture
+def workplace(wave: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder with records, as the current one: paths of the user are short."""
+    monkeypatch.chdir(tmp_path)
+    for case in select_cases(["en50318-2002/*"]):
+        write_record(Path("records", f"{case.file.speed_km_h:g}.csv"), wave().record(case), case.id)
+    return tmp_path
+
+
+@pytest.mark.usefixtures("workplace")
+@pytest.mark.parametrize("width", [60, 80])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_line_is_longer_than_the_terminal(command: str, width: int) -> None:
+    done = CliRunner(env={"COLUMNS": str(width)}).invoke(app, COMMANDS[command])
+    assert done.exit_code in {0, 1}, done.output
+    # Lines of the log are not wrapped outside a terminal, so that a search finds them.
+    long = [line for line in done.stdout.splitlines() if len(line) > width]
+    assert [line for line in long if not line.startswith("  pantocheck describe ")] == []  # a command to be copied
+    assert "…" not in done.output
+    assert not re.search(r"\w\.\.\.", done.output)
+
+
+@pytest.mark.usefixtures("workplace")
+@pytest.mark.parametrize("width", ["60", "80"])
+def test_names_are_whole(width: str) -> None:
+    """Every graded quantity and case of a run is found by its name, which a cut or a break would hide."""
+    environment = {"COLUMNS": width}
+    shown = CliRunner(env=environment).invoke(app, COMMANDS["run"]).output
+    results = json.loads(CliRunner(env=environment).invoke(app, [*COMMANDS["run"][:-1], "--json"]).stdout)["result"]
+    names = {criterion["quantity"] for case in results["cases"] for criterion in case["criteria"]}
+    assert len(names) > 5
+    assert {name for name in names | {case["id"] for case in results["cases"]} if name not in shown} == set()
+
+
+def test_no_name_is_longer_than_the_words_that_are_kept_whole() -> None:
+    assert max(map(len, QUANTITIES)) < LONGEST_WORD
+
+
+def test_output_to_a_file_has_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    lines = CliRunner().invoke(app, ["cases"]).output.splitlines()
+    assert max(map(len, lines)) == 80

@@ -1,0 +1,205 @@
+"""Progress: task, step, share and remaining time, live on a terminal and as lines elsewhere."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+
+import pytest
+
+from helpers.short_cases import shorten_case
+from pantocheck.conformance.app.commands import progress_display
+from pantocheck.conformance.app.commands.output_settings import OutputSettings, use_settings
+from pantocheck.conformance.app.commands.progress_display import (
+    REDRAWS_PER_S,
+    TaskProgress,
+    follow_steps,
+    show_line,
+    write_log,
+)
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.step_log import StepSequence, report_remote, use_part
+from pantocheck.conformance.runs.reference_simulator import COARSE_MESH, FINE_MESH, OWN_MESH, ReferenceSimulator
+
+LOGGER = logging.getLogger("pantocheck.test")
+
+
+class Clock:
+    """Time that the test sets [s]."""
+
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_line_names_case_step_share_and_remaining_time() -> None:
+    """One of two cases and half of the first of two equal steps take 50 s: 62.5 %, so 30 s remain."""
+    clock = Clock()
+    progress = TaskProgress("running cases", 2, clock)
+    steps = StepSequence(LOGGER, "en50318-2002/300", {"mesh of the case": 1.0, "mesh halved": 1.0})
+    LOGGER.setLevel(logging.DEBUG)
+    LOGGER.addHandler(progress)
+    try:
+        progress.finish_task()
+        steps.begin("mesh of the case")(0.5)
+    finally:
+        LOGGER.removeHandler(progress)
+    clock.now = 50.0
+    assert progress.describe() == (
+        "running cases: 1 of 2 finished, en50318-2002/300: mesh of the case, 62 %, about 0:00:30 remaining"
+    )
+
+
+def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
+    clock = Clock()
+    progress = TaskProgress("identification", 5, clock)
+    progress.begin_task("T1: release and linear decay")
+    clock.now = 75.0
+    assert progress.describe() == (
+        "identification: 0 of 5 finished, T1: release and linear decay, 0 %, 0:01:15 elapsed"
+    )
+
+
+def test_begin_of_a_task_ends_the_task_before_it() -> None:
+    progress = TaskProgress("self-test", 4, Clock())
+    progress.begin_task("zero force")
+    progress.begin_task("late force")
+    assert progress.describe().startswith("self-test: 1 of 4 finished, late force, 25 %")
+
+
+def test_cases_of_several_processes_are_all_named(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO, LOGGER.name)
+    progress = TaskProgress("running cases", 4, Clock())
+    LOGGER.addHandler(progress)
+    try:
+        for case in ("line/250", "line/300", "line/320"):
+            report_remote(LOGGER, case)
+    finally:
+        LOGGER.removeHandler(progress)
+    progress.finish_task("line/300")
+    assert progress.describe().startswith(
+        "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own, 25 %"
+    )
+
+
+def test_parts_of_a_study_continue_the_share_of_their_case(caplog: pytest.LogCaptureFixture) -> None:
+    """A second part from 60 to 100 % whose only step is half finished: 80 %."""
+    with caplog.at_level(logging.DEBUG, "pantocheck"), use_part(0.6, 1.0):
+        StepSequence(LOGGER, "line/250", {"mesh of the case": 2.0}).begin("mesh of the case")(0.5)
+    assert [record.__dict__["step"].completed for record in caplog.records] == pytest.approx([0.6, 0.8])
+
+
+@pytest.mark.parametrize(("detail", "lines"), [("normal", True), ("quiet", False)])
+def test_line_is_printed_periodically_outside_of_a_terminal(
+    detail: str, lines: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The display asks for the second line after it has printed the first; with -q, it never asks."""
+    monkeypatch.setattr(progress_display, "LOG_INTERVAL_S", 0.01)
+    asked, second = [], threading.Event()
+
+    def describe() -> str:
+        asked.append(1)
+        if len(asked) == 2:
+            second.set()
+        return "case 1\x1b of 2"
+
+    with use_settings(OutputSettings(detail=detail)), show_line(describe):  # type: ignore[arg-type]
+        assert second.wait(10.0 if lines else 0.05) == lines
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert ("case 1? of 2" in captured.err) == lines
+
+
+@pytest.mark.parametrize("prepare", [write_log, lambda: follow_steps("running cases")])
+def test_long_lines_of_a_log_stay_whole(
+    prepare: Callable[[], AbstractContextManager[object]],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """120 characters: more than the 80 columns of a pipe, so a search for the end of the line finds it."""
+    monkeypatch.setattr(progress_display, "LOG_INTERVAL_S", 0.01)
+    text = "word " * 24 + "end"
+    with use_settings(OutputSettings(detail="verbose")), prepare():
+        StepSequence(LOGGER, "line/250", {text: 1.0}).begin(text)
+        limit, printed = time.monotonic() + 10.0, ""
+        while f"line/250: {text}" not in printed and time.monotonic() < limit:
+            time.sleep(0.01)
+            printed += capsys.readouterr().err
+    assert f"line/250: {text}" in printed
+
+
+def test_single_task_shows_the_share_of_its_steps_or_none(caplog: pytest.LogCaptureFixture) -> None:
+    progress = TaskProgress("running cases", 1, Clock())
+    assert progress.describe() == "running cases, 0:00:00 elapsed"
+    LOGGER.addHandler(progress)
+    try:
+        with caplog.at_level(logging.DEBUG, "pantocheck"):
+            StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
+    finally:
+        LOGGER.removeHandler(progress)
+    assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
+
+
+def test_line_is_redrawn_a_few_times_a_second() -> None:
+    assert 2 <= REDRAWS_PER_S <= 4
+
+
+def test_levels_and_handlers_are_restored() -> None:
+    root = logging.getLogger("pantocheck")
+    before = root.level, list(root.handlers)
+    with follow_steps("anything"):
+        assert root.isEnabledFor(logging.DEBUG)
+    assert (root.level, root.handlers) == before
+
+
+def test_reference_simulator_reports_its_steps(caplog: pytest.LogCaptureFixture) -> None:
+    """The completed share never decreases, although the tuning of two uplift forces repeats the passage."""
+    case = select_cases(["en50318-2018/ac-simple/275-twin"])[-1]
+    short = shorten_case(case, 200.0, 0.5, 2)
+    with caplog.at_level(logging.DEBUG, "pantocheck"):
+        ReferenceSimulator().run(short)
+    steps = [record.__dict__["step"] for record in caplog.records if "step" in record.__dict__]
+    assert list(dict.fromkeys(step.name for step in steps))[:3] == [OWN_MESH, FINE_MESH, COARSE_MESH]
+    assert {step.task for step in steps} == {case.id}
+    completed = [step.completed for step in steps]
+    assert completed == sorted(completed)
+    assert completed[-1] <= 1
+    assert len({step.completed for step in steps if step.name == OWN_MESH}) > 3
+
+
+def test_remaining_time_follows_the_durations_of_the_parts_of_this_run() -> None:
+    """An earlier run has done 20 %; 30 % more take 60 s, so the other half takes 100 s, of which 40 s pass."""
+    clock = Clock()
+    progress = TaskProgress("guide", 4, clock)
+    progress.reach("", 1, 0.2)
+    clock.now = 60.0
+    progress.reach("library/long", 2, 0.5)
+    clock.now = 100.0
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, about 0:01:00 remaining"
+    clock.now = 160.0  # the estimate is over, but not the work
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
+
+
+def test_no_remaining_time_before_a_tenth_is_done() -> None:
+    clock = Clock()
+    progress = TaskProgress("guide", 4, clock)
+    progress.reach("", 0, 0.0)
+    clock.now = 10.0
+    progress.reach("library/short", 1, 0.09)
+    assert progress.describe() == "guide: 1 of 4 finished, library/short, 9 %, 0:00:10 elapsed"
+
+
+def test_steps_within_a_part_add_no_share_and_only_the_latest_is_named(caplog: pytest.LogCaptureFixture) -> None:
+    """A part such as the self-test runs many cases, which end without a message."""
+    caplog.set_level(logging.INFO, LOGGER.name)
+    progress = TaskProgress("guide", 4, Clock())
+    progress.reach("", 0, 0.0)
+    LOGGER.addHandler(progress)
+    try:
+        for case in ("line/250", "line/300"):
+            StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
+    finally:
+        LOGGER.removeHandler(progress)
+    assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"

@@ -1,0 +1,136 @@
+"""Execution of a campaign: failures, early stops, and resuming after the kill of a driver or a worker."""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from contextlib import closing, suppress
+from pathlib import Path
+
+import pytest
+
+from helpers.cheap_campaign import ThisProcess, compute_row, compute_slowly, fail_even, misbehave, speed_design
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
+from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, open_store
+from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
+from pantocheck.conformance.campaigns.local_workers import LocalWorkers
+from pantocheck.conformance.core.input_error import InputError
+
+RUNS = 200
+"""Runs in two processes: some are finished at every kill, and those after the hundredth wait for a gate."""
+
+GATE = "gate"
+
+
+def start_driver(folder: Path) -> subprocess.Popen[bytes]:
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "CAMPAIGN_GATE": str(folder / GATE)}
+    command = [sys.executable, "-m", "helpers.cheap_campaign", str(folder), str(RUNS)]
+    return subprocess.Popen(command, env=environment)
+
+
+def count_stored(folder: Path) -> int:
+    address = f"file:{folder / STORE_NAME}?mode=ro"
+    with suppress(sqlite3.Error), closing(sqlite3.connect(address, uri=True)) as store:
+        return int(store.execute("SELECT COUNT(*) FROM run").fetchone()[0])
+    return 0
+
+
+def wait_for_runs(folder: Path, driver: subprocess.Popen[bytes], number: int) -> None:
+    """Wait until further runs are stored."""
+    before = count_stored(folder)
+    while count_stored(folder) < before + number and driver.poll() is None:
+        time.sleep(0.02)
+    assert count_stored(folder) < RUNS
+
+
+def list_children(process: int) -> list[int]:
+    return [int(text) for text in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+
+
+def build_undisturbed_table(folder: Path) -> bytes:
+    with open_store(folder, {"runs": RUNS}) as store:
+        drive_campaign(speed_design(RUNS), compute_row, store, ThisProcess(), Execution(), lambda _: None)
+        write_campaign_table(store, folder / "campaign.csv")
+    return (folder / "campaign.csv").read_bytes()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the children of a process are listed in /proc")
+def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Path) -> None:
+    """The driver is killed first, then a worker of the driver that resumes."""
+    killed = tmp_path / "killed"
+    with start_driver(killed) as driver:
+        wait_for_runs(killed, driver, 10)
+        driver.send_signal(signal.SIGKILL)
+    with start_driver(killed) as driver:
+        wait_for_runs(killed, driver, 10)
+        os.kill(list_children(driver.pid)[-1], signal.SIGKILL)
+        (killed / GATE).touch()
+        assert driver.wait(timeout=600) == 0
+    assert (killed / "campaign.csv").read_bytes() == build_undisturbed_table(tmp_path / "undisturbed")
+
+
+def test_failing_runs_become_rows_with_their_reason(tmp_path: Path) -> None:
+    design = speed_design(5)
+    with open_store(tmp_path, {}) as store:
+        drive_campaign(design, misbehave, store, LocalWorkers(2, 2.0), Execution(), lambda _: None)
+        reasons = {row.run.number: row.reason for row in store.rows()}
+        assert reasons == {
+            1: "the process of this run ended unexpectedly at every attempt",
+            2: "ZeroDivisionError: no mass",
+            3: "longer than 2 s",
+            4: None,
+            5: None,
+        }
+        store.forget_failed()
+        assert store.count() == (2, 0)
+        drive_campaign(design, compute_row, store, ThisProcess(), Execution(), lambda _: None)
+        assert store.count() == (5, 0)
+
+
+def test_campaign_stops_at_a_share_of_failed_runs_and_goes_on_without_this_limit(tmp_path: Path) -> None:
+    """Half of the runs fail: the campaign stops as soon as 20 are finished."""
+    design, states = speed_design(50), list[CampaignProgress]()
+    with open_store(tmp_path, {}) as store:
+        execution = Execution(max_failed_share=0.4)
+        ending = drive_campaign(design, fail_even, store, ThisProcess(), execution, states.append)
+        assert ending == "failure share"
+        assert store.count() == (20, 10)
+        assert (states[-1].total, states[-1].finished, states[-1].failed) == (50, 20, 10)
+        assert (
+            drive_campaign(speed_design(50), fail_even, store, ThisProcess(), Execution(), states.append) == "complete"
+        )
+        assert store.count() == (50, 25)
+
+
+def test_campaign_stops_after_its_time_budget(tmp_path: Path) -> None:
+    """Runs of 20 ms: after 0.1 s about five are finished, and the 50 runs of the campaign would need 1 s."""
+    with open_store(tmp_path, {}) as store:
+        ending = drive_campaign(
+            speed_design(50), compute_slowly, store, ThisProcess(), Execution(time_budget_s=0.1), lambda _: None
+        )
+        assert ending == "time budget"
+        assert 1 <= store.count()[0] <= 6
+
+
+def test_remaining_time_follows_the_rate() -> None:
+    assert CampaignProgress(100, 40, 0, 2.0).remaining_s == 30.0
+    assert CampaignProgress(100, 1, 0, None).remaining_s is None
+
+
+def test_store_refuses_another_campaign_a_second_process_and_damage(tmp_path: Path) -> None:
+    first = {"cases": "a", "suite": 1}
+    with (
+        open_store(tmp_path, first),
+        pytest.raises(InputError, match="another process runs this campaign"),
+        open_store(tmp_path, first),
+    ):
+        pass
+    changed = pytest.raises(InputError, match=r"another campaign \(changed: cases\)")
+    with changed, open_store(tmp_path, {**first, "cases": "b"}):
+        pass
+    (tmp_path / STORE_NAME).write_bytes(b"no database" * 100)
+    with pytest.raises(InputError, match="cannot be used"), open_store(tmp_path, first):
+        pass

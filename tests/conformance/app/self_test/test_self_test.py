@@ -1,0 +1,81 @@
+"""Self-test: every mutant on one case, and its tables."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.self_test import bench
+from pantocheck.conformance.app.self_test.bench import SelfTest, run_self_test
+from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, Mutant
+from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, run_numerical_faults
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.runs.system import Delivered
+from verification.tables import self_test_tables
+
+TABLES = Path(__file__).parents[4] / "docs" / "tables"
+
+
+@pytest.fixture(scope="module")
+def self_test() -> SelfTest:
+    cases = select_cases(["en50318-2002/300"])
+    return replace(run_self_test(cases, lambda _: None), numerical=run_numerical_faults(cases, lambda _: None))
+
+
+def test_self_test_passes_the_simulator_and_detects_every_mutant(self_test: SelfTest) -> None:
+    assert self_test.reference == {"en50318-2002/300": ("pass", "")}
+    missed = [row.mutant.name for row in self_test.severe if not row.detected]
+    assert missed == []
+    assert self_test.passed
+    assert len(self_test.severe) == len(MUTANTS) == 11
+    assert {row.verdict for row in self_test.severe} <= {"fail", "error"}
+
+
+def test_verification_detects_numerical_faults_that_the_criteria_let_pass(self_test: SelfTest) -> None:
+    """Only droppers that push change the force below 20 Hz enough to leave the limits of EN 50318:2002."""
+    rows = {row.fault.name: row for row in self_test.numerical}
+    assert len(rows) == len(FAULTS) == 8
+    severe = [row for row in rows.values() if row.fault.must_be_detected]
+    assert {row.verification for row in severe} == {"fail"}
+    assert all("rms_20_50_N" in row.outside for row in severe)
+    assert {name for name, row in rows.items() if row.criteria == "fail"} == {"no slackening"}
+
+
+def test_undetected_numerical_fault_fails_the_self_test(self_test: SelfTest) -> None:
+    missed = replace(self_test.numerical[0], verification="pass")
+    assert not replace(self_test, numerical=(missed,)).passed
+    optional = replace(missed, fault=replace(missed.fault, must_be_detected=False))
+    assert replace(self_test, numerical=(optional,)).passed
+
+
+def test_limits_alone_do_not_detect_shifts(self_test: SelfTest) -> None:
+    """The reason for the checks of a record."""
+    by_limits = {row.mutant.name: row.by_limits for row in self_test.severe}
+    assert by_limits["time shift"] == by_limits["position shift"] == "pass"
+    assert by_limits["no slackening"] == by_limits["gain 1.05"] == "fail"
+
+
+def test_tables_of_the_page_are_those_of_this_run(self_test: SelfTest) -> None:
+    assert len(self_test.mild) == len(MILD)
+    for name, rows in (
+        ("mutants", self_test_tables.list_severe(self_test.severe)),
+        ("numerical", self_test_tables.list_numerical(self_test.numerical)),
+        ("mild", self_test_tables.list_mild(self_test.mild)),
+    ):
+        text = (TABLES / f"self-test-{name}.csv").read_text("utf-8")
+        heading, *written = (tuple(row) for row in csv.reader(text.splitlines()))
+        assert [heading, *(row for row in written if "`en50318-2002/300`" in row)] == rows
+
+
+def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mutant without a fault: the self-test itself must be able to fail, also on a narrow terminal."""
+    harmless = Mutant("harmless", "Nothing.", lambda case, record: Delivered(record), "limits")
+    monkeypatch.setattr(bench, "MUTANTS", (harmless,))
+    monkeypatch.setattr(bench, "MILD", ())
+    result = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["system", "self-test", "en50318-2002/250"])
+    assert result.exit_code == 1
+    assert result.output.startswith("FAIL 0 of 1 mutants detected by the expected check")
+    assert "NOT DETECTED: harmless on en50318-2002/250, expected check: limits\n" in result.output

@@ -1,0 +1,135 @@
+"""Checks by new computations: quantities of a record, and a new run of the built-in simulator."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.number_comparison import compare_numbers
+from pantocheck.conformance.documents.record_check import check_record_quantities
+from pantocheck.conformance.documents.rerun_check import check_rerun
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+
+
+@pytest.fixture
+def record_file(case_250: Case, tmp_path: Path) -> Path:
+    """Record of the wave at 250 km/h with all its digits."""
+    folder = tmp_path / "records"
+    folder.mkdir()
+    record = Wave().record(case_250)
+    write_record(folder / "wave.h5", record, case=case_250.id, system={"name": "wave", "version": "1"}, run={})
+    return folder / "wave.h5"
+
+
+@pytest.fixture(scope="module")
+def static_results() -> Results:
+    """Built-in run of a line at rest, which takes a second."""
+    case = load_case(library_folder() / "en50318-2018" / "ac-simple" / "static.toml")
+    return run_cases([case], ReferenceSimulator())
+
+
+def test_rerun_compares_the_drawing_of_the_line(static_results: Results) -> None:
+    content = static_results.to_dict()
+    content["cases"][0]["line_shape"]["side"]["points"][0]["y_m"] += 0.001
+    [changed] = check_rerun(Results.model_validate(content))
+    assert changed.outcome == "contradicted"
+    assert "line_shape" in " ".join(changed.details)
+    del content["cases"][0]["line_shape"]
+    [stripped] = check_rerun(Results.model_validate(content))
+    assert stripped.outcome == "contradicted"
+
+
+def change_quantity(results: Results, name: str, factor: float) -> Results:
+    content = results.to_dict()
+    values = content["cases"][0]["quantities"]
+    owner = next(owner for owner in values if name in values[owner])
+    values[owner][name] *= factor
+    return Results.model_validate(content)
+
+
+def test_quantities_follow_from_the_graded_record(case_250: Case, record_file: Path) -> None:
+    results = run_cases([case_250], open_record_folder(record_file.parent))
+    quantities, digest = check_record_quantities(results, record_file)
+    assert (quantities.outcome, digest.outcome) == ("proved", "proved")
+    assert "largest relative difference 0.0e+00" in quantities.statement
+    assert "wave.h5 is the graded record" in digest.statement
+
+
+@pytest.mark.parametrize("name", ["mean_force_N", "rms_20_50_N", "contact_height_range_mm", "max_uplift_at_support_mm"])
+def test_another_quantity_contradicts_the_record(case_250: Case, record_file: Path, name: str) -> None:
+    """1e-5 is ten times the tolerance, and far below the printed digits."""
+    results = change_quantity(run_cases([case_250], open_record_folder(record_file.parent)), name, 1 + 1e-5)
+    quantities, _ = check_record_quantities(results, record_file)
+    assert quantities.outcome == "contradicted"
+    assert len(quantities.details) == 1
+    assert name in quantities.details[0]
+
+
+def test_another_record_is_named(case_250: Case, record_file: Path) -> None:
+    results = run_cases([case_250], open_record_folder(record_file.parent))
+    other = Wave(mean=118.0).record(case_250)
+    write_record(record_file, other, case=case_250.id, system={"name": "wave", "version": "1"}, run={})
+    quantities, digest = check_record_quantities(results, record_file)
+    assert (quantities.outcome, digest.outcome) == ("contradicted", "contradicted")
+
+
+def test_record_of_no_case_of_the_document_is_refused(case_250: Case, record_file: Path, wave_results: Results) -> None:
+    other = wave_results.model_copy(
+        update={"cases": [wave_results.cases[0].model_copy(update={"id": "en50318-2002/300"})]}
+    )
+    with pytest.raises(InputError, match="which the document does not grade"):
+        check_record_quantities(other, record_file)
+
+
+def test_rerun_needs_the_built_in_simulator(wave_results: Results) -> None:
+    with pytest.raises(InputError, match="'wave' is not the built-in simulator"):
+        check_rerun(wave_results)
+
+
+def test_rerun_repeats_every_number(static_results: Results) -> None:
+    """The same processor and packages give the same bits."""
+    [check] = check_rerun(static_results)
+    assert check.outcome == "proved"
+    assert "bit for bit" in check.statement
+    [changed] = check_rerun(change_quantity(static_results, "elasticity_mm_N", 1 + 1e-12))
+    assert changed.outcome == "contradicted"
+    assert "quantities, 0, elasticity_mm_N" in changed.details[0]
+
+
+def test_rerun_on_another_processor_is_compared_within_rounding(static_results: Results) -> None:
+    platform = static_results.platform.model_copy(update={"machine": "aarch64"})
+    elsewhere = change_quantity(static_results.model_copy(update={"platform": platform}), "elasticity_mm_N", 1 + 1e-8)
+    assert [check.outcome for check in check_rerun(elsewhere)] == ["proved"]
+    assert [check.outcome for check in check_rerun(change_quantity(elsewhere, "elasticity_mm_N", 1 + 1e-5))] == [
+        "contradicted"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("stated", "computed", "tolerance", "different"),
+    [
+        ({"a": 1.0}, {"a": 1.0}, 0.0, 0),
+        ({"a": 1.0}, {"a": 1.0 + 1e-15}, 0.0, 1),
+        ({"a": 1.0}, {"a": 1.0 + 1e-9}, 1e-6, 0),
+        ({"a": 1.0}, {"a": 1.0 + 1e-5}, 1e-6, 1),
+        ({"a": [1e-9, 100.0]}, {"a": [2e-9, 100.0]}, 1e-6, 0),  # relative to the largest number of the list
+        ({"a": [1.0]}, {"a": [1.0, 2.0]}, 1e-6, 2),  # the number of values, and the second one
+        ({"a": 1.0}, {"b": 1.0}, 1e-6, 2),
+        ({"a": "x"}, {"a": "y"}, 1e-6, 1),
+        ({"a": None}, {"a": 1.0}, 1e-6, 1),
+        ({"a": float("nan")}, {"a": 1.0}, 1e-6, 1),
+    ],
+)
+def test_numbers_are_compared_relative_to_their_scale(
+    stated: Any, computed: Any, tolerance: float, different: int
+) -> None:
+    assert len(compare_numbers(stated, computed, tolerance).differences) == different

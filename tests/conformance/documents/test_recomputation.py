@@ -1,0 +1,210 @@
+"""Recomputation: correct numbers are accepted up to their rounding, and each wrong number is named."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.documents.verification import find_gaps
+from pantocheck.conformance.results.results_format import Results
+
+
+def of_case(change: Callable[[dict[str, Any]], object]) -> Callable[[dict[str, Any]], object]:
+    """Change of the first case."""
+    return lambda results: change(results["cases"][0])
+
+
+def set_spectrum(pantograph: str, frequency: list[float], amplitude: list[float]) -> Callable[[dict[str, Any]], None]:
+    """Replace a drawn spectrum."""
+
+    def change(case: dict[str, Any]) -> None:
+        case["traces"][pantograph]["spectrum"] = {"frequency_Hz": frequency, "amplitude_N": amplitude}
+
+    return change
+
+
+def scale(case: dict[str, Any], pantograph: str, name: str, factor: float) -> None:
+    case["quantities"][pantograph][name] *= factor
+
+
+@pytest.fixture
+def ungraded(passing: dict[str, Any]) -> dict[str, Any]:
+    """Two pantographs without criteria, so that one changed number can contradict only the numbers around it."""
+    case = passing["cases"][0]
+    verdicts = {"verdict": "info", "criteria_verdict": "info"}
+    case |= {"criteria": []} | verdicts
+    return passing | verdicts
+
+
+ROUNDED = ["mean_force_N", "std_force_N"]
+BANDS = ["rms_0_5_N", "rms_5_20_N", "rms_20_50_N"]
+STATISTICS = ["statistical_min_N", "statistical_max_N", "cov_20", "cov_50"]
+
+
+@pytest.mark.parametrize("pantograph", ["1", "2"])
+@pytest.mark.parametrize("name", BANDS)
+@pytest.mark.parametrize(("factor", "found"), [(1 + 1e-5, 0), (1 - 1e-5, 0), (1 + 4e-5, 1), (1 - 4e-5, 1)])
+def test_bands_follow_from_the_spectrum(
+    ungraded: dict[str, Any], pantograph: str, name: str, factor: float, found: int
+) -> None:
+    """Amplitudes with six digits give the RMS within 2e-5."""
+    scale(ungraded["cases"][0], pantograph, name, factor)
+    texts = find_discrepancies(Results.model_validate(ungraded))
+    assert len(texts) == found
+    assert all(f"pantograph {pantograph}: {name}" in text and "follows from the spectrum" in text for text in texts)
+
+
+@pytest.mark.parametrize("pantograph", ["1", "2"])
+@pytest.mark.parametrize("name", STATISTICS)
+@pytest.mark.parametrize(("factor", "found"), [(1 + 1e-10, 0), (1 + 1e-7, 1), (1 - 1e-7, 1)])
+def test_statistics_follow_exactly_from_mean_and_deviation(
+    ungraded: dict[str, Any], pantograph: str, name: str, factor: float, found: int
+) -> None:
+    scale(ungraded["cases"][0], pantograph, name, factor)
+    texts = find_discrepancies(Results.model_validate(ungraded))
+    assert len(texts) == found
+    assert all(f"pantograph {pantograph}: {name}" in text for text in texts)
+
+
+@pytest.mark.parametrize("pantograph", ["1", "2"])
+@pytest.mark.parametrize("name", ["mean_N", "std_N"])
+@pytest.mark.parametrize(("factor", "found"), [(1 + 1e-5, 0), (1 + 4e-5, 1), (1 - 4e-5, 1)])
+def test_drawn_mean_and_deviation_are_those_of_the_quantities(
+    ungraded: dict[str, Any], pantograph: str, name: str, factor: float, found: int
+) -> None:
+    ungraded["cases"][0]["traces"][pantograph][name] *= factor
+    texts = find_discrepancies(Results.model_validate(ungraded))
+    assert len(texts) == found
+    assert all(f"pantograph {pantograph}: {name.removesuffix('_N')}_force_N" in text for text in texts)
+
+
+@pytest.mark.parametrize("pantograph", ["1", "2"])
+@pytest.mark.parametrize(("name", "sign"), [("max_force_N", 1), ("min_force_N", -1)])
+@pytest.mark.parametrize(("share", "found"), [(1e-5, 0), (1e-4, 1), (-1e-4, 0)])
+def test_drawn_force_stays_within_its_extremes(
+    ungraded: dict[str, Any], pantograph: str, name: str, sign: int, share: float, found: int
+) -> None:
+    """Drawn beyond the stated extreme by a share of the largest force; 2e-5 are allowed for its six digits."""
+    case = ungraded["cases"][0]
+    case["traces"][pantograph]["histogram"] = None  # it has a check of its own
+    force = case["traces"][pantograph]["force_20_N"]
+    extreme = max(force) if sign > 0 else min(force)
+    case["quantities"][pantograph][name] = extreme - sign * share * max(force)
+    texts = find_discrepancies(Results.model_validate(ungraded))
+    assert len(texts) == found
+    assert all(f"pantograph {pantograph}: {name}" in text and "drawn" in text for text in texts)
+
+
+@pytest.mark.parametrize("gone", ["mean_force_N", "std_force_N", "std_force_50_N", *STATISTICS, *BANDS, "max_force_N",
+                                  "min_force_N", "contact_loss_pct"])  # fmt: skip
+def test_quantity_that_is_not_delivered_contradicts_nothing(ungraded: dict[str, Any], gone: str) -> None:
+    del ungraded["cases"][0]["quantities"]["2"][gone]
+    assert find_discrepancies(Results.model_validate(ungraded)) == []
+
+
+def test_missing_mean_does_not_hide_a_wrong_band(ungraded: dict[str, Any]) -> None:
+    quantities = ungraded["cases"][0]["quantities"]["2"]
+    del quantities["mean_force_N"], quantities["std_force_N"]
+    quantities["rms_0_5_N"] *= 1.1
+    assert len(find_discrepancies(Results.model_validate(ungraded))) == 1
+
+
+def test_mean_without_contact_has_no_coefficient_of_variation(ungraded: dict[str, Any]) -> None:
+    """A mean of zero: the quotient is not defined, and any stated one is left to the graded record."""
+    case = ungraded["cases"][0]
+    case["traces"]["2"] |= {"force_20_N": None, "histogram": None}
+    quantities = case["quantities"]["2"]
+    for name, value in (("mean_force_N", 0.0), ("statistical_min_N", -3.0), ("statistical_max_N", 3.0)):
+        quantities[name] = value
+    quantities["std_force_N"] = case["traces"]["2"]["std_N"] = 1.0
+    case["traces"]["2"]["mean_N"] = 0.0
+    assert find_discrepancies(Results.model_validate(ungraded)) == []
+
+
+@pytest.mark.parametrize(
+    ("frequency", "amplitude", "checked"),
+    [
+        ([1.0, 2.0, 3.0, 4.0], [3.0, 0.0, 4.0, 0.0], True),
+        ([0.0, 1.0, 2.0, 3.0], [7.0, 3.0, 0.0, 4.0], True),  # the mean belongs to no band
+        ([1.0, 2.0, 3.0, 4.1], [3.0, 0.0, 4.0, 0.0], False),  # a line is missing: the curve was thinned
+        ([1.0, 2.0, 3.0, 4.0001], [3.0, 0.0, 4.0, 0.0], False),
+        ([1.0, 2.0, 3.0, 4.00002], [3.0, 0.0, 4.0, 0.0], True),  # six digits
+        ([1.0, 2.0, 3.0], [3.0, 0.0, 4.0, 0.0], False),
+        ([1.0], [5.0], False),
+        ([], [], False),
+        ([1.0, 3.0, 5.0, 7.0], [3.0, 4.0, 0.0, 0.0], False),  # a line on the edge of 5 Hz
+        ([1.0, 2.9999, 4.9998, 6.9997], [3.0, 4.0, 0.0, 0.0], True),
+        ([1.0, 2.99996, 4.99992, 6.99988], [3.0, 4.0, 0.0, 0.0], False),  # 8e-5 Hz from 5 Hz; rounding moves it by 1e-4
+    ],
+)
+def test_band_is_checked_only_with_all_its_lines(
+    ungraded: dict[str, Any], frequency: list[float], amplitude: list[float], checked: bool
+) -> None:
+    """Amplitudes of 3 N and 4 N below 5 Hz: an RMS of 5 / sqrt(2) N; stated is another one."""
+    case = ungraded["cases"][0]
+    set_spectrum("2", frequency, amplitude)(case)
+    for name in BANDS[1:]:
+        del case["quantities"]["2"][name]
+    case["quantities"]["2"]["rms_0_5_N"] = 3.0
+    texts = find_discrepancies(Results.model_validate(ungraded))
+    assert len(texts) == checked
+    case["quantities"]["2"]["rms_0_5_N"] = 12.5**0.5
+    assert find_discrepancies(Results.model_validate(ungraded)) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "found"),
+    [
+        ({}, False),
+        ({"record": None}, True),
+        ({"record": None, "run.evaluated_m": None}, False),  # a static case
+        ({"record": None, "verdict": "skip", "reason": "not run"}, False),
+        ({"record": None, "verdict": "error", "reason": "diverged"}, False),
+        ({"record": None, "verdict": "skip", "reason": None}, True),
+        ({"record": None, "verdict": "info", "reason": "not run"}, True),
+    ],
+)
+def test_record_of_a_passage_has_a_state(ungraded: dict[str, Any], changes: dict[str, Any], found: bool) -> None:
+    case = ungraded["cases"][0]
+    for key, value in changes.items():
+        (case["run"] if key.startswith("run.") else case)[key.removeprefix("run.")] = value
+    gaps = find_gaps(Results.model_validate(ungraded))
+    assert any("the state of the record is missing" in text for text in gaps) is found
+
+
+def test_results_without_cases_lack_the_verdict_of_the_criteria(ungraded: dict[str, Any]) -> None:
+    """It may be absent only if every case, and there is one, takes part in the verification alone."""
+    ungraded["criteria_verdict"] = None
+    only = {**ungraded, "verification_only": [case["id"] for case in ungraded["cases"]]}
+    for results, missing in ((ungraded, True), (only, False), ({**ungraded, "cases": []}, True)):
+        gaps = find_gaps(Results.model_validate(results))
+        assert ("criteria_verdict is missing" in gaps) is missing
+
+
+def test_minimum_above_maximum_is_found_without_samples(ungraded: dict[str, Any]) -> None:
+    """A summary has no curve; its printed statistics may be rounded, but not in the wrong order."""
+    case = ungraded["cases"][0]
+    case["traces"] = {}
+    case["run"]["rate_Hz"] = None
+    case["quantities"]["1"]["cov_20"] *= 1.01
+    assert find_discrepancies(Results.model_validate(ungraded)) == []
+    case["quantities"]["2"] |= {"min_force_N": 100.0, "max_force_N": 100.0}
+    assert find_discrepancies(Results.model_validate(ungraded)) == []
+    case["quantities"]["2"]["min_force_N"] = 100.5
+    assert find_discrepancies(Results.model_validate(ungraded)) == [
+        "en50318-2002/250, pantograph 2: min_force_N 100.5 above max_force_N 100"
+    ]
+
+
+def test_item_of_a_list_is_compared_with_its_own_value(passing: dict[str, Any]) -> None:
+    """Dropper lengths of the line: item 2, no item for the first, and an item that was not reported."""
+    case = passing["cases"][0]
+    case["quantities"]["0"]["dropper_length_m"] = [1.017, 0.896]
+    row = case["criteria"][0]
+    row |= {"quantity": "dropper_length_m", "pantograph": 0, "unit": "m", "lower": 0.5, "upper": 1.5, "spread": None}
+    row |= {"discretisation_error": None, "uncertainty": None, "components": {}}
+    for item, value, consistent in ((2, 0.896, True), (None, 1.017, True), (1, 1.017, True), (2, 1.017, False),
+                                    (3, 0.896, False), (None, 0.896, False)):  # fmt: skip
+        row |= {"item": item, "value": value, "margin": 2 * min(value - 0.5, 1.5 - value)}
+        assert (find_discrepancies(Results.model_validate(passing)) == []) is consistent

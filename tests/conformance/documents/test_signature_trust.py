@@ -1,0 +1,187 @@
+"""Trust in a signer: chain, expiry, key usage and time stamps, for a detached signature (the same code checks PDF)."""
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from helpers.signed_files import sign
+from helpers.signer_fixtures import Signers
+from pantocheck.conformance.documents import key_files
+from pantocheck.conformance.documents.signature_check import check_signatures
+from pantocheck.conformance.documents.signature_facts import describe_signatures
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> Path:
+    path = tmp_path / "results.json"
+    path.write_text("{}")
+    return path
+
+
+@pytest.fixture
+def any_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sign with keys that `sign` refuses, as other programs do."""
+    monkeypatch.setattr(key_files, "_check_usable", lambda *_: None)
+
+
+def test_chain_to_a_given_root_is_authentic(signers: Signers, document: Path, roots_file: Path) -> None:
+    sign(document, signers.author, role="author")
+    report = check_signatures(document, roots_file)
+    assert report.authentic
+    (facts,) = report.signatures
+    assert (facts.signer, facts.issuer, facts.role, facts.root) == (
+        "Ada Author",
+        "Test authority",
+        "author",
+        "Test root",
+    )
+    assert facts.stated_time is not None
+    assert abs(facts.stated_time - datetime.now(UTC)) < timedelta(minutes=5)
+
+
+def test_without_roots_the_signer_is_named_but_not_trusted(signers: Signers, document: Path) -> None:
+    sign(document, signers.author)
+    report = check_signatures(document, None)
+    assert not report.authentic
+    assert report.contradictions == ()  # the content is unchanged; trust was not asked for
+    assert "signed by Ada Author as author (not trusted: no trust root given)" in describe_signatures(report)[0]
+
+
+def test_root_of_another_authority(signers: Signers, document: Path, tmp_path: Path) -> None:
+    from helpers.authorities import issue, request
+
+    other = issue(request("Test root", authority=True, usages=("key_cert_sign",)))  # the same name, another key
+    roots = other.write_certificate(tmp_path / "other.pem")
+    sign(document, signers.author)
+    report = check_signatures(document, roots)
+    assert report.contradictions == (
+        "signature 1 (Ada Author): not trusted, its chain does not lead to a given trust root",
+    )
+
+
+def test_missing_intermediate_certificate(signers: Signers, document: Path, roots_file: Path) -> None:
+    from dataclasses import replace
+
+    sign(document, replace(signers.author, authority=None))
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.distrust == "its chain does not lead to a given trust root"
+
+
+@pytest.mark.usefixtures("any_key")
+@pytest.mark.parametrize(
+    ("days", "content", "reason"),
+    [
+        ((-9, -1), {}, "the signing certificate expired on "),
+        ((1, 9), {}, "the signing certificate is not valid before "),
+        ((-1, 9), {"usages": ("key_encipherment",)}, "the signing certificate lacks the key usage 'digital signature'"),
+    ],
+)
+def test_unusable_certificate(
+    signers: Signers, document: Path, roots_file: Path, days: tuple[int, int], content: dict[str, object], reason: str
+) -> None:
+    sign(document, signers.issue("Late Signer", days, **content))
+    report = check_signatures(document, roots_file)
+    assert not report.authentic
+    assert report.signatures[0].distrust.startswith(reason)
+
+
+@pytest.mark.usefixtures("any_key")
+def test_certificate_of_a_server(signers: Signers, document: Path, roots_file: Path) -> None:
+    """The authority of a company certifies servers as well; none of them signs reports."""
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    sign(document, signers.issue("www.example.org", purpose=ExtendedKeyUsageOID.SERVER_AUTH))
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.distrust == "the signing certificate is for other purposes (server auth)"
+
+
+@pytest.mark.usefixtures("any_key")
+def test_expired_authority(signers: Signers, document: Path, roots_file: Path) -> None:
+    from helpers.authorities import issue, request
+
+    authority = signers.issue("Old authority", (-9, -1), authority=True, usages=("key_cert_sign",))
+    sign(document, issue(request("Ada Author"), authority))
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.distrust.startswith("the certificate of the authority Old authority expired on ")
+
+
+@pytest.mark.usefixtures("any_key")
+def test_self_signed_certificate_as_trust_root_expires(document: Path, tmp_path: Path, signers: Signers) -> None:
+    """A trust root is trusted without its own chain, but its validity still counts for its own signature."""
+    from helpers.authorities import issue, request
+
+    for name, days in (("Now", (-1, 9)), ("Old", (-9, -1))):
+        holder = issue(request(name, days))
+        sign(document, holder, out=tmp_path / f"{name}.p7s")
+        (tmp_path / "results.json.p7s").write_bytes((tmp_path / f"{name}.p7s").read_bytes())
+        report = check_signatures(document, holder.write_certificate(tmp_path / "own.pem"))
+        assert report.authentic == (name == "Now")
+
+
+def test_time_stamp_of_a_trusted_authority_decides_the_moment(
+    signers: Signers, document: Path, roots_file: Path, any_key: None
+) -> None:
+    """A certificate that expired since is trusted, because the time stamp shows that it was valid when it signed."""
+    from helpers.authorities import serve_time_stamps
+
+    moment = datetime.now(UTC).replace(microsecond=0) - timedelta(hours=12)
+    holder = signers.issue("Former Signer", (-9, -0.25))  # expired 6 hours ago, 6 hours after the time stamp
+    with serve_time_stamps(signers.clock, moment) as url:
+        sign(document, holder, timestamp_url=url)
+    report = check_signatures(document, roots_file)
+    assert report.authentic
+    (facts,) = report.signatures
+    assert facts.stamped_time == facts.checked_at == moment
+    assert "validity was checked at this time" in describe_signatures(report)[1]
+
+
+def test_time_stamp_of_an_unknown_authority_does_not_count(
+    signers: Signers, document: Path, roots_file: Path, any_key: None
+) -> None:
+    from cryptography.hazmat.primitives.asymmetric import rsa
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    from helpers.authorities import issue, request, serve_time_stamps
+
+    key = rsa.generate_private_key(public_exponent=65537, key_size=2048)
+    clock = issue(request("Own clock", purpose=ExtendedKeyUsageOID.TIME_STAMPING), None, key)
+    moment = datetime.now(UTC) - timedelta(hours=12)
+    with serve_time_stamps(clock, moment) as url:
+        sign(document, signers.issue("Former Signer", (-9, -0.25)), timestamp_url=url)
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.stamped_time is None
+    assert facts.stamp_problem == "its authority Own clock is not trusted (no valid chain to a trust root)"
+    assert facts.distrust.startswith("the signing certificate expired on ")
+    assert facts.distrust.endswith("(no trusted time stamp)")
+
+
+def test_time_stamp_of_another_signature_does_not_count(
+    signers: Signers, document: Path, roots_file: Path, tmp_path: Path
+) -> None:
+    """A time stamp moved from one signature to another belongs to other content."""
+    from asn1crypto import cms
+
+    from helpers.authorities import serve_time_stamps
+
+    with serve_time_stamps(signers.clock) as url:
+        stamped = sign(document, signers.author, timestamp_url=url)
+    donor = cms.ContentInfo.load(stamped.read_bytes())["content"]["signer_infos"][0]["unsigned_attrs"]
+    plain = cms.ContentInfo.load(sign(document, signers.author, out=tmp_path / "plain.p7s").read_bytes())
+    plain["content"]["signer_infos"][0]["unsigned_attrs"] = donor
+    stamped.write_bytes(plain.dump(force=True))
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert (facts.stamped_time, facts.stamp_problem) == (None, "it belongs to other content")
+
+
+def test_signer_without_the_purpose_of_time_stamps(signers: Signers, document: Path, roots_file: Path) -> None:
+    from cryptography.hazmat.primitives.asymmetric import rsa
+
+    from helpers.authorities import issue, request, serve_time_stamps
+
+    key = rsa.generate_private_key(public_exponent=65537, key_size=2048)
+    with serve_time_stamps(issue(request("No clock"), signers.root, key)) as url:
+        sign(document, signers.author, timestamp_url=url)
+    (facts,) = check_signatures(document, roots_file).signatures
+    assert facts.stamped_time is None
+    assert facts.stamp_problem.startswith("its authority No clock is not trusted")

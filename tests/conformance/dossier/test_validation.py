@@ -1,0 +1,254 @@
+"""The example dossier passes; with a step removed, spoiled or beyond its limits, that step does not pass.
+
+The claims rest on every step: none of them passes then, and all other steps do.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.example_dossier import CachedSimulator, copy_example, list_verdicts, validate_example
+from helpers.toml_edit import edit_toml, write_toml
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.results.procedure_format import STEP_NAMES
+
+ALL_PASS = dict.fromkeys(STEP_NAMES, "pass")
+NOT_VERIFIED = {"limits_of_validity": "skip"}
+"""Claims of the example without the pair that verifies them."""
+
+ORDER = ["error", "fail", "skip", "info", "unverified", "pass"]
+
+Spoil = Callable[[Path], object]
+
+
+def edit_column(name: str, column: str, change: Callable[[float], float]) -> Spoil:
+    """Change the values of one column of a measured table."""
+
+    def spoil(folder: Path) -> None:
+        path = folder / "measured" / name
+        head, *rows = path.read_text(encoding="utf-8").splitlines()
+        place = head.split(",").index(column)
+        cells = [row.split(",") for row in rows]
+        for row in cells:
+            row[place] = f"{change(float(row[place])):.9g}"
+        path.write_text("\n".join([head, *map(",".join, cells)]) + "\n", encoding="utf-8")
+
+    return spoil
+
+
+def drop_column(name: str, column: str) -> Spoil:
+    """Remove a column of a measured table."""
+
+    def spoil(folder: Path) -> None:
+        path = folder / "measured" / name
+        cells = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+        place = cells[0].index(column)
+        lines = (",".join(row[:place] + row[place + 1 :]) for row in cells)
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    return spoil
+
+
+def drop_rows(name: str, first: int, last: int) -> Spoil:
+    """Remove rows of a measured table, numbered from 1 below the head line."""
+
+    def spoil(folder: Path) -> None:
+        path = folder / "measured" / name
+        lines = path.read_text(encoding="utf-8").splitlines()
+        path.write_text("\n".join(lines[:first] + lines[last + 1 :]) + "\n", encoding="utf-8")
+
+    return spoil
+
+
+def edit_sidecar(name: str, changes: dict[str, Any]) -> Spoil:
+    """Change keys of the sidecar of a measured table."""
+    return lambda folder: edit_toml(folder / "measured" / name, changes)
+
+
+def replace_record(name: str, other: str) -> Spoil:
+    """Replace the table of a record by other bytes."""
+    return lambda folder: (folder / "measured" / name).write_text(other, encoding="utf-8")
+
+
+@pytest.mark.parametrize("changes", ["one pair", "all pairs"])
+def test_complete_dossier_passes(system: CachedSimulator, tmp_path: Path, changes: str) -> None:
+    """All six steps pass, with verified runs, and every verdict follows from the numbers of results.json."""
+    path = copy_example(tmp_path / "in", ONE_PAIR if changes == "one pair" else {})
+    results = validate_example(path, system, tmp_path / "out")
+    assert list_verdicts(results) == ALL_PASS
+    assert results.verdict == "pass"
+    assert find_discrepancies(results) == []
+    assert results.procedure is not None
+    assert [step.step for step in results.procedure.steps] == list(STEP_NAMES)
+    assert all(case.record is not None and case.record.state == "verified" for case in results.cases)
+    for step in results.procedure.steps[:-1]:
+        assert step.margin is not None
+        assert step.margin >= 0
+
+
+def add_failing_case(folder: Path) -> None:
+    """Write a case whose limit its run exceeds."""
+    limit = {"quantity": "mean_force_N", "pantograph": 1, "upper": 50.0, "trust": "secondary", "source": "test"}
+    content = (folder / "run-160.toml").read_text(encoding="utf-8")
+    (folder / "failing.toml").write_text(content, encoding="utf-8")
+    edit_toml(folder / "failing.toml", {"id": "own/failing", "limit": [limit]})
+
+
+ONE_PAIR: dict[str, Any] = {
+    "line.0.element_m": 1.0,
+    "pair.2": None,
+    "pair.1": None,
+    "validity.speed_km_h": [160.0, 160.0],
+    "validity.spacing_m": None,
+}
+"""The example with one pair, and claims that it verifies: half a second in place of one."""
+
+OTHER_PANTOGRAPH = {"name": "other", "file": "en50318-2002/pantograph.toml"}
+
+
+def add_passing_case(folder: Path) -> None:
+    """Write an own case whose limit its run meets."""
+    add_failing_case(folder)
+    (folder / "failing.toml").rename(folder / "own.toml")
+    edit_toml(folder / "own.toml", {"limit.0.upper": 500.0})
+
+
+def add_limits(folder: Path) -> None:
+    """Write a file of limits that the reference model exceeds."""
+    limit = {"case": "*/250", "quantity": "std_force_N", "pantograph": 1, "upper": 20.0, "trust": "secondary"}
+    write_toml(folder / "limits.toml", {"limit": [limit | {"source": "test"}]})
+
+
+@dataclass(frozen=True)
+class Variant:
+    """Changed keys of the dossier, changed files, and the steps that then do not pass."""
+
+    changes: dict[str, Any]
+    expected: dict[str, str]
+    spoil: Spoil = field(default=lambda folder: None)
+
+
+VARIANTS = {
+    "no response": Variant({"pantograph.0.responses": None}, {"pantograph_model": "skip"}),
+    "no response of a load": Variant(
+        {"pantograph.0.responses": ["measured/response-70N.csv"]}, {"pantograph_model": "skip"}
+    ),
+    "no limit of a band": Variant({"pantograph.0.limit.1": None}, {"pantograph_model": "skip"}),
+    "tight limit of the response": Variant({"pantograph.0.limit.1.upper": 0.5}, {"pantograph_model": "fail"}),
+    "response limits without trust": Variant({"pantograph.0.trust": None}, {"pantograph_model": "info"}),
+    "response of a heavier head": Variant(
+        {}, {"pantograph_model": "fail"}, edit_column("response-70N.csv", "modulus_kg", lambda m: 1.1 * m)
+    ),
+    "response in another unit": Variant(
+        {}, {"pantograph_model": "error"}, edit_column("response-70N.csv", "modulus_kg", lambda m: 1e3 * m)
+    ),
+    "response with lost rows": Variant({}, {"pantograph_model": "error"}, drop_rows("response-110N.csv", 60, 70)),
+    "no static values": Variant({"line.0.statics": None}, {"static_check": "skip"}),
+    "no tolerance of the height": Variant({"line.0.tolerance.height_mm": None}, {"static_check": "skip"}),
+    "tight tolerance of the elasticity": Variant({"line.0.tolerance.elasticity_pct": 1.0}, {"static_check": "fail"}),
+    "static tolerances without trust": Variant({"line.0.tolerance.trust": None}, {"static_check": "info"}),
+    "wire at another height": Variant(
+        {}, {"static_check": "fail"}, edit_column("statics.csv", "contact_wire_height_m", lambda z: z + 0.02)
+    ),
+    "no measured height": Variant({}, {"static_check": "skip"}, drop_column("statics.csv", "contact_wire_height_m")),
+    "static values with lost rows": Variant({}, {"static_check": "skip"}, drop_rows("statics.csv", 30, 33)),
+    "elasticity in another unit": Variant(
+        {}, {"static_check": "error"}, edit_column("statics.csv", "elasticity_mm_N", lambda e: 1e3 * e)
+    ),
+    "no parameters": Variant({"parameters": None}, {"simulation_parameters": "skip"}),
+    "smaller time step declared": Variant({"parameters.time_step_s": 5e-4}, {"simulation_parameters": "fail"}),
+    "no start declared": Variant({"parameters.start": None}, {"simulation_parameters": "skip"}),
+    "mesh declared in words": Variant({"parameters.element_m": "fine"}, {"simulation_parameters": "unverified"}),
+    "no reference model": Variant({"reference": None}, {"reference_models": "skip"}),
+    "reference model without limits": Variant({"reference.cases": ["run-160.toml"]}, {"reference_models": "info"}),
+    "own case with limits as reference model": Variant(
+        {"reference.cases": ["own.toml"]}, {"reference_models": "info"}, add_passing_case
+    ),
+    "line at rest as reference model": Variant(
+        {"reference.cases": ["en50318-2018/ac-simple/static"]}, {"reference_models": "info"}
+    ),
+    "own limits of a reference model": Variant(
+        {"reference.limits": "limits.toml"}, {"reference_models": "fail"}, add_limits
+    ),
+    "reference model beyond its limit": Variant(
+        {"reference.cases": ["failing.toml"]}, {"reference_models": "fail"}, add_failing_case
+    ),
+    "no pair": Variant({"pair": None}, {"line_test": "skip"} | NOT_VERIFIED),
+    "no tolerance of sigma": Variant({"line_test.tolerance.1": None}, {"line_test": "skip"} | NOT_VERIFIED),
+    "tight tolerance of sigma": Variant(
+        {"line_test.tolerance.1.tolerance_pct": 1.0}, {"line_test": "fail"} | NOT_VERIFIED
+    ),
+    "provisional tolerances": Variant({"line_test": None}, {"line_test": "info"} | NOT_VERIFIED),
+    "other direction": Variant({"pair.0.measured.direction": "down"}, {"line_test": "skip"} | NOT_VERIFIED),
+    "other speed": Variant({"pair.0.measured.record": "measured/run-200.csv"}, {"line_test": "skip"} | NOT_VERIFIED),
+    "other section": Variant(
+        {}, {"line_test": "skip"} | NOT_VERIFIED, edit_sidecar("run-160.toml", {"evaluated_m": [250.0, 500.0]})
+    ),
+    "measured by the system": Variant(
+        {}, {"line_test": "error"} | NOT_VERIFIED, edit_sidecar("run-160.toml", {"system.name": CachedSimulator.name})
+    ),
+    "measured force too large": Variant(
+        {}, {"line_test": "fail"} | NOT_VERIFIED, edit_column("run-160.csv", "force_1_N", lambda f: 1.4 * f - 34)
+    ),
+    "support without measured uplift": Variant(
+        {}, {"line_test": "skip"} | NOT_VERIFIED, drop_column("run-160.csv", "uplift_3_mm")
+    ),
+    "no measured contact height": Variant(
+        {}, {"line_test": "skip"} | NOT_VERIFIED, drop_column("run-160.csv", "contact_height_1_mm")
+    ),
+    "gap in the measured force": Variant({}, {"line_test": "skip"} | NOT_VERIFIED, drop_rows("run-160.csv", 500, 600)),
+    "no measured analysis section": Variant(
+        {}, {"line_test": "skip"} | NOT_VERIFIED, edit_sidecar("run-160.toml", {"evaluated_m": None})
+    ),
+    "unreadable record": Variant({}, {"line_test": "error"} | NOT_VERIFIED, replace_record("run-160.csv", "no table")),
+    "no claim": Variant({"validity": None}, NOT_VERIFIED),
+    "claim on another pantograph": Variant(
+        {"pantograph.1": OTHER_PANTOGRAPH, "validity.pantographs": ["other"]},
+        {"pantograph_model": "skip"} | NOT_VERIFIED,
+    ),
+    "claim on a higher speed": Variant({"validity.speed_km_h": [160.0, 165.0]}, NOT_VERIFIED),
+    "claim on another tension": Variant(
+        {"validity.change": [{"key": "line.contact_wire.tension_N", "range": [18e3, 20e3]}]}, NOT_VERIFIED
+    ),
+}
+
+
+FULL_VARIANTS = {
+    "other pantographs": Variant({"pair.2.simulated.case": "run-200.toml"}, {"line_test": "skip"} | NOT_VERIFIED),
+    "other spacing": Variant(
+        {}, {"line_test": "skip"} | NOT_VERIFIED, edit_sidecar("run-200-two.toml", {"spacing_m": [85.0]})
+    ),
+    "same pair twice": Variant(
+        {
+            "pair.2.simulated.case": "run-200.toml",
+            "pair.2.measured.record": "measured/run-200.csv",
+            "pair.2.measured.pantographs": ["example pantograph"],
+        },
+        {"line_test": "error"} | NOT_VERIFIED,
+    ),
+    "claim beyond the tested speeds": Variant({"validity.speed_km_h": [160.0, 220.0]}, NOT_VERIFIED),
+    "claim beyond the tested spacing": Variant({"validity.spacing_m": [85.0, 200.0]}, NOT_VERIFIED),
+}
+"""Variants that need all pairs."""
+
+
+def rest_claims_on(steps: dict[str, str]) -> dict[str, str]:
+    """Verdict of claims that rest on these steps: the worst of them, but not worse than `skip`, not verified."""
+    worst = min(steps.values(), key=ORDER.index)
+    return {"limits_of_validity": max(worst, "skip", key=ORDER.index)}
+
+
+@pytest.mark.parametrize("name", [*VARIANTS, *FULL_VARIANTS])
+def test_variant_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: Path, name: str) -> None:
+    """No PASS overall; all verdicts follow from the numbers of results.json."""
+    variant = VARIANTS.get(name) or FULL_VARIANTS[name]
+    path = copy_example(tmp_path / "in", (ONE_PAIR if name in VARIANTS else {}) | variant.changes)
+    variant.spoil(path.parent)
+    results = validate_example(path, system, tmp_path / "out")
+    assert list_verdicts(results) == ALL_PASS | rest_claims_on(variant.expected) | variant.expected
+    worst = min(variant.expected.values(), key=ORDER.index)
+    assert results.verdict == worst
+    assert find_discrepancies(results) == []

@@ -1,0 +1,198 @@
+"""Damaged records of mass drops: each damage has its message, and no damage gives a traceback."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+from helpers.drop_records import RATE
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_reading import read_drop_records
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
+from pantocheck.conformance.drops.uff_writing import write_drop_uff
+
+Damage = Callable[[Path, DropRecord], Path]
+"""Writes a record into a folder, damages it and gives its path."""
+
+FLIPS = 400  # files; on fewer some of the errors that the libraries raise do not show
+
+
+def csv_damage(change: Callable[[str], str]) -> Damage:
+    """A written CSV record with its text changed."""
+
+    def damage(folder: Path, record: DropRecord) -> Path:
+        write_drop_csv(record, folder / "r.csv")
+        path = folder / "r.csv"
+        path.write_text(change(path.read_text()))
+        return path
+
+    return damage
+
+
+def sidecar_damage(old: str, new: str) -> Damage:
+    """A written CSV record with its sidecar changed."""
+
+    def damage(folder: Path, record: DropRecord) -> Path:
+        write_drop_csv(record, folder / "r.csv")
+        path = folder / "r.toml"
+        text = path.read_text()
+        assert old in text
+        path.write_text(text.replace(old, new, 1))
+        return folder / "r.csv"
+
+    return damage
+
+
+def cut_binary(folder: Path, record: DropRecord) -> Path:
+    """Universal file of three data sets, cut behind the second one."""
+    write_drop_uff(record, folder / "r.uff")
+    content = (folder / "r.uff").read_bytes()
+    (folder / "r.uff").write_bytes(content[: len(content) * 2 // 3])
+    return folder / "r.uff"
+
+
+def cut_data_set(folder: Path, record: DropRecord) -> Path:
+    write_drop_uff(record, folder / "r.uff")
+    content = (folder / "r.uff").read_bytes()
+    (folder / "r.uff").write_bytes(content[: len(content) * 3 // 5])
+    return folder / "r.uff"
+
+
+def cut_hdf5(folder: Path, record: DropRecord) -> Path:
+    write_drop_hdf5((record,), folder / "r.h5")
+    content = (folder / "r.h5").read_bytes()
+    (folder / "r.h5").write_bytes(content[: len(content) // 2])
+    return folder / "r.h5"
+
+
+def unknown_number_type(folder: Path, record: DropRecord) -> Path:
+    """Universal file whose first data set states a type of numbers that does not exist (0 in place of 4)."""
+    write_drop_uff(record, folder / "r.uff")
+    content = (folder / "r.uff").read_bytes()
+    (folder / "r.uff").write_bytes(content.replace(b"         4       400", b"         0       400", 1))
+    return folder / "r.uff"
+
+
+def without_sidecar(folder: Path, record: DropRecord) -> Path:
+    write_drop_csv(record, folder / "r.csv")
+    (folder / "r.toml").unlink()
+    return folder / "r.csv"
+
+
+def empty(name: str) -> Damage:
+    def damage(folder: Path, record: DropRecord) -> Path:
+        (folder / name).write_bytes(b"")
+        return folder / name
+
+    return damage
+
+
+DAMAGES = {
+    "nan": (
+        csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "nan", 1)),
+        "not finite, the first at 0.04 s",
+    ),
+    "text": (csv_damage(lambda t: t.replace(t.splitlines()[5].split(",")[1], "oops", 1)), "'oops' is not a number"),
+    "cut line": (csv_damage(lambda t: t[:-30]), "line 401: has 2 of 4 values"),
+    "no samples": (csv_damage(lambda t: t.splitlines()[0] + "\n"), "no samples"),
+    "missing column": (
+        csv_damage(lambda t: "\n".join(line.rsplit(",", 1)[0] for line in t.splitlines())),
+        "S2_z missing",
+    ),
+    "gap in time": (
+        csv_damage(lambda t: "\n".join(t.splitlines()[:50] + t.splitlines()[60:])),
+        "the time increases by",
+    ),
+    "wrong rate": (
+        sidecar_damage("sampling_rate_hz = 100.0", "sampling_rate_hz = 200.0"),
+        "states a sampling rate of 200 Hz",
+    ),
+    "wrong unit": (sidecar_damage('unit = "m/s2"', 'unit = "furlong"'), "unknown unit 'furlong'"),
+    "wrong direction": (sidecar_damage('direction = "+z"', 'direction = "up"'), "unknown direction 'up'"),
+    "wrong name": (sidecar_damage('name = "S1_z"', 'name = "S9_z"'), "the sidecar names it 'S9_z'"),
+    "late trigger": (
+        sidecar_damage("trigger_nominal_s = 1.5", "trigger_nominal_s = 15.0"),
+        "after the end of the record at 4 s",
+    ),
+    "no rate": (sidecar_damage("sampling_rate_hz = 100.0\n", ""), "sampling_rate_hz"),
+    "mixed units": (sidecar_damage('unit = "m/s2"', 'unit = "mm"'), "holds channels of acceleration and displacement"),
+    "channel twice": (sidecar_damage("column = 2", "column = 1"), "describes column 1 twice"),
+    "cut binary": (cut_binary, r"S2_z missing\)\.\s+It may be truncated: copy or export it again"),
+    "cut inside a data set": (cut_data_set, r"ends inside a data set\.\s+It may be truncated"),
+    "unknown number type": (unknown_number_type, "damaged, or is not a universal file"),
+    "cut hdf5": (cut_hdf5, "damaged"),
+    "no sidecar": (without_sidecar, "nor a sidecar"),
+    "empty csv": (empty("r.csv"), "is empty"),
+    "empty uff": (empty("r.uff"), "is empty"),
+    "unknown format": (empty("r.xyz"), "unknown suffix '.xyz'"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damage_is_told(tmp_path: Path, record: DropRecord, name: str) -> None:
+    damage, message = DAMAGES[name]
+    with pytest.raises(InputError, match=message):
+        read_drop_records(damage(tmp_path, record))
+
+
+@pytest.mark.parametrize("suffix", [".uff", ".mat", ".h5", ".tdms", ".mf4", ".csv"])
+def test_garbage_is_refused(tmp_path: Path, record: DropRecord, suffix: str) -> None:
+    write_drop_csv(record, tmp_path / "r.csv")
+    path = tmp_path / f"r{suffix}"
+    path.write_bytes(bytes(np.random.default_rng(1).integers(0, 256, 5000, dtype=np.uint8)))
+    with pytest.raises(InputError):
+        read_drop_records(path)
+
+
+def whole_file(kind: str, folder: Path, record: DropRecord) -> Path:
+    if kind == "h5":
+        write_drop_hdf5((record,), folder / "r.h5")
+        return folder / "r.h5"
+    write_drop_csv(record, folder / "r.csv")
+    if kind == "tdms":
+        nptdms = pytest.importorskip("nptdms", reason="extra tdms")
+        with nptdms.TdmsWriter(str(folder / "r.tdms")) as writer:
+            for c, channel in enumerate(record.channels):
+                writer.write_segment([nptdms.ChannelObject("g", channel.name, record.signals[:, c])])
+        return folder / "r.tdms"
+    vectors = {channel.name: record.signals[:, c] for c, channel in enumerate(record.channels)}
+    if kind == "mat 5":
+        # Compressed, as MATLAB saves: scipy itself crashes on some uncompressed files with a false size.
+        scipy.io.savemat(folder / "r.mat", {**vectors, "fs": RATE}, do_compression=True)
+    else:
+        with h5py.File(folder / "r.mat", "w") as file:
+            for name, vector in vectors.items():
+                file.create_dataset(name, data=vector[None, :], compression="gzip")
+            file["fs"] = np.array([[RATE]])
+    return folder / "r.mat"
+
+
+@pytest.mark.thorough
+@pytest.mark.filterwarnings("ignore")  # what the libraries have to say of damaged files
+@pytest.mark.parametrize("kind", ["h5", "mat 5", "mat 7.3", "tdms"])
+def test_flipped_bytes_are_read_or_refused(tmp_path: Path, record: DropRecord, kind: str) -> None:
+    """Three bytes anew, half of them in the first 700, where heads and directories are; samples may well survive.
+
+    Every fourth MATLAB file of version 5 is cut short as well; HDF5's library itself may crash on files damaged so.
+    """
+    path = whole_file(kind, tmp_path, record)
+    content = path.read_bytes()
+    random = np.random.default_rng(20)
+    refused = 0
+    for k in range(FLIPS):
+        damaged = bytearray(content)
+        for _ in range(3):
+            end = min(len(content), 700) if random.random() < 0.5 else len(content)
+            damaged[random.integers(end)] = random.integers(256)
+        if kind == "mat 5" and k % 4 == 0:
+            damaged = damaged[: random.integers(1, end)]
+        path.write_bytes(damaged)
+        try:
+            read_drop_records(path)
+        except InputError:
+            refused += 1
+    assert refused > 0

@@ -1,0 +1,77 @@
+"""Transform of a truncated decay, which is exact."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pantocheck.conformance.drops.decay_kernel import (
+    decay_kernel,
+    drift_columns,
+    far_pole_columns,
+    join_conjugates,
+    kernel_and_derivative,
+    real_columns,
+)
+
+DT, N = 0.025, 400
+
+
+@given(
+    frequency=st.floats(0.2, 15.0),
+    damping_ratio=st.floats(1e-5, 0.05),
+    amplitude=st.complex_numbers(min_magnitude=0.1, max_magnitude=10, allow_nan=False),
+)
+def test_model_is_the_transform_of_the_decay(frequency: float, damping_ratio: float, amplitude: complex) -> None:
+    """The geometric sum is exact, so only rounding over N terms is left: 1e-10 of the largest line."""
+    pole = np.array([2 * np.pi * frequency * (-damping_ratio + 1j)])
+    omega = 2 * np.pi * np.arange(1, N // 2) / (N * DT)
+    decay = 2 * (amplitude * np.exp(pole * DT * np.arange(N))).real
+    modelled = amplitude * decay_kernel(pole, omega, DT, N)[:, 0]
+    modelled += np.conj(amplitude) * decay_kernel(pole.conj(), omega, DT, N)[:, 0]
+    measured = np.fft.rfft(decay)[1 : N // 2]
+    assert np.abs(modelled - measured).max() < 1e-10 * np.abs(measured).max()
+
+
+def test_derivative_is_that_of_the_kernel() -> None:
+    """Central differences of step h have an error of order h^2: here h = 1e-4, and the kernel varies over 0.05 1/s."""
+    poles = np.array([-0.05 + 6.0j, -0.2 + 11.3j])
+    omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
+    h = 1e-4
+    slope = kernel_and_derivative(poles, omega, DT, N)[1]
+    difference = (decay_kernel(poles + h, omega, DT, N) - decay_kernel(poles - h, omega, DT, N)) / (2 * h)
+    assert np.abs(slope - difference).max() < 1e-5 * np.abs(slope).max()
+
+
+def test_real_columns_carry_residues_as_real_numbers() -> None:
+    poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j
+    omega = 2 * np.pi * np.arange(1, 50) / (N * DT)
+    kernels = decay_kernel(join_conjugates(poles), omega, DT, N)
+    expected = kernels @ np.array([residue, np.conj(residue)])
+    rows = real_columns(kernels) @ np.array([residue.real, residue.imag])
+    assert rows == pytest.approx(np.concatenate([expected.real, expected.imag]), rel=1e-12, abs=1e-12)
+
+
+def test_drift_columns_absorb_a_slow_drift() -> None:
+    """A cubic drift is a combination of the first three Legendre polynomials: the residual is rounding."""
+    t = np.linspace(0, 1, N)
+    lines = np.arange(1, 60)
+    drift = np.fft.rfft(3 - 2 * t + t**2 - 4 * t**3)[lines]
+    rows = np.concatenate([drift.real, drift.imag])
+    columns = drift_columns(4, N, lines)
+    left = rows - columns @ np.linalg.lstsq(columns, rows, rcond=None)[0]
+    assert np.linalg.norm(left) < 1e-10 * np.linalg.norm(rows)
+
+
+def test_far_pole_columns_absorb_modes_outside_the_band() -> None:
+    """Poles at three half-widths from the middle of the band; the terms of a series in 1 / 3 fall by 3^4 to 1 %."""
+    omega = 2 * np.pi * np.arange(40, 120) / (N * DT)
+    columns = far_pole_columns(omega, 3)
+    assert columns.shape == (2 * omega.size, 8)
+    assert np.linalg.norm(columns, axis=0) == pytest.approx(1, rel=1e-12)
+    middle, half = (omega[0] + omega[-1]) / 2, (omega[-1] - omega[0]) / 2
+    for distance in (-3.0, 3.0):
+        tail = (0.3 + 2j) / (1j * (omega - middle - distance * half) + 0.1)
+        rows = np.concatenate([tail.real, tail.imag])
+        left = rows - columns @ np.linalg.lstsq(columns, rows, rcond=None)[0]
+        assert np.linalg.norm(left) < 0.01 * np.linalg.norm(rows)

@@ -1,0 +1,119 @@
+"""Preparation of records: lateral channels, clipping, filters, and the linear part of a decay."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from helpers.synthetic_drops import SyntheticDrop, drop
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand
+from pantocheck.conformance.drops.decay_preparation import prepare_decay
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+
+RATE = 50.0
+BAND = FrequencyBand.up_to(4.0, RATE)
+POLES = 2 * np.pi * np.array([0.9, 1.7, 2.6]) * (-0.004 + 1j)
+
+
+def simulate_drop(seed: int, duration: float = 45.0, nonlinear: float = 0.0) -> SyntheticDrop:
+    """Three modes at two sensors."""
+    random = np.random.default_rng(seed)
+    return drop(random, POLES, 2, duration, RATE, noise=0.002, nonlinear=nonlinear, weak=0.0)
+
+
+def build_record(synthetic: SyntheticDrop, lateral: RealArray | None = None) -> DropRecord:
+    channels, signals = [DropChannel("S1_z", 1, "z"), DropChannel("S2_z", 2, "z")], synthetic.samples
+    if lateral is not None:
+        channels.append(DropChannel("S1_y", 1, "y"))
+        signals = np.column_stack([signals, lateral])
+    return DropRecord(
+        "record", "record", synthetic.rate, signals.copy(), tuple(channels), drop=DropDescription(trigger_nominal=5.0)
+    )
+
+
+def test_lateral_channel_has_the_samples_of_the_vertical_ones() -> None:
+    """A lateral channel with the signal of the first vertical one is prepared to the same samples, to rounding."""
+    synthetic = simulate_drop(1)
+    prepared = prepare_decay(build_record(synthetic, synthetic.samples[:, 0]), BAND)
+    assert prepared.lateral.shape == (prepared.linear.samples.shape[0], 1)
+    assert prepared.lateral[:, 0] == pytest.approx(prepared.linear.samples[:, 0], abs=1e-10)
+    assert prepare_decay(build_record(synthetic), BAND).lateral.shape == (prepared.linear.samples.shape[0], 0)
+
+
+def test_times_of_the_linear_decay_are_those_of_the_record() -> None:
+    """The filter delays by half its length: a sample of the decay is the smooth signal at its time."""
+    synthetic = simulate_drop(2)
+    linear = prepare_decay(build_record(synthetic), BAND).linear
+    half = (linear.taps.size - 1) / 2 / RATE
+    assert linear.first == pytest.approx(linear.start + half)
+    n = linear.samples.shape[0]
+    assert linear.duration == pytest.approx(n * linear.dt)
+    assert linear.end == pytest.approx(linear.start + n * linear.dt + 2 * half)
+    smooth = scipy.signal.filtfilt(*scipy.signal.butter(4, 5.5, fs=RATE), synthetic.samples, axis=0)
+    t = np.arange(synthetic.samples.shape[0]) / RATE
+    expected = np.column_stack([np.interp(linear.first + np.arange(n) * linear.dt, t, column) for column in smooth.T])
+    assert np.std(linear.samples - expected) < 0.02 * np.std(expected)
+
+
+def test_linear_decay_is_without_aliases() -> None:
+    """The stop band of the low-pass, from 8 Hz on, is 80 dB down (the estimate of the length allows 2 dB)."""
+    linear = prepare_decay(build_record(simulate_drop(3)), BAND).linear
+    frequency, response = scipy.signal.freqz(linear.taps, fs=RATE, worN=4096)
+    assert 10 ** (-86 / 20) < np.abs(response[frequency >= BAND.stop]).max() < 10 ** (-78 / 20)
+    assert np.abs(np.abs(response[frequency <= BAND.fitted]) - 1).max() < 10 ** (-78 / 20)
+    assert 1 / linear.dt > 2 * BAND.stop
+
+
+def clip_channel(synthetic: SyntheticDrop, *times: float) -> SyntheticDrop:
+    """Flat tops of five samples in the first channel at some times after the release [s]."""
+    samples = synthetic.samples.copy()
+    top = 1.5 * np.abs(samples[:, 0]).max()
+    for time in times:
+        begin = round((synthetic.release + time) * RATE)
+        samples[begin : begin + 5, 0] = top
+    return replace(synthetic, samples=samples)
+
+
+@pytest.mark.parametrize(("times", "kept"), [((0.5, 5.0), 2), ((0.5, 7.0), 1), ((7.0, 0.5), 1)])
+def test_channel_that_is_clipped_after_15_percent_of_the_decay_is_left_out(times: tuple[float, ...], kept: int) -> None:
+    """The decay lasts 40 s: 15 % are 6 s. The last clipped sample counts, also if there are earlier ones."""
+    synthetic = clip_channel(simulate_drop(4), *times)
+    prepared = prepare_decay(build_record(synthetic), BAND)
+    assert len(prepared.columns) == kept
+    left_out = any(
+        "channel 'S1_z' is left out, because it is clipped in a large part" in text for text in prepared.warnings
+    )
+    assert left_out == (kept == 1)
+    if kept == 2:
+        assert prepared.linear.start >= synthetic.release + max(times)
+
+
+def disturb(synthetic: SyntheticDrop, size: float, *intervals: tuple[float, float]) -> None:
+    """Add noise to all channels in intervals after the release [s]."""
+    random = np.random.default_rng(9)
+    t = np.arange(synthetic.samples.shape[0]) / RATE - synthetic.release
+    inside = np.any([(t > begin) & (t < end) for begin, end in intervals], axis=0)
+    synthetic.samples[inside] += size * random.standard_normal((int(inside.sum()), 2))
+
+
+def test_record_that_is_a_free_decay_for_a_moment_only_is_refused() -> None:
+    """Slack droppers for 4 s, wind from 12 s after the release on: less than the ten seconds of a linear decay."""
+    synthetic = simulate_drop(5, duration=24.0)
+    disturb(synthetic, 0.3, (0.0, 4.0), (12.0, 30.0))
+    with pytest.raises(InputError, match=r"is a free decay for only [7-9]\.\d s"):
+        prepare_decay(build_record(synthetic), BAND)
+
+
+@pytest.mark.parametrize(("seconds", "refused"), [(11.5, True), (13.0, False)])
+def test_twelve_seconds_after_the_release_are_needed(seconds: float, refused: bool) -> None:
+    synthetic = simulate_drop(6)
+    record = build_record(synthetic)
+    short = replace(record, signals=record.signals[: round((synthetic.release + seconds) * RATE)])
+    if refused:
+        with pytest.raises(InputError, match=r"ends 11\.5 s after the release"):
+            prepare_decay(short, BAND)
+    else:
+        assert prepare_decay(short, BAND).linear.duration > 8.0

@@ -1,0 +1,82 @@
+"""Groups of span modes: their numbers and their outliers."""
+
+import numpy as np
+import pytest
+
+from pantocheck.conformance.drops.mode_groups import assign_groups, find_group_outliers, number_groups
+from pantocheck.conformance.results.modes import Mode
+
+
+def build_mode(frequency: float, damping_ratio: float, certain: bool = True, lateral: bool = False) -> Mode:
+    return Mode(
+        frequency_Hz=frequency,
+        damping_ratio=damping_ratio,
+        damping_ratio_std=0.0,
+        sensor_shape=(),
+        certain=certain,
+        lateral=lateral,
+    )
+
+
+def test_outliers_belong_to_their_group() -> None:
+    """The second mode is an outlier of the first group, and lies between the ratios of the other two."""
+    ratios = {1: (0.010, 0.007, 0.0101, 0.0099, 0.0102), 2: (0.008, 0.0082, 0.0081, 0.0079), 3: (0.006,) * 4}
+    modes = [build_mode(k + 0.02 * i, z) for k, row in ratios.items() for i, z in enumerate(row)]
+    sideways = build_mode(1.5, 0.05, lateral=True)
+    doubtful = build_mode(3.1, 0.05, certain=False)
+    rows = assign_groups([*modes[:5], sideways, *modes[5:], doubtful], 6)
+    assert [row.group for row in rows] == [1] * 5 + [None] + [2] * 4 + [3] * 5
+    assert [i for i, row in enumerate(rows) if row.outlier] == [1]
+
+
+def test_three_certain_modes_determine_the_groups() -> None:
+    frequencies = np.array([1.0, 1.05, 2.0, 3.1])
+    assert list(number_groups(frequencies[:3], frequencies, None)) == [1, 1, 2, 3]
+    assert list(number_groups(frequencies[:2], frequencies, None)) == [0, 0, 0, 0]
+
+
+def test_modes_beyond_the_eighth_group_have_no_number() -> None:
+    certain = np.concatenate([k * np.array([0.98, 1.0, 1.02]) for k in range(1, 9)])
+    assert list(number_groups(certain, np.array([8.2, 8.4, 8.6, 9.0]), 3)) == [8, 8, 0, 0]
+
+
+def test_bending_stretches_the_gaps_of_the_higher_groups_more() -> None:
+    """Groups at n (1 + 0.02 (n - 1)): 5.4 and 6.6 are the fifth and sixth. The first gap stays near 1.5 (1 + 0.01)."""
+    certain = np.concatenate([n * (1 + 0.02 * (n - 1)) * np.array([0.999, 1.0, 1.001]) for n in range(1, 8)])
+    assert list(number_groups(certain, certain, 3)) == list(np.repeat(np.arange(1, 8), 3))
+    assert list(number_groups(certain, np.array([1.49, 1.53, 5.7, 6.3]), 3)) == [1, 2, 5, 6]
+
+
+def test_group_holds_no_more_modes_than_spans() -> None:
+    """Two modes of the first group around 1.2 Hz. Six more at 1.55 Hz belong to the second: two spans have only two.
+
+    The search may lower the mean by 15 %, so that the gap lies at 1.53 Hz.
+    """
+    certain = np.array([1.0, 1.4, *1.55 + 0.001 * np.arange(6)])
+    assert list(number_groups(certain, certain, 2)) == [1, 1] + [2] * 6
+
+
+def test_groups_with_a_narrow_gap_between_them_are_told_apart() -> None:
+    """Groups around 1, 2 and 3 Hz; between the second and the third, 0.13 Hz are free of modes, between others 0.4 Hz.
+
+    The modes next to the narrow gap are 0.066 Hz from its middle, just beyond the clearance of 0.06.
+    """
+    certain = np.array([0.822, 1.0, 1.178, 1.566, 2.0, 2.434, 2.566, 3.0, 3.434])
+    assert list(number_groups(certain, certain, 3)) == [1] * 3 + [2] * 3 + [3] * 3
+
+
+def test_modes_beyond_the_last_group_may_be_many() -> None:
+    """Twenty modes at 8.3 times the first group: in the eighth group they would be too many, beyond it they are not."""
+    certain = np.concatenate([[0.99, 1.0, 1.01], 8.3 + 0.001 * np.arange(20)])
+    assert list(number_groups(certain, certain, 6)) == [1] * 3 + [0] * 20
+
+
+@pytest.mark.parametrize(("value", "outlier"), [(13.1, True), (12.9, False), (-3.9, False), (-4.1, True)])
+def test_outliers_lie_one_and_a_half_interquartile_ranges_beyond_the_quartiles(value: float, outlier: bool) -> None:
+    """1..8 and a large value have the quartiles 3 and 7, with a small value 2 and 6."""
+    assert list(find_group_outliers(np.array([*range(1, 9), value]))) == [False] * 8 + [outlier]
+
+
+def test_four_values_are_needed_for_an_outlier() -> None:
+    assert list(find_group_outliers(np.array([1.0, 1.0, 1.0, 10.0]))) == [False, False, False, True]
+    assert list(find_group_outliers(np.array([1.0, 1.0, 10.0]))) == [False, False, False]

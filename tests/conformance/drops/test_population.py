@@ -1,0 +1,122 @@
+"""Tests as a population: boxes over tests, a damaged record among good ones, agreement with the joint result."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from helpers.synthetic_drops import drop
+from pantocheck.conformance.core.array_types import ComplexArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.population import Population, find_joint_mode, identify_population
+from pantocheck.conformance.drops.population_analysis import analyse_population
+from pantocheck.conformance.results.population_format import PopulationFile
+
+RATIOS = {1: 0.0050, 2: 0.0030, 3: 0.0024}
+"""Damping ratio of the middle mode of each group; the others differ by 5 % and 10 %."""
+
+ROPE = 0.03
+"""Additional decay rate of the damaged test, in which the rope of the mass stayed on the wire [1/s]."""
+
+
+def line_poles(stretch: float, rope: float = 0.0) -> ComplexArray:
+    """Three groups of five modes; the tension stretches their frequencies, and a rope damps all of them."""
+    places = np.array([-2, -1, 0, 1, 2])
+    frequency = np.concatenate([stretch * group * (0.9 + 0.03 * places) for group in RATIOS])
+    ratio = np.concatenate([value * (1 - 0.05 * places) for value in RATIOS.values()])
+    omega = 2 * np.pi * frequency
+    return np.asarray(-(ratio * omega + rope) + 1j * omega)
+
+
+def build_record(name: str, seed: int, tension: float, rope: float = 0.0, mass: float = 40.0) -> DropRecord:
+    poles = line_poles(np.sqrt(tension / 15e3), rope)
+    synthetic = drop(np.random.default_rng(seed), poles, 3, 60.0, rate=25.0, noise=0.002, nonlinear=0.0, weak=0.0)
+    channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 40.0 * i) for i in (1, 2, 3))
+    facts = DropDescription(mass, "CW", 100.0, 5.0)
+    return DropRecord(
+        name, name, 25.0, synthetic.samples, channels, drop=facts, line=DropLine((60.0,) * 5, 20e3, tension)
+    )
+
+
+@pytest.fixture(scope="module")
+def population() -> Population:
+    """Four good tests at two tensions and two masses, one damaged test, and a record that is too short."""
+    good = (
+        build_record("A", 1, 15e3),
+        build_record("B", 2, 15e3, mass=30.0),
+        build_record("C", 3, 15e3),
+        build_record("D", 4, 16e3),
+    )
+    short = replace(good[0], name="short", signals=good[0].signals[:200])
+    return identify_population((*good, build_record("rope", 5, 16e3, ROPE), short), highest=3.4)
+
+
+@pytest.fixture(scope="module")
+def content(population: Population) -> PopulationFile:
+    return analyse_population(population)
+
+
+def test_damaged_record_is_an_outlier_above(content: PopulationFile) -> None:
+    """The rope adds 0.53, 0.27 and 0.18 % to ratios whose boxes are 0.05, 0.03 and 0.024 % high."""
+    by_name = {record.record: record for record in content.records}
+    assert list(by_name) == ["A", "B", "C", "D", "rope"]
+    assert [name for name, record in by_name.items() if record.suspicious] == ["rope"]
+    assert {value.outlier for value in by_name["rope"].values} == {"above"}
+    assert sum(record.outliers_above for name, record in by_name.items() if name != "rope") == 0
+    assert content.variability.outliers_above_share == 1
+    assert "rope" in content.warnings[0]
+    assert "outliers above" in content.warnings[0]
+
+
+def test_medians_over_tests_are_those_of_the_good_tests(content: PopulationFile) -> None:
+    """One damaged test of five moves the median of each group from the middle mode at most to the next, by 5 %."""
+    assert [group.group for group in content.groups] == [1, 2, 3]
+    for group in content.groups:
+        assert group.median == pytest.approx(RATIOS[group.group], rel=0.06)
+        assert group.interval[0] <= group.median <= group.interval[1]
+        assert group.tests == 5
+
+
+def test_variability_decreases_with_frequency(content: PopulationFile) -> None:
+    """Modes differ by 10 % in each group, and the rope adds a decay rate: both are less at higher frequencies."""
+    heights = [group.upper_quartile - group.lower_quartile for group in content.groups]
+    assert heights == sorted(heights, reverse=True)
+    assert content.variability.rank_correlation == pytest.approx(-1)
+    assert content.variability.last_over_first == pytest.approx(heights[-1] / heights[0])
+
+
+def test_tests_are_grouped_by_the_properties_in_which_they_differ(content: PopulationFile) -> None:
+    levels = {(level.factor, level.level): level.tests for level in content.levels}
+    assert levels == {
+        ("mass", "40 kg"): 4,
+        ("mass", "30 kg"): 1,
+        ("messenger wire tension", "15000 N"): 3,
+        ("messenger wire tension", "16000 N"): 2,
+    }
+
+
+def test_record_that_cannot_be_identified_is_left_out(population: Population, content: PopulationFile) -> None:
+    assert [record.record for record in content.unusable] == ["short"]
+    assert "after the release" in content.unusable[0].reason
+    assert sum(len(line.fit.records) for line in population.joint) == 5
+    with pytest.raises(InputError, match="after the release"):
+        identify_population((population.unusable[0].record,))
+
+
+def test_medians_of_good_tests_agree_with_the_joint_result(population: Population) -> None:
+    """Three tests of one line, without the damaged one: they differ by noise, less than 1 % of the median."""
+    for group in analyse_population(replace(population, tests=population.tests[:3])).groups:
+        assert group.agrees
+        assert group.joint_median == pytest.approx(RATIOS[group.group], rel=0.01)
+        assert group.test_spread is not None
+        assert group.test_spread < 0.01 * group.median
+
+
+def test_joint_mode_lies_within_half_of_the_half_power_band(population: Population) -> None:
+    (mode, *_) = population.tests[0].single.modes
+    reach = mode.damping_ratio * mode.frequency_Hz
+    near, far = (mode.model_copy(update={"frequency_Hz": mode.frequency_Hz + k * reach}) for k in (0.99, 1.01))
+    assert find_joint_mode(mode, (far, near)) is near
+    assert find_joint_mode(mode, (far,)) is None
+    assert find_joint_mode(mode, ()) is None

@@ -1,0 +1,133 @@
+"""Line layout: values of every support, heights on gradients, and errors with key and number of the support."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.listed_spans import list_spans
+from helpers.toml_edit import change_keys, write_toml
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_model, read_toml
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+
+
+def listed_line(**geometry: Any) -> dict[str, Any]:
+    """The line of EN 50318:2018 with four listed spans of 55 m, and further keys of its geometry."""
+    tables = list_spans(read_toml(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", "line"))
+    change_keys(tables, {"geometry.span_list": tables["geometry"]["span_list"][:4]})
+    tables["geometry"] |= {"stagger_contact_wire_m": 0.2, "encumbrance_m": 1.2} | geometry
+    return tables
+
+
+def test_supports_have_their_own_values_and_those_of_the_line() -> None:
+    """Support 2 has its own arm, stagger and encumbrance; its neighbours alternate as before."""
+    arm = {"acts": "push", "length_m": 0.9, "vertical_damper_N_s_m": 20.0}
+    own = {"number": 2, "stagger_contact_wire_m": -0.25, "stagger_messenger_m": 0.05, "encumbrance_m": 1.1}
+    own |= {"steady_arm": arm, "messenger_support": {"stiffness_N_m": 2e5}}
+    line = LineFile.model_validate(listed_line(support=[own]))
+    layout = line.layout
+    assert [limit.number for limit in layout.limits] == [0, 1, 2, 3, 4]
+    assert [limit.contact_wire_stagger for limit in layout.limits] == [0.2, -0.2, -0.25, -0.2, 0.2]
+    assert [limit.messenger_wire_stagger for limit in layout.limits] == [0.0, 0.0, 0.05, 0.0, 0.0]
+    assert [limit.messenger_wire_height for limit in layout.limits] == [1.2, 1.2, 1.1, 1.2, 1.2]
+    first, second, third = layout.supports
+    assert (first.steady_arm, first.messenger_support) == (line.steady_arm, line.messenger_support)
+    assert (third.steady_arm, third.messenger_support) == (line.steady_arm, line.messenger_support)
+    assert second.steady_arm == line.steady_arm.model_copy(update=arm)
+    assert second.messenger_support == line.messenger_support.model_copy(update={"stiffness_N_m": 2e5})
+
+
+def test_gradients_add_to_the_heights_of_the_supports() -> None:
+    """Rise of 2 per mille from 40 m to 120 m, on supports at 5.3 m of which the first is 20 mm higher.
+
+    The start of the line is level with its next support but for the gradient; the chord is straight between supports.
+    """
+    gradient = [{"from_m": 40.0, "to_m": 120.0, "slope": 0.002}]
+    tables = listed_line(contact_wire_height_m=5.3, support=[{"number": 1, "contact_wire_height_m": 5.32}])
+    tables["geometry"]["gradient"] = gradient
+    layout = LineFile.model_validate(tables).layout
+    heights = [5.32, 5.32 + 0.03, 5.3 + 0.14, 5.3 + 0.16, 5.3 + 0.16]
+    assert [limit.contact_wire_height for limit in layout.limits] == pytest.approx(heights, abs=1e-12)
+    assert [limit.messenger_wire_height - 1.2 for limit in layout.limits] == pytest.approx(heights, abs=1e-12)
+    assert layout.chord_height(np.array([27.5, 82.5])) == pytest.approx([5.335, 5.395], abs=1e-12)
+
+
+def test_an_end_of_the_line_is_level_with_its_next_support_unless_it_has_its_own_height() -> None:
+    supports = [
+        {"number": 1, "contact_wire_height_m": 0.1, "encumbrance_m": 1.0},
+        {"number": 4, "contact_wire_height_m": -0.2, "encumbrance_m": 0.8, "stagger_contact_wire_m": 0.0},
+    ]
+    layout = LineFile.model_validate(listed_line(support=supports)).layout
+    assert [limit.contact_wire_height for limit in layout.limits] == [0.1, 0.1, 0.0, 0.0, -0.2]
+    assert [limit.messenger_wire_height for limit in layout.limits] == pytest.approx([1.1, 1.1, 1.2, 1.2, 0.6])
+    assert layout.limits[4].contact_wire_stagger == 0.0
+
+
+def test_droppers_take_pre_sags_from_the_chord_or_surveyed_heights() -> None:
+    """In span 2 the wire rises from 0.0 m to 0.11 m, 2 mm per metre: pre-sags count from there, heights do not."""
+    tables = listed_line(support=[{"number": 2, "contact_wire_height_m": 0.11}])
+    own = {"x_m": [10.0, 45.0], "contact_wire_height_m": [0.013, 0.085]}
+    tables["geometry"]["span_list"][2] = {"length_m": 55.0, "droppers": own}
+    spans = LineFile.model_validate(tables).layout.spans
+    schedule = tables["droppers"]
+    chord = 0.002 * np.array(schedule["x_m"])
+    np.testing.assert_allclose(spans[1].contact_wire_height, chord - schedule["presag_m"], atol=1e-15)
+    np.testing.assert_array_equal(spans[1].dropper_position, 55.0 + np.array(schedule["x_m"]))
+    np.testing.assert_array_equal(spans[2].contact_wire_height, own["contact_wire_height_m"])
+
+
+def test_a_shortened_line_keeps_the_values_of_its_supports() -> None:
+    supports = [{"number": 2, "encumbrance_m": 1.0}, {"number": 3, "encumbrance_m": 0.9}]
+    line = LineFile.model_validate(listed_line(support=supports))
+    short = line.model_copy(update={"geometry": line.geometry.shorten(2)})
+    assert [limit.messenger_wire_height for limit in short.layout.limits] == [1.2, 1.2, 1.0]
+    assert len(short.layout.supports) == 1
+
+
+def test_keys_of_supports_do_not_appear_in_the_stored_form_of_other_lines() -> None:
+    """A key with a default in the dump would change the digest of every case."""
+    tables = listed_line()
+    dumped = LineFile.model_validate(tables).model_dump(mode="json")
+    assert not {"support", "gradient", "contact_wire_height_m"} & set(dumped["geometry"])
+    assert "contact_wire_height_m" not in dumped["droppers"]
+
+
+@pytest.mark.parametrize(
+    ("geometry", "message"),
+    [
+        ({"support": [{"number": 5}]}, "geometry.support[1].number: there is no support 5"),
+        ({"support": [{"number": 2}, {"number": 2}]}, "geometry.support[2].number: support 2 is listed twice"),
+        (
+            {"support": [{"number": 4, "steady_arm": {"length_m": 1.0}}]},
+            "geometry.support[1].steady_arm (number 4): 4 is an end of the line",
+        ),
+        (
+            {"support": [{"number": 0, "messenger_support": {"stiffness_N_m": 1e5}}]},
+            "geometry.support[1].messenger_support (number 0): 0 is an end of the line",
+        ),
+        ({"support": [{"number": 3, "stagger_m": 0.2}]}, "geometry.support[1].stagger_m (number 3): unknown key"),
+        ({"support": [{"number": 2, "encumbrance_m": 0.0}]}, "support[1].encumbrance_m (number 2): 0 must be greater"),
+        (
+            {"support": [{"number": 1, "steady_arm": {"acts": "pul"}}]},
+            "geometry.support[1].steady_arm.acts (number 1): found 'pul', expected 'pull' or 'push'",
+        ),
+        ({"gradient": [{"from_m": 50.0, "to_m": 50.0, "slope": 0}]}, "geometry.gradient[1].to_m: 50 m is not greater"),
+        ({"gradient": [{"from_m": 220.0, "to_m": 230.0, "slope": 0}]}, "geometry.gradient[1].from_m: 220 m is not on"),
+        (
+            {"schedule": {"high": {"x_m": [5.0], "presag_m": [0.0], "contact_wire_height_m": [5.3]}}},
+            "geometry.schedule.high.contact_wire_height_m: the height of the contact wire is given twice",
+        ),
+        (
+            {"support": [{"number": 3, "messenger_support": {"along_track": "fixed"}}]},
+            "messenger_wire.axial_stiffness_EA_N: support 3 holds the messenger wire along the track",
+        ),
+    ],
+)  # fmt: skip
+def test_errors_name_the_key_and_the_support(tmp_path: Path, geometry: dict[str, Any], message: str) -> None:
+    path = write_toml(tmp_path / "line.toml", listed_line(**geometry))
+    with pytest.raises(InputError) as error:
+        read_model(path, LineFile, "line")
+    assert message in str(error.value)

@@ -1,0 +1,220 @@
+"""Content of a certificate: criteria, reasons, bands, facts and figures."""
+
+import json
+import re
+from typing import Any
+
+from helpers.shown_page import shown_certificate
+from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.pages.case_figures import draw_case_figures
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.criteria_table import criteria_blocks, describe_criterion
+from pantocheck.conformance.pages.document import (
+    BulletList,
+    Document,
+    Figures,
+    Link,
+    NumberedList,
+    Section,
+    SmallPrint,
+    Table,
+    TrustMark,
+    VerdictMark,
+)
+from pantocheck.conformance.pages.document_facts import list_case_facts
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.quantity_tables import build_band_table, list_definitions
+from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.verdict_reasons import list_reasons
+from pantocheck.conformance.pages.words import format_value
+from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.results_format import CaseResult, Results
+
+
+def case_section(document: Document, number: int) -> dict[str, Section]:
+    """Sections of a case by their headings."""
+    [case] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == f"case-{number}"]
+    return {block.heading: block for block in case.blocks if isinstance(block, Section)}
+
+
+def sentences(section: Section) -> tuple[str, ...]:
+    [items] = section.blocks
+    assert isinstance(items, BulletList)
+    return tuple(map(str, items.items))
+
+
+def test_example_has_the_format_of_results(results: dict[str, Any]) -> None:
+    content = json.loads(Results.model_validate(results).to_json())
+    assert content == results
+
+
+def test_every_quantity_has_a_label() -> None:
+    assert all(quantity.label for quantity in QUANTITIES.values())
+
+
+def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
+    case = passing["cases"][0]
+    row = case["criteria"][0] | {"value": 118.2, "margin": 0.36, "uncertainty": 0.1234}
+    case["criteria"] = [row | {"source": "another"}, row]
+    texts = describe_criterion(Criterion.model_validate(row))
+    assert (texts.value, texts.error, texts.limits) == ("118.2 N", "± 0.12", "110 to 120")
+    assert (texts.margin, texts.pantograph) == ("+0.36", "1")
+    result = CaseResult.model_validate(case)
+    table, note, sources = criteria_blocks(result.criteria, "case-1", "case-1-source", result)
+    assert note == SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
+    assert isinstance(table, Table)
+    assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
+    assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
+    line = describe_criterion(
+        Criterion.model_validate(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
+    )
+    assert (line.pantograph, line.error) == ("line, no. 3", "–")
+
+
+def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict[str, Any]) -> None:
+    remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
+    row = passing["cases"][0]["criteria"][0]
+    row |= {"value": 119.9, "uncertainty": 0.2, "margin": 0.02, "close": [remark]}
+    assert describe_criterion(Criterion.model_validate(row)).remarks == (remark,)
+    headings = [section.heading for section in list_reasons(Results.model_validate(passing))]
+    assert headings == ["Closer to a limit than the uncertainty", "Smallest margins"]
+    sentences = list_reasons(Results.model_validate(passing))[0].blocks[0].items
+    assert [
+        "119.9 N" in sentence and sentence.endswith("margin +0.02, uncertainty ± 0.20* N.") for sentence in sentences
+    ] == [True]
+    assert describe_criterion(Criterion.model_validate(row | {"verdict": "info"})).remarks == ()
+
+
+def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[str, Any]) -> None:
+    """A half-width of zero without a component that is not known is no half-width; complete ones have no mark."""
+    case = passing["cases"][0]
+    row, unknown = case["criteria"][0] | {"uncertainty": 0.1234}, case["uncertainty_basis"]
+    known = dict.fromkeys(unknown, "known")
+    assert describe_criterion(Criterion.model_validate(row), unknown).error == "± 0.12*"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": 0.0}), unknown).error == "not known"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": 0.0}), known).error == "± 0"
+    assert describe_criterion(Criterion.model_validate(row | {"trust": "computed"}), unknown).error == "± 0.12"
+    assert describe_criterion(Criterion.model_validate(row | {"uncertainty": None}), unknown).error.startswith("± ")
+    marked = shown_certificate(passing)
+    page_1 = marked[: marked.index('id="cases"')]
+    counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
+    assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
+    for text in (
+        render_markdown(build_summary(Results.model_validate(passing))),
+        render_markdown(build_certificate(Results.model_validate(passing))),
+    ):
+        assert "Uncertainty without section and length, which are not known: it is too small" in text
+    for other in passing["cases"]:
+        other["uncertainty_basis"] = dict.fromkeys(unknown, "known")
+    text = shown_certificate(passing)
+    assert "is incomplete" not in text
+    assert "not known: it is too small" not in text
+    assert re.search(r"± [0-9.]+\*", marked)
+    assert not re.search(r"± [0-9.]+\*", text)
+
+
+def test_certificate_states_a_close_criterion_once_per_place(passing: dict[str, Any]) -> None:
+    """Once in the row of the criterion and once among the reasons."""
+    remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
+    passing["cases"][0]["criteria"][0] |= {"value": 119.91, "margin": 0.018, "close": [remark]}
+    text = shown_certificate(passing)
+    assert text.count(remark) == 1
+    assert text[: text.index('id="cases"')].count("119.9 N") == 2  # close, and the smallest margin
+
+
+def test_margin_beside_a_limit_of_zero_is_a_distance_and_not_ranked(passing: dict[str, Any]) -> None:
+    """A distance in newtons is no relative margin: it is not compared with those of other criteria."""
+    row = passing["cases"][0]["criteria"][0]
+    row |= {"value": 0.004, "lower": 0.0, "upper": None, "margin": 0.004, "close": [], "unit": "N"}
+    assert describe_criterion(Criterion.model_validate(row)).margin == "+0.004 N"
+    ranked = "".join(sentences(list_reasons(Results.model_validate(passing))[-1]))
+    assert list_reasons(Results.model_validate(passing))[-1].heading == "Smallest margins"
+    assert "+0.004" not in ranked
+
+
+def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
+    groups = {section.heading: sentences(section) for section in list_reasons(Results.model_validate(results))}
+    assert list(groups) == ["Failed", "Not evaluated", "Smallest margins"]
+    assert len(groups["Failed"]) == 1
+    assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
+    assert len(groups["Not evaluated"]) == 2
+    assert "Contact loss" not in "".join(groups["Smallest margins"])
+
+
+def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]) -> None:
+    front, rear = (
+        [str(row[2]) for row in build_band_table(CaseResult.model_validate(case)).rows] for case in results["cases"][:2]
+    )
+    assert front[0].endswith("(PASS)")
+    assert front[6].endswith("(no published limit)")
+    assert rear[0].endswith("(FAIL)")
+    assert rear[5].endswith("(limit does not count)")  # it is provisional
+    assert rear[6] == "not available"
+
+
+def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any]) -> None:
+    """Of the shown quantities only."""
+    case = results["cases"][0]
+    texts = {name.text: text for name, text in list_definitions([CaseResult.model_validate(case)])}
+    assert texts["min_force_N"] == (
+        ": smallest contact force, 0-20 Hz; a causal filter of the same order changes it by up to 15 %."
+    )
+    assert "mean_force_N" not in texts
+    without = CaseResult.model_validate(case | {"quantities": {"1": {"mean_force_N": 118.0}}})
+    assert list_definitions([without]) == ()
+
+
+def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
+    facts = list_case_facts(CaseResult.model_validate(passing["cases"][0]))
+    assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
+    assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
+
+
+def test_case_facts_state_the_forces_of_the_force_laws(passing: dict[str, Any]) -> None:
+    """Without a law, results.json has no key for it."""
+    case = passing["cases"][0]
+    assert "law_forces" not in case["run"]
+    forces = {
+        "1": {"kind": "applied_forces", "static_force_N": 70.0, "aerodynamic_force_N": 85.81},
+        "2": {"kind": "mean_force", "mean_force_N": 157.3},
+    }
+    case = Results.model_validate(
+        passing | {"cases": [case | {"run": case["run"] | {"law_forces": forces}}]}
+    ).to_dict()["cases"][0]
+    facts = dict(list_case_facts(CaseResult.model_validate(case)).pairs)
+    assert facts["Force law of pantograph 1"] == (
+        "applied forces of 155.81 N: static force 70.00 N, aerodynamic force 85.81 N; not tuned, the mean contact "
+        "force is a result"
+    )
+    assert facts["Force law of pantograph 2"] == "mean contact force of 157.30 N; the uplift force is tuned to it"
+
+
+def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
+    """A filtered or measured record lacks some traces and facts; null is not drawn."""
+    case = passing["cases"][0]
+    case["traces"]["1"] |= {"force_20_N": None, "std_N": None, "histogram": None, "supports_m": []}
+    case["quantities"]["0"] = {"dropper_length_m": [1.017, 0.896]}
+    case["run"] |= dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m"))
+    Results.model_validate(passing)
+    sections = case_section(build_certificate(Results.model_validate(passing)), 1)
+    [figures] = sections["Figures"].blocks
+    assert isinstance(figures, Figures)
+    assert [figure.caption.split(":")[0] for figure in figures.figures] == [
+        *2 * ["Pantograph 1"],
+        *3 * ["Pantograph 2"],
+        "Uplift at the supports. Largest",
+    ]
+    [table] = sections["All quantities"].blocks
+    assert isinstance(table, Table)
+    assert "1.0170, 0.89600" in [row[-1] for row in table.rows]
+
+
+def test_caption_of_many_supports_has_their_number_ends_and_largest_uplift(passing: dict[str, Any]) -> None:
+    """The alternative text keeps every support."""
+    case = passing["cases"][0]
+    support = case["uplift"][0]
+    case["uplift"] = [support | {"support_m": 60.0 * n, "uplift_mm": [0.0, 40.0 + n]} for n in range(5)]
+    case["uplift"] = [item | {"time_s": [0.0, 1.0]} for item in case["uplift"]]
+    *_, figure = draw_case_figures(CaseResult.model_validate(case), 0, "case")
+    assert figure.caption == "Uplift at 5 supports from 0 m to 240 m. Largest: 44 mm at 240 m."
+    assert figure.alternative.count(" mm at ") == 5

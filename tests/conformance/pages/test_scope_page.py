@@ -1,0 +1,188 @@
+"""Identity and scope on page 1: modified copies, weakened limits, editions, steps of the procedure."""
+
+from io import BytesIO
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from pypdf import PdfReader
+
+from helpers.shown_page import shown_certificate
+from pantocheck.conformance.app.commands.command_output import print_output
+from pantocheck.conformance.app.commands.results_output import build_results_output
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import Section, Table, VerdictMark, WarningBox
+from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.pages.scope_page import (
+    CHANGES_SHOWN,
+    build_scope_section,
+    describe_origin,
+    list_identity_warnings,
+    summarise_identity,
+)
+from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.verdict_reasons import build_headline
+from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.scope import build_scope
+
+COPY = "modified copy of en50318-2002/250"
+CHANGE = "std_force_N of pantograph 2: the trust of the limit is lowered from secondary to provisional"
+
+
+def describe(results: dict[str, Any], **changes: Any) -> dict[str, Any]:
+    """Results whose first case, of two pantographs, has other facts, with the scope of these cases."""
+    facts = {"library": "identical", "edition": "EN 50318:2002", "superseded_by": "EN 50318:2018"}
+    first = results["cases"][0] | facts | {"steps": ["reference_models"]} | changes
+    model = Results.model_validate(results | {"cases": [first, *results["cases"][1:]]})
+    return model.model_copy(update={"scope": build_scope(model.cases)}).to_dict()
+
+
+@pytest.fixture
+def copied(results: dict[str, Any]) -> dict[str, Any]:
+    return describe(results, library="modified", limit_changes=[CHANGE])
+
+
+def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """No format shows the id of the library case alone."""
+    suites = ElementTree.fromstring(render_junit(Results.model_validate(copied)))
+    assert suites[0].attrib["name"] == suites[0].findall("testcase")[0].attrib["classname"] == COPY
+    print_output(build_results_output(Results.model_validate(copied), [], 0), "run")
+    for text in (
+        shown_certificate(copied),
+        render_markdown(build_summary(Results.model_validate(copied))),
+        capsys.readouterr().out,
+    ):
+        assert text.count("en50318-2002/250") == text.count(COPY) > 0
+    assert copied["cases"][0]["library"] == "modified"
+    assert "Modified copies of the library: 1." in build_headline(Results.model_validate(copied))
+
+
+def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
+    page = " ".join(
+        PdfReader(BytesIO(render_pdf(build_certificate(Results.model_validate(copied)))))
+        .pages[0]
+        .extract_text()
+        .split()
+    )
+    assert f"The {COPY} has other inputs, limits or sources than the library case." in page
+    assert f"The limits file changes limits of {COPY}." in page
+    assert "lowered from secondary to provisional" in page
+
+
+def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    changed = describe(results, limit_changes=[CHANGE])
+    print_output(build_results_output(Results.model_validate(changed), [], 0), "run")
+    weakened = "The limits file weakens limits or changes their trust in 1 case."
+    assert build_headline(Results.model_validate(changed)).endswith(weakened)
+    raised = describe(
+        results, limit_changes=["std_force_N: the trust of the limit is raised from secondary to primary"]
+    )
+    assert build_headline(Results.model_validate(raised)).endswith(
+        "The limits file raises the trust of limits in 1 case."
+    )
+    texts = [
+        shown_certificate(changed),
+        capsys.readouterr().out,
+        render_junit(Results.model_validate(changed)).decode(),
+    ]
+    texts.append(render_markdown(build_summary(Results.model_validate(changed))).replace("\\_", "_"))
+    assert all(CHANGE in " ".join(text.split()) for text in texts)
+
+
+def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, Any]) -> None:
+    changes = [f"dropper_length_m[{item}]: the limit 1 to 2 is removed" for item in range(1, 10)]
+    [warning] = list_identity_warnings(Results.model_validate(describe(results, limit_changes=changes)))
+    assert f"dropper_length_m[{CHANGES_SHOWN}]" in warning
+    assert warning.endswith(f"and {9 - CHANGES_SHOWN} more.")
+
+
+def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
+    document = build_certificate(Results.model_validate(describe(results)))
+    assert not summarise_identity(Results.model_validate(describe(results)))
+    assert not [block for block in document.blocks if isinstance(block, WarningBox)]
+
+
+@pytest.mark.parametrize(
+    ("facts", "text"),
+    [
+        (("identical", "EN 50318:2002", "EN 50318:2018"), "library case of EN 50318:2002, superseded by EN 50318:2018"),
+        (("identical", "EN 50318:2018", None), "library case of EN 50318:2018"),
+        (("identical", None, None), "library case"),
+        (("modified", "EN 50318:2018", None), "modified copy"),
+        (("own", "EN 50318:2018", None), "own case"),
+        ((None, None, None), "–"),
+    ],
+)
+def test_origin_states_the_edition_of_library_cases_only(
+    results: dict[str, Any], facts: tuple[str | None, ...], text: str
+) -> None:
+    """An own file can claim any edition."""
+    changes = dict(zip(("library", "edition", "superseded_by"), facts, strict=True))
+    assert describe_origin(CaseResult.model_validate(results["cases"][0] | changes)) == text
+
+
+def test_origin_of_a_profile_is_named(results: dict[str, Any]) -> None:
+    facts = {"library": "identical", "edition": None, "superseded_by": None, "profile": "line-test"}
+    case = CaseResult.model_validate(results["cases"][0] | facts)
+    assert describe_origin(case) == "library profile"
+    assert describe_origin(case.model_copy(update={"library": "own"})) == "own profile"
+
+
+def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
+    [scope] = [
+        block
+        for block in build_certificate(Results.model_validate(describe(results))).blocks
+        if isinstance(block, Section) and block.anchor == "scope"
+    ]
+    table = scope.blocks[0]
+    assert isinstance(table, Table)
+    assert [row[:2] for row in table.rows] == [("Reference models", "done")]
+    assert VerdictMark("pass") in table.rows[0][2]
+    assert scope.blocks[1].text.startswith(
+        "Not done (no case, or none with a complete result): pantograph model, static check of the line model, line "
+        "test, limits of validity. Cases outside"
+    )
+
+
+def test_scope_without_a_step_is_one_paragraph(results: dict[str, Any]) -> None:
+    """An own case belongs to no step: five rows would say so on the first half of page 1."""
+    [scope] = build_scope_section(Results.model_validate(describe(results, steps=[])), {})
+    [rest] = scope.blocks
+    assert "pantograph model, static check of the line model, reference models, line test" in rest.text
+
+
+def test_verdict_of_a_case_does_not_stand_beside_an_informative_step(results: dict[str, Any]) -> None:
+    """The static case passes by its dropper lengths; its apparent mass has no limit."""
+    static = describe(results, steps=["pantograph_model", "static_check"])
+    [scope] = build_scope_section(Results.model_validate(static), {})
+    table = scope.blocks[0]
+    assert isinstance(table, Table)
+    assert table.rows[0][1:] == ("informative", ("", "en50318-2002/250"))
+    assert VerdictMark("pass") in table.rows[1][2]
+
+
+def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
+    page = (
+        PdfReader(BytesIO(render_pdf(build_certificate(Results.model_validate(describe(results))))))
+        .pages[0]
+        .extract_text()
+    )
+    assert "self-declared conformance report, in the style of EN 50318" in page
+    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
+    assert all(step in " ".join(page.split()) for step in steps)
+    assert "superseded by EN 50318:2018" in " ".join(page.split())
+
+
+def test_results_without_steps_have_no_scope(results: dict[str, Any]) -> None:
+    assert results["scope"] == []
+    assert "Limits of validity" not in shown_certificate(results)
+
+
+def test_certificate_states_all_digests(results: dict[str, Any]) -> None:
+    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
+    changed["suite"]["digest"] = "sha256:" + "c" * 64
+    page = shown_certificate(changed)
+    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
+    assert changed["cases"][0]["input_digest"] in page

@@ -1,0 +1,185 @@
+"""Two verdicts on the pages: side by side, each with its part, and nothing that does not decide counts."""
+
+import copy
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from helpers.shown_page import shown_certificate
+from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.grading.case_verdict import Participation
+from pantocheck.conformance.pages.badge import summarise_verdict
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import Code
+from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.quantity_tables import build_band_table
+from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.verdict_reasons import build_headline, list_reasons
+from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
+
+BOTH: tuple[VerdictName, ...] = ("criteria", "verification")
+BAND = "rms_20_50_N"
+
+
+def add_verification(results: dict[str, Any], upper: float) -> Results:
+    """Results whose only case is verified by one limit of the extended band."""
+    case = copy.deepcopy(results["cases"][0])
+    value = case["quantities"]["1"][BAND]
+    inside = value <= upper
+    half = (upper - 1) / 2
+    row = case["criteria"][0] | {
+        "quantity": BAND, "value": value, "unit": "N", "lower": 1.0, "upper": upper, "trust": "computed",
+        "source": "converged solution", "verdict": "pass" if inside else "fail", "close": [],
+        "reason": None if inside else "above", "margin": min(value - 1, upper - value) / half,
+        "discretisation_error": None, "spread": None, "uncertainty": 0.0015 * value,
+        "components": {"discretisation": 0.0015 * value},
+    }  # fmt: skip
+    case |= {
+        "criteria_verdict": case["verdict"],
+        "verification": {
+            "verdict": row["verdict"], "reason": None, "confirmed_by": "finite differences", "digest": "sha256:0",
+            "omitted": ["min_force_N of pantograph 1: the formulations differ"], "criteria": [row],
+        },
+    }  # fmt: skip
+    return Results.model_validate(results | {"cases": [case]})
+
+
+def decide(results: Results, *requested: VerdictName) -> dict[str, Any]:
+    return Participation(requested=requested).decide_run(results).to_dict()
+
+
+@pytest.fixture
+def failing(passing: dict[str, Any]) -> Results:
+    """The criteria pass, the extended band fails."""
+    return add_verification(passing, 2.0)
+
+
+def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
+    shown = build_headline(Results.model_validate(decide(failing, "criteria")))
+    assert "All 16 counted criteria in 1 case lie inside their limits." in shown
+    assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL (for information)." in shown
+    decided = build_headline(Results.model_validate(decide(failing, *BOTH)))
+    assert "0 of 1 case passes, 1 fails (1 of 17 counted criteria outside their limits)." in decided
+    assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL." in decided
+    alone = build_headline(Results.model_validate(decide(failing, "verification")))
+    assert "(1 of 1 counted criteria outside their limits)" in alone
+    assert "EN 50318 criteria: PASS (for information); Verification up to 50 Hz: FAIL." in alone
+
+
+def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str, Any]) -> None:
+    results = decide(add_verification(passing, 60.0), *BOTH)
+    remark = "1 N above the upper limit without the stated start, which is not checked"
+    results["cases"][0]["verification"]["criteria"][0]["reason"] = remark
+    sections = {section.heading: section for section in list_reasons(Results.model_validate(results))}
+    page = render_markdown(build_certificate(Results.model_validate(results)))
+    assert "Inside the limits only with the stated start" in sections
+    assert page.count(remark) == 2  # page 1 and the table of the case
+    assert find_discrepancies(Results.model_validate(results)) == []
+
+
+def test_band_table_shows_the_verification_where_no_limit_is_published(failing: Results) -> None:
+    """A value that the verification fails is not called informative beside it."""
+    (row,) = (
+        row
+        for row in build_band_table(CaseResult.model_validate(decide(failing)["cases"][0])).rows
+        if Code(BAND) in row[0]
+    )
+    assert str(row[2]).endswith("(no published limit; verification FAIL)")
+
+
+def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any]) -> None:
+    assert "Verification" not in build_headline(Results.model_validate(passing))
+
+
+@pytest.mark.parametrize("build", [build_certificate, build_summary])
+def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: Any) -> None:
+    text = render_markdown(build(Results.model_validate(decide(failing, "criteria"))))
+    assert "## Two verdicts" in text
+    assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes." in text
+    assert "| Verification against the converged solution, up to 50 Hz | FAIL | for information |" in text
+    assert "Confirmed by finite differences." in text
+    assert "computed" in text
+
+
+def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -> None:
+    """A case that only the verification judges has not failed the criteria."""
+    results = decide(failing, *BOTH)
+    results["criteria_verdict"] = results["cases"][0]["criteria_verdict"] = "info"
+    text = render_markdown(build_summary(Results.model_validate(results)))
+    assert "| EN 50318 criteria | INFO | decides | No case has a limit that counts." in text
+    assert "0 of 1 case passes." in text  # the verification fails
+
+
+def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
+    text = shown_certificate(decide(failing, *BOTH))
+    assert "min_force_N of pantograph 1: the formulations differ" in text
+    assert "Without a confirmed value" in text
+
+
+def test_reasons_name_the_failed_verification_only_where_it_decides(failing: Results) -> None:
+    shown, decided = (
+        render_markdown(build_summary(Results.model_validate(decide(failing, *names))))
+        for names in (("criteria",), BOTH)
+    )
+    assert "## Failed" in decided
+    assert ", verification: " in decided
+    assert "## Failed" not in shown
+
+
+@pytest.mark.parametrize(
+    ("requested", "failures", "skipped"), [(("criteria",), 0, 1), (BOTH, 1, 0), (("verification",), 1, 16)]
+)
+def test_junit_skips_the_verdict_that_does_not_decide(
+    failing: Results, requested: tuple[VerdictName, ...], failures: int, skipped: int
+) -> None:
+    """The example has 16 criteria, a verified record, and one criterion of the verification."""
+    root = ElementTree.fromstring(render_junit(Results.model_validate(decide(failing, *requested))))
+    assert (int(root.get("failures", "")), int(root.get("skipped", ""))) == (failures, skipped)
+    assert any(test.get("name", "").startswith(f"verification: {BAND}") for test in root.iter("testcase"))
+
+
+def test_badge_counts_the_criteria_that_decide(failing: Results) -> None:
+    assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
+    assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
+    assert summarise_verdict(Results.model_validate(decide(failing, "verification"))) == "fail 0/1"
+
+
+@pytest.mark.parametrize("requested", [("criteria",), BOTH, ("verification",)])
+@pytest.mark.parametrize("upper", [2.0, 1000.0])
+def test_decided_results_are_consistent(
+    passing: dict[str, Any], upper: float, requested: tuple[VerdictName, ...]
+) -> None:
+    assert find_discrepancies(Results.model_validate(decide(add_verification(passing, upper), *requested))) == []
+
+
+def test_changed_verification_is_found(failing: Results) -> None:
+    """Every way to hide the failure: its verdict, its criterion, the verdicts of the case and of the run."""
+    results = decide(failing, *BOTH)
+    for change in ("verification", "criterion", "empty", "limit", "case", "run", "verification of the run"):
+        forged = copy.deepcopy(results)
+        case = forged["cases"][0]
+        match change:
+            case "verification":
+                case["verification"]["verdict"] = "pass"
+            case "criterion":
+                case["verification"]["criteria"][0] |= {"verdict": "pass", "reason": None}
+            case "empty":
+                case["verification"] |= {"criteria": [], "verdict": "pass"}
+            case "limit":
+                case["verification"]["criteria"][0]["trust"] = "secondary"
+            case "case":
+                case["verdict"] = "pass"
+            case "run":
+                forged["verdict"] = "pass"
+            case "verification of the run":
+                forged["verification_verdict"] = "pass"
+        assert find_discrepancies(Results.model_validate(forged)), change
+
+
+def test_computed_limit_among_the_criteria_does_not_count(passing: dict[str, Any]) -> None:
+    """Trust `computed` in the list of the EN 50318 criteria is a forgery."""
+    forged = copy.deepcopy(passing)
+    forged["cases"][0]["criteria"][0]["trust"] = "computed"
+    assert any("'info' follows" in text for text in find_discrepancies(Results.model_validate(forged).to_dict()))

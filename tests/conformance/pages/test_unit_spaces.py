@@ -1,0 +1,67 @@
+"""Numbers stay on the line of their unit."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import (
+    BulletList,
+    Code,
+    CodeBlock,
+    Document,
+    Figure,
+    Figures,
+    Paragraph,
+    PlainHeader,
+    Remark,
+    to_plain,
+)
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.words import bind_page_units, bind_units
+from pantocheck.conformance.results.results_format import Results
+
+GAP = "\N{NO-BREAK SPACE}"
+
+
+@pytest.mark.parametrize(
+    ("text", "bound"),
+    [
+        ("from 12.5 N to 30 m.", f"from 12.5{GAP}N to 30{GAP}m."),
+        ("250 km/h, 95 %; 3 m/s", f"250{GAP}km/h, 95{GAP}%; 3{GAP}m/s"),
+        ("2 maxima, 3 Newton, 4 m_s, 5 N/x", "2 maxima, 3 Newton, 4 m_s, 5 N/x"),
+        ("case 3 supports", "case 3 supports"),
+        ("± 3.8* N", f"± 3.8*{GAP}N"),
+    ],
+)
+def test_only_a_number_before_a_unit_is_bound(text: str, bound: str) -> None:
+    assert bind_units(text) == bound
+
+
+def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
+    blocks = (
+        Paragraph(("at 5 m", Code("5 m"), Remark("of 6 N"))),
+        CodeBlock("# 5 m"),
+        BulletList(("<7 N>",)),
+        Figures((Figure("<path d='M 1 m 5 s'/>", "8 N", "9 N"),)),
+    )
+    page = bind_page_units(to_plain(Document("10 N", PlainHeader("Head", "11 N"), blocks)))
+    paragraph, code, bullets, figures = page["blocks"]
+    assert [part if isinstance(part, str) else part["text"] for part in paragraph["text"]] == [
+        f"at 5{GAP}m",
+        "5 m",
+        f"of 6{GAP}N",
+    ]
+    assert code["code"] == "# 5 m"
+    assert bullets["items"] == [f"<7{GAP}N>"]
+    assert figures["figures"][0]["svg"] == "<path d='M 1 m 5 s'/>"
+    assert figures["figures"][0]["caption"] == f"9{GAP}N"
+    assert page["title"] == "10 N"
+
+
+def test_page_binds_escaped_text_too(passing: dict[str, Any]) -> None:
+    document = build_certificate(Results.model_validate(passing))
+    first = Paragraph("<b> 31 N & 32 m")
+    page = render_html(replace(document, blocks=(first, *document.blocks)))
+    assert f"&lt;b&gt; 31{GAP}N &amp; 32{GAP}m" in page

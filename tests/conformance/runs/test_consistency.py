@@ -1,0 +1,144 @@
+"""Consistency checks: no finding on correct records, a diagnosis of wrong ones, a note on missing channels."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.signal import lsim
+
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.runs.check import CheckName, Finding
+from pantocheck.conformance.runs.force_dynamics import fit_motion
+from pantocheck.conformance.runs.record_checks import check_record
+from pantocheck.conformance.runs.system import Delivered
+
+
+@pytest.fixture
+def record(wave: type[Wave], case_250: Case) -> Record:
+    """A sine of the force and the motion that follows from it; no content above the span-passing frequency."""
+    return wave().record(case_250)
+
+
+@pytest.fixture
+def rough(record: Record) -> Record:
+    """The same force with white noise up to 100 Hz from a fixed seed; no contact height."""
+    noise = np.random.default_rng(1).normal(0.0, 12.0, record.time.size)
+    return replace(record, force=record.force + LowPass(cutoff_Hz=100.0)(noise, record.rate), contact_height=None)
+
+
+def findings(case: Case, record: Record) -> dict[CheckName, Finding]:
+    return check_record(case, RecordSignals(record, case.file.filter.low_pass))
+
+
+def kinds(case: Case, record: Record) -> list[tuple[CheckName, str]]:
+    return [(name, finding.kind) for name, finding in findings(case, record).items()]
+
+
+def test_correct_record_has_no_finding(case_250: Case, record: Record) -> None:
+    assert findings(case_250, record) == {}
+
+
+def test_correct_record_rounded_or_measured_at_the_wire_has_no_finding(case_250: Case, record: Record) -> None:
+    """Heights to 0.1 mm, and heights of the wire, which the head penetrates by force over stiffness."""
+    assert findings(case_250, replace(record, contact_height=np.round(record.contact_height, 4))) == {}
+    wire = record.contact_height - record.force / case_250.pantographs[0].contact.stiffness_N_m
+    assert findings(case_250, replace(record, contact_height=wire + 5.5)) == {}
+
+
+@pytest.mark.parametrize("gain", [1e-3, 0.05, 0.9, 1.05, 1000.0, -1.0])
+def test_wrong_gain_of_the_force_is_found_and_stated(case_250: Case, record: Record, gain: float) -> None:
+    found = findings(case_250, replace(record, force=gain * record.force))
+    assert [name for name, finding in found.items() if finding.kind == "contradiction"] == ["dynamics"]
+    assert f"corresponds to {1 / gain:.3g} times the force" in found["dynamics"].text
+
+
+def test_constant_force_under_a_moving_contact_point_is_found(case_250: Case, record: Record) -> None:
+    """A dead channel: 119 N throughout, while the contact point goes up and down."""
+    ((name, finding),) = findings(case_250, replace(record, force=np.full_like(record.force, 119.0))).items()
+    assert (name, finding.kind) == ("dynamics", "contradiction")
+
+
+@pytest.mark.parametrize("gain", [0.98, 1.02])
+def test_gain_within_the_tolerance_is_accepted(case_250: Case, record: Record, gain: float) -> None:
+    assert findings(case_250, replace(record, force=gain * record.force)) == {}
+
+
+@pytest.mark.parametrize(
+    ("samples", "delay"), [(100, "lags the height by about 0.1 s"), (-50, "leads the height by about 0.05 s")]
+)
+def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, samples: int, delay: str) -> None:
+    """A shifted slow sine looks like one of another amplitude: the test needs a force with more content."""
+    chain, time = case_250.pantographs[0].chain, record.time
+    k, c = chain.stiffness_N_m, chain.damping_N_s_m
+    stiffness, damping = (np.array([[pair[0] + pair[1], -pair[1]], [-pair[1], pair[1]]]) for pair in (k, c))
+    inverse = np.diag(1 / np.array(chain.masses_kg))
+    state = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ stiffness, -inverse @ damping]])
+    drive = np.array([[0.0], [0.0], [0.0], [-1 / chain.masses_kg[1]]])
+    system = (state, drive, np.array([[0.0, 1.0, 0.0, 0.0]]), np.zeros((1, 1)))
+    slow = LowPass(cutoff_Hz=3.0)(np.random.default_rng(2).normal(0.0, 300.0, time.size), record.rate)
+    force = 119.0 + slow + 0.5 * np.sin(2 * np.pi * 40.0 * time)  # every contact force has content above 20 Hz
+    height = lsim(system, slow, time)[1]
+    assert record.support_position is not None
+    passing = np.interp(record.support_position, record.position[0], time)
+    wire = np.interp(passing, time, height - force / case_250.pantographs[0].contact.stiffness_N_m)
+    uplift = record.support_uplift + wire[:, None]  # contact height and uplift agree at every support
+    whole = replace(record, force=force[None], contact_height=height[None], support_uplift=uplift)
+    assert kinds(case_250, whole) == []
+    finding = findings(case_250, replace(whole, force=np.roll(force, samples)[None]))["dynamics"]
+    assert finding.kind == "contradiction"
+    assert delay in finding.text
+    # A filter that only runs forwards delays the force by 0.02 s at 20 Hz: that is no contradiction.
+    causal = LowPass(phase="causal")(force, record.rate)
+    late = replace(whole, force=causal[None], filter_applied_Hz=20.0)
+    assert kinds(case_250, late) == [("dynamics", "doubt")]
+
+
+def test_fit_of_a_consistent_record_is_exact(case_250: Case, record: Record) -> None:
+    """The response to straight lines between samples is exact up to (w dt)^2/12 = 4e-6 at 1.16 Hz and 1 ms."""
+    fit = fit_motion(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
+    assert_allclose([fit.gain, fit.misfit], [1.0, 0.0], atol=1e-4)
+
+
+def test_missing_or_weak_filter_is_found(case_250: Case, rough: Record) -> None:
+    def kinds_after_filter(order: int | None) -> list[tuple[CheckName, str]]:
+        force = rough.force if order is None else LowPass(order=order)(rough.force[0], rough.rate)[None]
+        return kinds(case_250, replace(rough, force=force, filter_applied_Hz=20.0))
+
+    without_height = ("dynamics", "unchecked")
+    assert kinds_after_filter(None) == [("roll-off", "contradiction")]
+    assert kinds_after_filter(2) == [("roll-off", "contradiction")]
+    assert kinds_after_filter(6) == kinds_after_filter(8) == [without_height]
+    assert kinds(case_250, rough) == [without_height]
+    # At 100 samples per second nothing is known of 40 to 50 Hz.
+    slow = replace(
+        rough, time=rough.time[::10], position=rough.position[:, ::10], force=rough.force[:, ::10],
+        support_uplift=rough.support_uplift[:, ::10], filter_applied_Hz=20.0,
+    )  # fmt: skip
+    assert kinds(case_250, slow) == [("roll-off", "unchecked"), without_height]
+
+
+def test_positions_that_contradict_speed_or_supports_are_found(case_250: Case, record: Record) -> None:
+    start = record.position[:, :1]
+    faster = replace(record, position=start + 1.01 * (record.position - start))
+    assert kinds(case_250, faster) == [("motion", "contradiction")]
+    for shift, found in ((10.0, [("support passing", "contradiction")]), (3.0, [])):
+        assert kinds(case_250, replace(record, position=record.position + shift)) == found
+    assert kinds(case_250, replace(record, support_position=None, support_uplift=None)) == [
+        ("support passing", "unchecked")
+    ]
+
+
+def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, record: Record) -> None:
+    wrong = grade_case(case_250, Delivered(replace(record, force=1.05 * record.force)), "secondary")
+    assert (wrong.verdict, wrong.criteria) == ("error", [])
+    assert "check gain and unit of the force" in (wrong.reason or "")
+    assert wrong.quantities["1"]["mean_force_N"] == pytest.approx(1.05 * 119.0, rel=1e-4)
+    bare = grade_case(case_250, Delivered(replace(record, contact_height=None)), "secondary")
+    assert bare.criteria
+    assert any(note.startswith("the dynamics check was not made") for note in bare.notes)

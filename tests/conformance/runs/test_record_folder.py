@@ -1,0 +1,129 @@
+"""A folder of records as a system."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.toml_edit import edit_toml
+from helpers.wave_system import Wave
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.record_reading import record_digest
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.runs.record_folder import open_record_folder
+from pantocheck.conformance.runs.system import Delivered, Errored, Skipped
+from pantocheck.conformance.runs.system_choice import choose_system
+
+
+def test_record_is_found_by_its_case(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
+    write_record(tmp_path / "deep" / "any name.h5", wave().record(case_250), case_250.id, run={"dt_s": 0.002})
+    system = choose_system(f"record:{tmp_path}")
+    outcome = system.run(case_250)
+    assert outcome.record is not None
+    assert outcome.run.dt_s == 0.002
+    assert system.name == tmp_path.name
+
+
+@pytest.mark.parametrize("changed", ["a.csv", "a.toml"])
+def test_digest_of_a_record_is_that_of_its_sidecar_and_table(
+    two_pantograph_case: Case, wave: type[Wave], tmp_path: Path, changed: str
+) -> None:
+    record = wave().record(two_pantograph_case)
+    sidecar = write_record(tmp_path / "a.csv", record, two_pantograph_case.id)
+    edit_toml(sidecar, {"sha256": None})
+    outcome = open_record_folder(tmp_path).run(two_pantograph_case)
+    assert isinstance(outcome, Delivered)
+    facts = CaseEvaluation(two_pantograph_case, outcome).record_facts
+    assert facts is not None
+    assert facts.digest == outcome.digest == record_digest(sidecar, tmp_path / "a.csv")
+    with (tmp_path / changed).open("a") as file:
+        file.write("\n")
+    assert record_digest(sidecar, tmp_path / "a.csv") != facts.digest
+
+
+def test_case_without_record_is_skipped(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
+    write_record(tmp_path / "a.csv", wave().record(case_250), "another/case")
+    assert open_record_folder(tmp_path).run(case_250) == Skipped("there is no record of this case")
+
+
+def test_invalid_folder_is_refused(case_250: Case, wave: type[Wave], tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no sidecar in this folder names a case"):
+        open_record_folder(tmp_path)
+    with pytest.raises(InputError, match="there is no such folder"):
+        open_record_folder(tmp_path / "none")
+    for name in ("a.csv", "b.csv"):
+        write_record(tmp_path / name, wave().record(case_250), case_250.id)
+    with pytest.raises(InputError, match=r"b\.toml and a\.toml have the same case en50318-2002/250"):
+        open_record_folder(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["builtins", "record:", "commands:python", ""])
+def test_unknown_system_is_refused(text: str) -> None:
+    with pytest.raises(InputError, match="there is no such system"):
+        choose_system(text)
+
+
+@pytest.mark.parametrize(
+    ("changes", "difference"),
+    [
+        ({}, None),
+        ({"speed_km_h": 251.2}, None),
+        ({"speed_km_h": 248.8}, None),
+        ({"speed_km_h": 251.3}, "was made at 251.3 km/h, the case runs at 250 km/h"),
+        ({"speed_km_h": 248.7}, "was made at 248.7 km/h, the case runs at 250 km/h"),
+        ({"filter_cutoff_Hz": 20.01}, None),
+        ({"filter_cutoff_Hz": 19.99}, None),
+        ({"filter_cutoff_Hz": 20.03}, "has a filter of 20.03 Hz, the case requires 20 Hz"),
+        ({"filter_cutoff_Hz": 19.97}, "has a filter of 19.97 Hz, the case requires 20 Hz"),
+        ({"evaluated_m": [240.0, 360.0]}, None),
+        ({"evaluated_m": [240.009, 359.991]}, None),
+        ({"evaluated_m": [240.02, 360.0]}, "evaluates 240.02 m to 360 m, the case 240 m to 360 m"),
+        ({"evaluated_m": [240.0, 359.98]}, "evaluates 240 m to 359.98 m, the case 240 m to 360 m"),
+        ({"evaluated_m": [230.0, 360.0]}, "evaluates 230 m to 360 m, the case 240 m to 360 m"),
+    ],
+)
+def test_summary_of_another_run_is_an_error(
+    case_250: Case, tmp_path: Path, changes: dict[str, Any], difference: str | None
+) -> None:
+    """Half a percent of the speed, a thousandth of the cut-off, a centimetre of the section."""
+    path = tmp_path / "a.toml"
+    path.write_text((library_folder() / "en50318-2002" / "known-passing-code" / "250.toml").read_text())
+    edit_toml(path, changes)
+    outcome = open_record_folder(tmp_path).run(case_250)
+    if difference is None:
+        assert isinstance(outcome, Delivered)
+    else:
+        assert outcome == Errored(f"the summary record {difference}")
+
+
+def test_summary_of_another_train_is_an_error(two_pantograph_case: Case) -> None:
+    system = open_record_folder(Path("en50318-2002/known-passing-code"))
+    reason = "the summary record has 1 pantograph, the case has 2"
+    assert system.run(two_pantograph_case) == Errored(reason)
+
+
+@pytest.mark.parametrize(
+    ("systems", "name", "version"),
+    [
+        (({"name": "own code", "version": "3"}, {"name": "own code", "version": "3"}), "own code", "3"),
+        (({"name": "own code", "version": "3"}, {"name": "own code", "version": "4"}), None, ""),
+        (({"name": "own code", "version": "3"}, None), None, ""),
+        ((None, None), None, ""),
+    ],
+)
+def test_system_is_the_one_that_all_sidecars_name(
+    case_250: Case, tmp_path: Path, systems: tuple[dict[str, str] | None, ...], name: str | None, version: str
+) -> None:
+    """Otherwise the folder gives the name. Other TOML files and records without a case are left out."""
+    record = Wave().record(case_250)
+    for number, system in enumerate(systems):
+        write_record(tmp_path / f"{number}.csv", record, f"own/{number}", system)
+    write_record(tmp_path / "without.csv", record)
+    (tmp_path / "plan.toml").write_text('system = "builtin"\n')
+    (tmp_path / "0-other.toml").write_text("schema = 3\n")
+    folder = open_record_folder(tmp_path)
+    assert (folder.name, folder.version) == (name or tmp_path.name, version)
+    assert [case for case, _ in folder.sidecars] == ["own/0", "own/1"]

@@ -1,0 +1,100 @@
+"""Resolution of the reported bands: the criterion on element and time step, against measured errors."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.library import load_case, select_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.record_signals import evaluate_record
+from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
+from pantocheck.conformance.runs.resolution import longest_element, longest_time_step, period_error, resolution_warnings
+
+STD, EXTENDED = "std_force_N", "rms_20_50_N"
+FINE = (0.25, 0.5e-3)
+
+
+@pytest.fixture(scope="module")
+def case_300() -> Case:
+    return load_case(library_folder() / "en50318-2002" / "300.toml")
+
+
+def discretised(case: Case, element: float, time_step: float) -> Case:
+    steps = case.file.discretisation.model_copy(update={"element_m": element, "time_step_s": time_step})
+    return replace(case, file=case.file.model_copy(update={"discretisation": steps}))
+
+
+def errors(case: Case, element: float, time_step: float) -> dict[str, float]:
+    """Relative errors of the standard deviation and of the RMS in 20-50 Hz, against a fine mesh."""
+    coarse, fine = (values(discretised(case, *steps)) for steps in ((element, time_step), FINE))
+    return {name: abs(coarse[name] / fine[name] - 1) for name in (STD, EXTENDED) if name in coarse}
+
+
+def values(case: Case) -> dict[str, float]:
+    record = ReferenceSimulator().run_unrefined(case).record
+    return {name: float(value) for name, value in evaluate_record(record, case.file.filter.low_pass).values[1].items()}
+
+
+def warned(case: Case, element: float, time_step: float) -> list[str]:
+    """Subject and frequency of each warning, such as `time step 50`."""
+    texts = resolution_warnings(case, discretised(case, element, time_step).file.discretisation)
+    return [f"{text.split(':')[0]} {edge}" for text in texts for edge in (20, 50) if f"to {edge} Hz" in text]
+
+
+@pytest.mark.parametrize(("element", "time_step"), [(0.5, 1e-3), (1.1, 1e-3)])
+def test_errors_without_a_warning_are_small(case_300: Case, element: float, time_step: float) -> None:
+    """At most 2 % of sigma and 5 % of the RMS in 20-50 Hz."""
+    assert warned(case_300, element, time_step) == []
+    found = errors(case_300, element, time_step)
+    assert found[STD] < 0.02
+    assert found[EXTENDED] < 0.05
+
+
+@pytest.mark.parametrize(
+    ("element", "time_step", "expected"),
+    [
+        (3.0, 1e-3, ["element length 20", "element length 50"]),
+        (0.5, 5e-3, ["time step 20", "time step 50"]),
+        (0.5, 1e-2, ["time step 20"]),
+    ],
+)
+def test_errors_with_a_warning_up_to_20_hz_are_large(
+    case_300: Case, element: float, time_step: float, expected: list[str]
+) -> None:
+    """More than 5 % of sigma. At 10 ms the record has no 20-50 Hz band, which is therefore not named."""
+    assert warned(case_300, element, time_step) == expected
+    assert errors(case_300, element, time_step)[STD] > 0.05
+
+
+def test_reference_simulator_delivers_the_warnings(case_300: Case) -> None:
+    case = discretised(case_300, 3.0, 5e-3)
+    assert ReferenceSimulator().run_unrefined(case).warnings == resolution_warnings(case, case.file.discretisation)
+
+
+def test_period_error_is_that_of_average_acceleration() -> None:
+    """Exact: w dt / 2 = tan(w' dt / 2) with the frequency w' of the scheme; for small steps the square remains."""
+    omega, dt = 2 * math.pi * 20.0, 1e-3
+    computed = 2 / dt * math.atan(omega * dt / 2)
+    assert omega / computed - 1 == pytest.approx(period_error(20.0, dt), rel=2e-3)
+    assert period_error(50.0, longest_time_step(50.0)) == pytest.approx(0.01, rel=1e-12)
+
+
+def test_message_names_the_remedy(case_300: Case) -> None:
+    """250/3 m/s over 50 and 70 elements per second; 18.1 steps per period of 20 ms."""
+    texts = resolution_warnings(case_300, discretised(case_300, 1.5, 2e-3).file.discretisation)
+    assert texts == (
+        "time step: 2 ms changes the period at 50 Hz by 3.3 %: quantities up to 50 Hz are not accurate. "
+        "Set time_step_s to at most 0.0011",
+        "element length: a pantograph passes 55.6 elements of 1.5 m per second; quantities up to 50 Hz need 70. "
+        "Set element_m to at most 1.1",
+    )
+    assert resolution_warnings(case_300, discretised(case_300, 1.1, 0.0011).file.discretisation) == ()
+    assert longest_element(case_300.speed, 20.0) == pytest.approx(case_300.speed / 50)
+
+
+def test_no_case_of_the_library_is_too_coarse() -> None:
+    cases = [case for case in select_cases(["*"]) if not case.is_static]
+    assert len(cases) >= 8
+    assert [case.id for case in cases if resolution_warnings(case, case.file.discretisation)] == []

@@ -1,0 +1,77 @@
+"""Shape of a line at rest for the drawing in a certificate."""
+
+import json
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
+from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.line_drawing import find_deflection
+from pantocheck.conformance.pages.case_figures import line_figures, line_reference
+from pantocheck.conformance.runs.reference_simulator import THINNING_M, build_line_shape, thin_curve
+
+LARGEST_SHAPE = 15_000
+"""Size budget of a shape in results.json [bytes]."""
+
+
+@pytest.fixture(scope="module")
+def shape_250() -> LineShape:
+    [case] = select_cases(["en50318-2002/250"])
+    return build_line_shape(case, discretise_line(case.line, 0.5))
+
+
+def test_shape_covers_the_section_and_one_span_on_either_side(shape_250: LineShape) -> None:
+    """Spans 5 and 6 of 60 m are evaluated; each of four spans has nine droppers."""
+    assert (shape_250.first_span, shape_250.last_span) == (4, 7)
+    assert shape_250.supports_m == [180, 240, 300, 360, 420]
+    assert shape_250.plan is None
+    assert len(shape_250.side.droppers.x_m) == 36
+    symbols = [point.symbol for point in shape_250.side.points]
+    assert {symbol: symbols.count(symbol) for symbol in set(symbols)} == {"messenger support": 5, "steady arm": 5}
+
+
+def test_thinned_wires_stay_close_to_the_wires(shape_250: LineShape) -> None:
+    """The tolerance of four spans, and the rounding of both coordinates: 0.5 mm, and 5 mm at a slope of 0.1."""
+    [case] = select_cases(["en50318-2002/250"])
+    line = discretise_line(case.line, 0.5)
+    x = np.linspace(180, 420, 481)
+    for wire, curve in zip(line.catenary.wires, shape_250.side.curves, strict=True):
+        drawn = np.interp(x, curve.x_m, curve.y_m)
+        assert np.abs(drawn - find_deflection(line, wire.name, "z", x)).max() <= 4 * THINNING_M + 0.001
+    assert len(shape_250.side.curves[1].x_m) < 120  # of 481 stations
+
+
+@pytest.mark.parametrize("name", ["en50318-2018/ac-simple/320-twin", "en50318-2018/ac-stitched/275"])
+def test_shape_of_twelve_spans_with_stagger_stays_small(name: str) -> None:
+    *_, case = select_cases([name])
+    shape = build_line_shape(case, discretise_line(case.line, case.file.discretisation.element_m))
+    assert shape.plan is not None
+    assert shape.last_span - shape.first_span == 11
+    assert len(json.dumps(shape.model_dump(mode="json"))) < LARGEST_SHAPE
+
+
+def test_thinning_keeps_corners_and_drops_points_of_a_straight_line() -> None:
+    x = np.arange(11.0)
+    assert thin_curve(x, np.abs(x - 4), 1e-9).tolist() == [0, 4, 10]
+    assert thin_curve(x, 2 * x, 1e-9).tolist() == [0, 10]
+
+
+def test_lists_of_different_length_are_refused() -> None:
+    with pytest.raises(ValidationError, match="lists of 2 and 1 numbers"):
+        DrawnCurve(kind="contact_wire", x_m=[0, 1], y_m=[0])
+
+
+def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
+    case = {"id": "first", "line_shape": shape_250.model_dump(mode="json"), "run": {"evaluated_m": [240.0, 360.0]}}
+    [figure] = line_figures(case, ())
+    assert figure.caption.startswith("Line at rest, spans 4 to 7: side view, heights enlarged.")
+    second = case | {"id": "second"}
+    assert line_figures(second, (case,)) == ()
+    [text] = line_reference(second, (case,))
+    assert text.text == "Line: as drawn in first."
+    foreign = {"id": "third", "run": {"evaluated_m": None}}
+    assert line_figures(foreign, (case, foreign)) == ()
+    assert line_reference(foreign, (case, foreign)) == ()
