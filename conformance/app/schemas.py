@@ -35,7 +35,7 @@ from pantocheck.conformance.results.comparison_format import ResponseComparison,
 from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.drop_comparison_format import DropComparison
 from pantocheck.conformance.results.identification_format import IdentificationFile
-from pantocheck.conformance.results.modes import ModesFile
+from pantocheck.conformance.results.identified_modes import ModesFile
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 from pantocheck.conformance.results.population_format import PopulationFile
 from pantocheck.conformance.results.results_format import Results

@@ -37,7 +37,7 @@ RESPONSE_BANDS: tuple[tuple[float, float], ...] = ((0.5, 5.0), (5.0, 20.0), (20.
 
 TimeWindow = tuple[float, float]
 
-UNITS = {"pct": "%", "deg": "°", "mm_N": "mm/N", "mm": "mm"}
+LIMIT_UNITS = {"pct": "%", "deg": "°", "mm_N": "mm/N", "mm": "mm"}
 """Units in reports, by the end of the name of a quantity."""
 
 
@@ -170,7 +170,7 @@ def read_comparison_limits(path: Path | None, kind: LimitKind) -> tuple[Comparis
 
 def unit_of_difference(quantity: str) -> str:
     """Unit of a quantity in reports; empty for a ratio."""
-    return next((unit for end, unit in UNITS.items() if quantity.endswith(f"_{end}")), "")
+    return next((unit for end, unit in LIMIT_UNITS.items() if quantity.endswith(f"_{end}")), "")
 
 
 def build_comparison_criterion(

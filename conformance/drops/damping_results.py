@@ -21,13 +21,13 @@ from pantocheck.conformance.drops.paired_shapes import (
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
+    FittedModels,
     MeasuredBand,
     MeasuredRatios,
-    ModelComparison,
     PairedMode,
     StatedDamping,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary, Rayleigh
 from pantocheck.model.description.catenary import ModalBand
 from pantocheck.model.discretisation.discretised_line import with_damping
@@ -140,10 +140,10 @@ def _list_pairs(matched: MatchedModes, predicted: RealArray, used: set[int]) -> 
     )
 
 
-def _compare_models(matched: MatchedModes, rayleigh: RealArray, bands: tuple[ModalBand, ...]) -> ModelComparison:
+def _compare_models(matched: MatchedModes, rayleigh: RealArray, bands: tuple[ModalBand, ...]) -> FittedModels:
     """Measured damping ratios beside those of the line as it is, of the fit, and of the fit with modal bands."""
     measured, shapes = matched.measured, matched.shapes
-    return ModelComparison(
+    return FittedModels(
         measured=MeasuredRatios(
             frequency_Hz=tuple(measured.frequency),
             damping_ratio=tuple(measured.damping_ratio),

@@ -29,7 +29,7 @@ from pantocheck.conformance.results.identification_format import (
     Spectrogram,
     SpectrogramPart,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
 

@@ -21,7 +21,7 @@ from pantocheck.conformance.drops.model_order import (
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import DataBlock, build_block, whiten
 from pantocheck.conformance.drops.start_poles import BandTrials, join_start_poles, try_orders
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
 SHARED_POLES = 1.5

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.mode_matching import KIND_OF_WIRE, find_wire
 from pantocheck.conformance.results.damping_format import LineComparison, LineDifference
-from pantocheck.conformance.results.modes import MeasuredLine, Mode
+from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
 from pantocheck.model import Catenary, Kind
 
 SPAN_TOLERANCE = 0.1

@@ -8,7 +8,7 @@ from pantocheck.conformance.drops.drop_record import DropLine
 from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit, RecordFit
 from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.projection import build_block, estimate_noise, residue_spread, solve_residues
-from pantocheck.conformance.results.modes import MeasuredLine, Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode, SensorShape
 
 UNCERTAIN = 0.05
 """Relative standard deviation above which a damping ratio is uncertain."""

@@ -13,7 +13,7 @@ from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import round_significant
 from pantocheck.conformance.core.uff_table import encode_identification_line, write_data_sets
-from pantocheck.conformance.results.modes import Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
 # Modes as a table of comma-separated values: one row per mode, three columns per sensor.
 MODE_COLUMNS = (

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 LAST_GROUP = 8
 """Last group that is numbered; beyond it, modes of the spans and modes between droppers mix."""

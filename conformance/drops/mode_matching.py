@@ -12,7 +12,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.damping_model import MeasuredModes
 from pantocheck.conformance.drops.mode_groups import half_power_bandwidth, overlaps
 from pantocheck.conformance.results.damping_format import Matching
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary, DiscretisedLine, Kind, discretise
 from pantocheck.model.description.catenary import Wire
 from pantocheck.model.description.one_thread import use_one_thread

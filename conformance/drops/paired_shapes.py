@@ -24,7 +24,7 @@ from pantocheck.conformance.results.damping_format import (
     Thresholds,
     WireShape,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.description.catenary import Wire
 

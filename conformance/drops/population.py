@@ -12,7 +12,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identify import Identification, choose_band, group_by_line, identify_decays
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.results.population_format import FactorName, OutlierSide, PooledLevel, Variability
 from pantocheck.model.description.one_thread import use_one_thread
 

@@ -18,7 +18,7 @@ from pantocheck.conformance.drops.population import (
     measure_variability,
     median_interval,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.results.population_format import (
     OmittedRecord,
     OutlierSide,

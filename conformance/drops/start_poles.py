@@ -22,7 +22,7 @@ from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.drops.decay_kernel import complete_overlap, low_pass_decay
-from pantocheck.conformance.results.modes import read_modes
+from pantocheck.conformance.results.identified_modes import read_modes
 
 BAND = 1.0
 """Width of a band [Hz]."""

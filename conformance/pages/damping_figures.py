@@ -15,7 +15,7 @@ from pantocheck.conformance.core.figure_style import (
     label_decades,
     render_svg,
 )
-from pantocheck.conformance.results.damping_format import ModelComparison, Observability, Thresholds
+from pantocheck.conformance.results.damping_format import FittedModels, Observability, Thresholds
 from pantocheck.conformance.results.population_format import PooledGroup, PooledRecord
 
 
@@ -42,7 +42,7 @@ def draw_observability(rows: Sequence[Observability], thresholds: Thresholds) ->
 
 
 @render_svg
-def draw_comparison(data: ModelComparison) -> Figure:
+def draw_comparison(data: FittedModels) -> Figure:
     """Measured damping ratios and those of the models at the computed modes."""
     figure = Figure(figsize=(FULL, 3.2))
     axes = figure.subplots()

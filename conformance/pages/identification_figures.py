@@ -25,7 +25,7 @@ from pantocheck.conformance.results.identification_format import (
     RecordSpectra,
     SearchStep,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 
 @render_svg

@@ -13,7 +13,7 @@ from pantocheck.conformance.pages.identification_sections import (
 )
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
 from pantocheck.conformance.results.identification_format import Comparison, IdentifiedLine, ModeGroup, Overlay
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 
 def build_identification_document(lines: Sequence[IdentifiedLine]) -> doc.Document:

@@ -22,7 +22,7 @@ from pantocheck.conformance.results.identification_format import (
     RecordSpectra,
     Spectrogram,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 

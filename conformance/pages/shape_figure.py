@@ -14,7 +14,7 @@ from pantocheck.conformance.core.figure_style import FULL, INK, SHADES, PlotStyl
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.words import format_value
 from pantocheck.conformance.results.damping_format import MeasuredDeflection, PairedShape, WireShape
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 DRAWN_AMPLITUDE = 0.42
 """Height of the largest component of a shape; the distance of two rows is 1."""

@@ -10,7 +10,7 @@ from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pantograph.response_sidecar import HeadPoint, ResponseKind
 
-Range = tuple[Rounded, Rounded]
+NumberPair = tuple[Rounded, Rounded]
 ComparedValue = Rounded | tuple[Rounded, ...]
 
 StaticValue = Literal["elasticity", "contact_wire_height"]
@@ -60,8 +60,8 @@ class CriterionPlace(RoundedModel):
     height_m: Rounded | None = None
     sensor: int | None = None
     motion: ComparedMotion | None = None
-    window_s: Range | None = None
-    band_Hz: Range | None = None
+    window_s: NumberPair | None = None
+    band_Hz: NumberPair | None = None
 
 
 class ComparisonCriterion(RoundedModel):
@@ -112,9 +112,9 @@ class SpanDifferences(RoundedModel):
     end_m: Rounded
     values: int
     """Number of measured values."""
-    measured: Range | None
+    measured: NumberPair | None
     """Lowest and highest measured value; null: no value."""
-    model: Range | None
+    model: NumberPair | None
     """Lowest and highest value of the model, same positions."""
     mean_difference: Rounded | None
     """Mean of model minus measurement."""
@@ -162,7 +162,7 @@ class StaticComparison(ModelComparison):
     force_N: tuple[Rounded, ...]
     """Static forces of the elasticity."""
     evaluated_spans: tuple[int, int]
-    evaluated_m: Range
+    evaluated_m: NumberPair
     """Start and end of the evaluated section."""
     largest_distance_m: Rounded | None
     values: tuple[ComparedValues, ...]
@@ -172,7 +172,7 @@ class StaticComparison(ModelComparison):
 class BandDeviation(RoundedModel):
     """Deviations in one frequency band; empty without a measured value."""
 
-    band_Hz: Range
+    band_Hz: NumberPair
     rows: int
     """Number of measured values in the band."""
     missing: str | None
@@ -276,7 +276,7 @@ class ForceAgreement(RoundedModel):
     """Agreement of the force of a subject with that of the first subject."""
 
     subject: str
-    section_m: Range
+    section_m: NumberPair
     """Compared stretch."""
     highest_Hz: Rounded
     """Frequency up to which both forces are known."""

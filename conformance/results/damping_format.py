@@ -167,7 +167,7 @@ class MeasuredRatios(RoundedModel):
     std: tuple[Rounded, ...]
 
 
-class ModelComparison(RoundedModel):
+class FittedModels(RoundedModel):
     """Measured damping ratios, and those of several damping models at the computed modes."""
 
     measured: MeasuredRatios
@@ -209,6 +209,6 @@ class DampingResults(RoundedModel):
     thresholds: Thresholds
     pairs: tuple[PairedMode, ...]
     shapes: PairedShapes = PairedShapes()
-    comparison: ModelComparison
+    comparison: FittedModels
     unpaired: tuple[Rounded, ...]
     """Frequencies of the measured modes without computed counterpart [Hz]."""

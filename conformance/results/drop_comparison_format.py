@@ -6,7 +6,7 @@ from pydantic import Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.line.elements.damping import Damping
-from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparedSource, ModelComparison, Range
+from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparedSource, ModelComparison, NumberPair
 from pantocheck.conformance.results.damping_format import LineComparison
 
 CurveValues = tuple[float, ...]
@@ -68,8 +68,8 @@ class WindowStatistics(RoundedModel):
 
     place: str
     motion: ComparedMotion
-    window_s: Range
-    band_Hz: Range
+    window_s: NumberPair
+    band_Hz: NumberPair
     record_rms: Rounded | None
     """RMS of the record without its noise [m/s or m/s2]; null: no record."""
     noise_rms: Rounded | None
@@ -96,7 +96,7 @@ class MotionCurve(RoundedModel):
 
     place: str
     motion: ComparedMotion
-    window_s: Range
+    window_s: NumberPair
     time_s: CurveValues
     record: CurveValues | None
     """Record [m/s or m/s2]; null: no record."""
@@ -117,9 +117,9 @@ class DropComparison(ModelComparison):
     """Sampling rate of the comparison."""
     element_m: Rounded
     time_step_s: Rounded
-    windows_s: tuple[Range, ...]
+    windows_s: tuple[NumberPair, ...]
     """Windows after the release."""
-    bands_Hz: tuple[Range, ...]
+    bands_Hz: tuple[NumberPair, ...]
     """Compared bands."""
     models: tuple[ComparedModel, ...]
     """Damping models; the first one is graded."""

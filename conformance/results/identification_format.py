@@ -6,7 +6,7 @@ from pydantic import ConfigDict, Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.core.units import MotionQuantity
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 Curve = list[float]
 """Values of a curve on one axis, with six significant digits."""

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
-from pantocheck.conformance.results.modes import MeasuredLine
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 OutlierSide = Literal["above", "below"]
 """Side of the box on which a value is an outlier."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.results.modes import Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import computed_damping_ratios
 from pantocheck.model import Catenary, discretise

@@ -24,7 +24,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.channel_facts import find_time, list_channel_facts
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.modes import read_modes
+from pantocheck.conformance.results.identified_modes import read_modes
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.protocol_messages import AnswerRefused, parse_message
 from pantocheck.conformance.runs.record_folder import open_record_folder

@@ -28,7 +28,7 @@ from pantocheck.conformance.drops.mode_groups import LAST_GROUP, number_groups
 from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     compare_reference,
     compute_group_findings,

@@ -18,7 +18,7 @@ from pantocheck.conformance.drops.line_comparison import compare_line, refuse_ot
 from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
-from pantocheck.conformance.results.modes import read_modes
+from pantocheck.conformance.results.identified_modes import read_modes
 
 
 def drop_fit_command(

@@ -26,7 +26,7 @@ from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
-from pantocheck.conformance.results.modes import ModesFile
+from pantocheck.conformance.results.identified_modes import ModesFile
 from pantocheck.conformance.results.population_format import PooledGroup
 
 

@@ -22,7 +22,7 @@ from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
-from pantocheck.conformance.results.modes import Mode, ModesFile, read_modes
+from pantocheck.conformance.results.identified_modes import Mode, ModesFile, read_modes
 
 HIGHEST_FREQUENCY_HZ = 10.0
 """Highest frequency of a mode, if none is given [Hz]."""

@@ -18,7 +18,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.records.traces import thin_series
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.results.population_format import PopulationFile
 from pantocheck.conformance.runs.case_run import build_run_table
 from pantocheck.model import Catenary, DiscretisedLine

@@ -19,7 +19,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,

@@ -13,7 +13,7 @@ from pantocheck.conformance.cases.study_tables import SteadyArmDamper
 from pantocheck.conformance.core.figure_data import Chart, Mark, TextTable
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     build_drop_run_table,

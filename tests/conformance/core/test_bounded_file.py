@@ -13,7 +13,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS, read_tables
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.documents.document_reading import read_certificate
-from pantocheck.conformance.results.modes import read_modes
+from pantocheck.conformance.results.identified_modes import read_modes
 from pantocheck.conformance.results.results_reading import read_results
 
 Reader = Callable[[Path], object]

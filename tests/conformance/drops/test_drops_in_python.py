@@ -22,7 +22,7 @@ from pantocheck.conformance.drops.identification_analysis import analyse_identif
 from pantocheck.conformance.drops.identify import Identification
 from pantocheck.conformance.drops.mode_building import build_modes
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.results.modes import MeasuredLine
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 CASE = open_case("vovan2015/mass-drop/printed").with_({"line.geometry.spans": 5})
 

@@ -3,7 +3,7 @@
 import pytest
 
 from pantocheck.conformance.drops.identification_analysis import count_half_power_lines
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 PAPER = Mode(
     frequency_Hz=0.9, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), half_power_points=1.08

@@ -22,7 +22,7 @@ from pantocheck.conformance.drops.mode_groups import find_group_outliers, number
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
 from pantocheck.conformance.drops.start_poles import read_poles
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 SPANS = (60.0,) * 6
 

@@ -30,7 +30,7 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.pages.document import WarningBox
 from pantocheck.conformance.results.damping_format import Coefficient, DampingResults, Matching, Observability
-from pantocheck.conformance.results.modes import MeasuredLine, Mode, ModesFile, SensorShape
+from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode, ModesFile, SensorShape
 from pantocheck.model import Catenary, Kind, ModalBand, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 

@@ -9,7 +9,7 @@ import pyuff
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.mode_export import select_mode_writer
-from pantocheck.conformance.results.modes import Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
 FIRST = Mode(
     frequency_Hz=0.87654321,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.drops.mode_groups import assign_groups, find_group_outliers, number_groups
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 
 def build_mode(frequency: float, damping_ratio: float, certain: bool = True, lateral: bool = False) -> Mode:

@@ -1,7 +1,7 @@
 """Warning about identified modes whose half-power bands overlap."""
 
 from pantocheck.conformance.drops.mode_groups import warn_about_overlap
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 
 def build_mode(frequency: float, **changes: bool) -> Mode:

@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.drops.mode_matching import match_modes
 from pantocheck.conformance.drops.paired_shapes import list_paired_shapes
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.results.modes import Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.modal.modes import compute_modes, deflection_at
 

@@ -12,7 +12,7 @@ from pantocheck.conformance.drops.damping_results import build_damping_results
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 MODES = Path(__file__).parents[2] / "data" / "modes"
 TRUTH = {

@@ -35,7 +35,7 @@ from pantocheck.conformance.results.identification_format import (
     RecordSpectra,
     Spectrogram,
 )
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 
 
 @pytest.fixture(scope="module")

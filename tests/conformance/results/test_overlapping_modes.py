@@ -12,7 +12,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.results.damping_format import DampingResults
-from pantocheck.conformance.results.modes import Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 

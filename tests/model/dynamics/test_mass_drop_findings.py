@@ -13,7 +13,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.results.population_format import PopulationFile, Variability
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     compare_reference,

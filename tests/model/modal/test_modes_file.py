@@ -6,7 +6,7 @@ import pytest
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
-from pantocheck.conformance.results.modes import Mode, ModesFile, SensorShape, read_modes
+from pantocheck.conformance.results.identified_modes import Mode, ModesFile, SensorShape, read_modes
 
 MODE = Mode(
     frequency_Hz=4 / 3,

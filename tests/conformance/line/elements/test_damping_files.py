@@ -13,7 +13,7 @@ from pantocheck.conformance.drops.damping_toml import write_damping_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.damping_format import DampingResults
-from pantocheck.conformance.results.modes import read_modes
+from pantocheck.conformance.results.identified_modes import read_modes
 
 MODES = Path(__file__).parents[3] / "data" / "vovan2015" / "stand-in-modes.json"
 """Modes that `pantocheck drop identify` finds in the drops of the stand-in; docs/damping-study.md renews them."""

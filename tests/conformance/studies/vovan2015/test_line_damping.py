@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.studies.vovan2015 import line_damping
 
 

@@ -13,7 +13,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.modes import Mode
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains, run_steady_arm_damper
 from pantocheck.model import Catenary, Kind, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes_below, damping_ratios
