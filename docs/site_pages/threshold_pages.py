@@ -31,8 +31,8 @@ def build_threshold_page() -> str:
     ]
     for path in sorted(CONFORMANCE.rglob("*.py")):
         place = path.relative_to(CONFORMANCE)
-        rows = [] if LEFT_OUT.intersection(place.parts) else [_describe(threshold) for threshold in list_thresholds(path)]
-        if rows:
+        found = [] if LEFT_OUT.intersection(place.parts) else list_thresholds(path)
+        if rows := [_describe(threshold) for threshold in found]:
             parts += [f"## `{place.as_posix()}`", build_markdown_table(("name", "value", "meaning and reason"), rows)]
     return "\n\n".join(parts) + "\n"
 
