@@ -154,13 +154,12 @@ class PantographFile(InputTable):
     contact: ContactTable
     force_law: Annotated[
         ForceLaw | None,
-        Field(
-            exclude_if=is_absent,
-            description="mean contact force or applied forces as a function of speed, for cases with "
-            "force_from = 'law'; default: every case states a force",
-        ),
+        Field(exclude_if=is_absent),
         NO_FEATURE,  # a program receives the forces of the law at the speed of the case
     ] = None
+    """Mean contact force or applied forces as a function of speed, for cases with force_from = 'law'; default: every
+    case states a force.
+    """
     note: Annotated[str | None, Field(max_length=4000)] = None
     """Remark for the reader."""
 

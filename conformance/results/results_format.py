@@ -135,8 +135,8 @@ class CaseResult(ResultsPart):
     id: str
     title: str
     verdict: Verdict
-    criteria_verdict: Verdict | None
-    """Verdict by the EN 50318 criteria; null: an assessment by a profile."""
+    criteria_verdict: Verdict | None = None
+    """Verdict by the EN 50318 criteria; null: an assessment by a profile, or a run of a dossier."""
     verification: CaseVerification | None = None
     """Verification; null: the case has no converged values."""
     baseline: Annotated[BaselineComparison | None, Field(exclude_if=is_absent)] = None
@@ -150,10 +150,10 @@ class CaseResult(ResultsPart):
     input_digest: str
     changes: list[str] = []
     """Inputs that were changed on the command line, with the values of the files."""
-    limits_digest: str
-    """SHA-256 of the limits, those of a limits file included."""
-    stated_limits_digest: str
-    """SHA-256 of the limits of the case file or profile, without a limits file."""
+    limits_digest: str | None = None
+    """SHA-256 of the limits, those of a limits file included; null: a run of a dossier, which has tolerances."""
+    stated_limits_digest: str | None = None
+    """SHA-256 of the limits of the case file or profile, without a limits file; null: a run of a dossier."""
     limit_changes: list[str] = []
     """Limits of the case file or profile that a limits file weakens."""
     library: LibraryIdentity

@@ -7,9 +7,6 @@ from a power spectral density.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-
-from pantocheck.model.description.arrays import Array
 
 POINTS_PER_WAVELENGTH = 16
 """Points of a realised irregularity per shortest wavelength: its cubic spline is then accurate to 0.03 %."""
@@ -67,31 +64,3 @@ def realise_irregularity(spectrum: SpectralDensity, length: float, seed: int) ->
 def point_count(spectrum: SpectralDensity, length: float) -> int:
     """Number of intervals between the points of a realised irregularity over a length [m]; even."""
     return 2 * max(2, int(np.ceil(POINTS_PER_WAVELENGTH * spectrum.frequency[-1] * length / 2)))
-
-
-# Cubic spline of an irregularity: its height has no kink, so that it excites no short waves of its own.
-NO_IRREGULARITY = Irregularity((0.0, 1.0), (0.0, 0.0))
-"""Irregularity of a wire without one; adding its height changes no bit."""
-
-
-def spline_polynomials(irregularity: Irregularity) -> Array:
-    """Coefficients of the spline between neighbouring points, highest power of the distance first, (points - 1, 4)."""
-    return np.ascontiguousarray(_spline(irregularity).c.T)
-
-
-def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
-    """Compute the additional heights of a wire.
-
-    Args:
-        irregularity: Points of the irregularity.
-        position: Positions along the track, (n,) [m].
-
-    Returns:
-        Heights, (n,) [m].
-    """
-    inside = np.clip(position, irregularity.position[0], irregularity.position[-1])
-    return np.asarray(_spline(irregularity)(inside))
-
-
-def _spline(irregularity: Irregularity) -> CubicSpline:
-    return CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")

@@ -7,7 +7,7 @@ import numpy as np
 
 from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.catenary import Wire
-from pantocheck.model.description.irregularity import NO_IRREGULARITY, spline_polynomials
+from pantocheck.model.description.irregularity_spline import NO_IRREGULARITY, spline_polynomials
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.connector_step import ConnectorArrays

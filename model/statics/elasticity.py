@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.model.description.arrays import Array, Indices
-from pantocheck.model.description.irregularity import NO_IRREGULARITY, irregularity_height
+from pantocheck.model.description.irregularity_spline import NO_IRREGULARITY, irregularity_height
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility

@@ -118,9 +118,10 @@ class MessengerWireTable(WireTable):
 
     axial_stiffness_EA_N: Annotated[
         float | None,
-        Field(gt=0, le=1e9, description="axial stiffness EA; needed with messenger_support.along_track = 'fixed' [N]"),
+        Field(gt=0, le=1e9),
         NO_FEATURE,  # it acts with messenger_wire_held_along_track only
     ] = None
+    """Axial stiffness EA; needed with messenger_support.along_track = 'fixed' [N]."""
     change: Annotated[
         tuple[WireChange, ...], Field(strict=False, max_length=MOST_LINE_PARTS, exclude_if=is_absent), WIRE_CHANGES
     ] = ()

@@ -144,7 +144,7 @@ class Irregularities(Element):
 
     def irregularity_at(self, position: RealArray) -> RealArray:
         """Heights of the irregularity at positions (n,) [m]; zero on smooth wires [m]."""
-        from pantocheck.model.description.irregularity import irregularity_height
+        from pantocheck.model.description.irregularity_spline import irregularity_height
 
         irregularity = self.built_irregularity
         return np.zeros_like(position) if irregularity is None else irregularity_height(irregularity, position)

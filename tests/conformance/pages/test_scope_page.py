@@ -112,7 +112,6 @@ def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
         (("identical", None, None), "library case"),
         (("modified", "EN 50318:2018", None), "modified copy"),
         (("own", "EN 50318:2018", None), "own case"),
-        ((None, None, None), "–"),
     ],
 )
 def test_origin_states_the_edition_of_library_cases_only(

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
+from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.line.line_discretisation import discretise_line
 from pantocheck.conformance.line.line_drawing import find_deflection
 from pantocheck.conformance.pages.case_figures import line_figures, line_reference
@@ -65,13 +66,15 @@ def test_lists_of_different_length_are_refused() -> None:
 
 
 def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
-    case = {"id": "first", "line_shape": shape_250.model_dump(mode="json"), "run": {"evaluated_m": [240.0, 360.0]}}
+    (drawn,) = select_cases(["en50318-2002/250"])
+    case = build_ungraded(drawn, "skip", "not run").model_copy(update={"id": "first", "line_shape": shape_250})
+    case = case.model_copy(update={"run": case.run.model_copy(update={"evaluated_m": (240.0, 360.0)})})
     [figure] = line_figures(case, ())
     assert figure.caption.startswith("Line at rest, spans 4 to 7: side view, heights enlarged.")
-    second = case | {"id": "second"}
+    second = case.model_copy(update={"id": "second"})
     assert line_figures(second, (case,)) == ()
     [text] = line_reference(second, (case,))
     assert text.text == "Line: as drawn in first."
-    foreign = {"id": "third", "run": {"evaluated_m": None}}
+    foreign = case.model_copy(update={"id": "third", "line_shape": None})
     assert line_figures(foreign, (case, foreign)) == ()
     assert line_reference(foreign, (case, foreign)) == ()

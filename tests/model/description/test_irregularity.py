@@ -17,7 +17,7 @@ from pantocheck.model import (
     simulate_passage,
 )
 from pantocheck.model.description.catenary import Catenary
-from pantocheck.model.description.irregularity import irregularity_height
+from pantocheck.model.description.irregularity_spline import irregularity_height
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.statics.elasticity import height_under_forces
 

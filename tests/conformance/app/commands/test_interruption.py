@@ -23,7 +23,7 @@ from pantocheck.conformance.results.results_reading import read_results
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 
 TRUST: Trust = "secondary"
-GRADING, WRITING = "runner.build_results", "reports.formats.junit.render_junit"
+GRADING, WRITING = "execution.runner.build_results", "pages.junit.render_junit"
 """Functions that are called after the last case; junit.xml is the last of the reports."""
 
 Interrupt = Callable[..., None]
@@ -31,7 +31,7 @@ Interrupt = Callable[..., None]
 # The process sends a signal to itself, so the moment does not depend on the speed of the machine.
 SCRIPT = """
 import os, signal, sys
-from pantocheck.conformance import runner
+from pantocheck.conformance.execution import runner
 from pantocheck.conformance.app.main import main
 signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the parent may ignore it
 build_results = runner.build_results

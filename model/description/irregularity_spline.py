@@ -1,0 +1,33 @@
+"""Cubic spline of an irregularity: its height has no kink, so that it excites no short waves of its own."""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.irregularity import Irregularity
+
+NO_IRREGULARITY = Irregularity((0.0, 1.0), (0.0, 0.0))
+"""Irregularity of a wire without one; adding its height changes no bit."""
+
+
+def spline_polynomials(irregularity: Irregularity) -> Array:
+    """Coefficients of the spline between neighbouring points, highest power of the distance first, (points - 1, 4)."""
+    return np.ascontiguousarray(_spline(irregularity).c.T)
+
+
+def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
+    """Compute the additional heights of a wire.
+
+    Args:
+        irregularity: Points of the irregularity.
+        position: Positions along the track, (n,) [m].
+
+    Returns:
+        Heights, (n,) [m].
+    """
+    inside = np.clip(position, irregularity.position[0], irregularity.position[-1])
+    return np.asarray(_spline(irregularity)(inside))
+
+
+def _spline(irregularity: Irregularity) -> CubicSpline:
+    return CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")
