@@ -284,7 +284,7 @@ def test_show_states_the_forces_of_a_force_law_and_their_sources() -> None:
 
 def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> None:
     """Their imports take longer than the list itself."""
-    code = "import sys; from pantocheck.conformance.app.main import cases_command; print(*sys.modules)"
+    code = "import sys; from pantocheck.conformance.app.commands import cases_command; print(*sys.modules)"
     output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
     assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
 

@@ -117,7 +117,7 @@ def test_second_signal_ends_at_once_and_names_an_earlier_report(
 def test_signal_before_the_first_case_states_that_no_results_are_written(
     arguments: list[str], interrupt: Interrupt
 ) -> None:
-    interrupt("command_line.run_command.run_cases")
+    interrupt("app.commands.run_command.run_cases")
     ended = CliRunner().invoke(app, arguments)
     assert ended.exit_code == 130
     assert ended.stderr == "No results are written.\nInterrupted.\n"
