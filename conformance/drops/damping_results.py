@@ -72,9 +72,6 @@ def build_damping_results(
         source: Name of the file of the modes, for messages.
         options: Coefficients of the wires, and bands of modal damping.
 
-    Returns:
-        Content of damping.json.
-
     Raises:
         InputError: There are too few modes, or too few of them have a computed counterpart.
     """

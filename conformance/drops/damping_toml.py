@@ -21,9 +21,6 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
     Args:
         results: The fit.
         modal: Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
-
-    Returns:
-        Content of damping.toml.
     """
     tables: dict[str, Any] = {
         "trust": "provisional",

@@ -30,9 +30,6 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
     Args:
         path: File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
 
-    Returns:
-        One record per run.
-
     Raises:
         InputError: The file cannot be read, is damaged, or does not describe its channels.
     """
@@ -56,9 +53,6 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
     Args:
         table: One run.
         sidecar: Sidecar of the file; it adds data that the file lacks.
-
-    Returns:
-        Record with its warnings.
 
     Raises:
         InputError: File and sidecar contradict each other, a value is missing, or a unit or direction is not known.

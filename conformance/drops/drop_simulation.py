@@ -50,9 +50,6 @@ def simulate_drop(
         line: Catenary; default: that of the case.
         axes: Axes of each sensor: vertical, and lateral on a line with stagger.
 
-    Returns:
-        Record and motion.
-
     Raises:
         NoInitialState, NoEquilibrium, DidNotConverge: The simulation has no solution.
     """

@@ -24,10 +24,6 @@ SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
 def write_drop_csv(record: DropRecord, path: Path) -> None:
     """Write a record as CSV (decimal points, commas), with a sidecar beside it.
 
-    Args:
-        record: One run.
-        path: The .csv file.
-
     Raises:
         InputError: A file cannot be written, or the name of a channel is not possible in a head line.
     """
@@ -46,10 +42,6 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
 
 def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     """Write the runs of one test as HDF5.
-
-    Args:
-        records: Runs of the test.
-        path: The file.
 
     Raises:
         InputError: The runs differ in channels, rate, quantity or drop, or the file cannot be written.
@@ -84,9 +76,6 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
 
 def check_drop_sidecar(path: Path) -> None:
     """Check that the sidecar of a record replaces no other file, such as the case of the drop.
-
-    Args:
-        path: The record.
 
     Raises:
         InputError: The sidecar would overwrite a file that is not a sidecar of a drop record.

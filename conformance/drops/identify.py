@@ -70,9 +70,6 @@ def identify_modes(
             records.
         progress: Function that receives the name of each step.
 
-    Returns:
-        One identification per line.
-
     Raises:
         InputError: A record cannot be used.
     """

@@ -67,9 +67,6 @@ class LineFit:
 def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
     """Put records of about equal length into one block, cut to the shortest.
 
-    Args:
-        decays: The records.
-
     Returns:
         Samples and sampling interval [s] of each block, each (n, c).
         Block of each record, and its channels in the block.
@@ -107,9 +104,6 @@ def fit_line(
         poles: Selected poles, (m,) [1/s].
         noise: Noise of the channels of each block, each (c,) [unit of the spectrum].
         band: Band of the identification.
-
-    Returns:
-        Poles with covariance, and residues.
     """
     white = whiten(data, noise)
     refined = refine_poles(poles, white, iterations=10)

@@ -102,9 +102,6 @@ def warn_about_overlap(modes: Sequence[Mode]) -> tuple[str, ...]:
 
     Args:
         modes: Identified modes of a line; uncertain and lateral ones do not count.
-
-    Returns:
-        One warning, or none.
     """
     clear = [mode for mode in modes if mode.certain and not mode.lateral]
     frequency = np.array([mode.frequency_Hz for mode in clear])

@@ -240,13 +240,6 @@ class MatchedModes:
 def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
     """Select the modes for a fit: certain, vertical and in a group.
 
-    Args:
-        modes: Identified modes.
-        source: Name of their file, for messages.
-
-    Returns:
-        Usable modes.
-
     Raises:
         InputError: None of the modes is usable.
     """

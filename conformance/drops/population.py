@@ -54,9 +54,6 @@ def identify_population(
 
     A record that cannot be identified on its own is left out of both.
 
-    Args:
-        records, highest, poles, progress: As in `identify_modes`.
-
     Returns:
         At least one test; the tests of a line follow each other.
 

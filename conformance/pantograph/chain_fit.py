@@ -58,9 +58,6 @@ def fit_chain(data: MeasuredStiffness, fixed: RealArray) -> ChainFit:
     Args:
         data: Measured responses.
         fixed: Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); NaN: free.
-
-    Returns:
-        Best fit of all starts.
     """
     coarse = ChainProblem(data.select_rows(_thin_rows(data.frequency)), fixed)
     trials = _try_starts(coarse)
@@ -140,9 +137,6 @@ def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
         fit: Fitted chain.
         is_noise_stated: Whether the weights are the inverse standard deviations of the measurement; otherwise, the size
             of the noise follows from the residuals.
-
-    Returns:
-        Half-widths and correlations.
     """
     jacobian = fit.problem.value_jacobian(fit.values)
     scale = np.linalg.norm(jacobian, axis=0)

@@ -36,9 +36,6 @@ def chain_response(values: RealArray, s: ComplexArray) -> ChainResponse:
     Args:
         values: Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head, (3, n).
         s: Frequencies i omega, (m,) [rad/s].
-
-    Returns:
-        Dynamic stiffness and motions.
     """
     n = values.shape[1]
     elements = values[1][:, None] + s * values[2][:, None]

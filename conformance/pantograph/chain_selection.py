@@ -68,9 +68,6 @@ def fit_chains(records: Sequence[ResponseRecord], task: FitTask) -> ChainSelecti
         records: Measured responses at the centre of the head.
         task: Choices.
 
-    Returns:
-        Fitted chains.
-
     Raises:
         InputError: A response is not that of the centre of the head, or the band has too few rows.
     """

@@ -30,9 +30,6 @@ def build_pantograph(
         working_height: Static height of the head under this force [m].
         wire_height: Nominal height of the contact wire [m].
         aerodynamic_force: Part of the uplift force that acts at the point of the aerodynamic force [N].
-
-    Returns:
-        Pantograph for the simulator.
     """
     model = _build_model(file, uplift_force, working_height, wire_height)
     shift = _aerodynamic_point(file) - _uplift_point(file)

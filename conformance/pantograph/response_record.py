@@ -59,9 +59,6 @@ def read_response(path: Path) -> ResponseRecord:
     Args:
         path: Table, or its sidecar; both have the same stem.
 
-    Returns:
-        The record.
-
     Raises:
         InputError: A file is missing or damaged; a column is unknown, missing or repeated; the number of rows is not
             the stated one; a frequency is missing, repeated or not positive, a modulus is not positive, or a value is

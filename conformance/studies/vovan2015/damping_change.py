@@ -73,9 +73,6 @@ def compare_damping_runs(
 def force_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
     """Changes of the statistics of the contact force [%].
 
-    Args:
-        before, after: Quantities by pantograph and name.
-
     Returns:
         Changes by pantograph and name, without those that one side lacks. The line holds the comparison of the first
         with the last pantograph.
@@ -137,12 +134,7 @@ def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValu
 
 
 def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTable:
-    """Build a table of the changes: printed, computed, and smallest and largest value over shifted sections.
-
-    Args:
-        changes: Computed changes.
-        printed: Changes of the printed values.
-    """
+    """Build a table of the changes: printed, computed, and smallest and largest value over shifted sections."""
     rows = []
     for owner, values in sorted(changes.values.items(), key=lambda item: (item[0] == LINE, item[0])):
         for name, value in values.items():

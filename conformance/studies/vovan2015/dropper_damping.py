@@ -48,10 +48,6 @@ GRADED = "only the elastic force is compensated"
 def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     """Run the passage of a case once for every coefficient and compensation law.
 
-    Args:
-        case: Passage with stated uplift forces.
-        study: Dropper and its stiffness coefficients.
-
     Returns:
         Study with the record of the passage under the damping of the case.
 

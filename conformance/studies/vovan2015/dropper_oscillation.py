@@ -40,9 +40,6 @@ def run_dropper_oscillation(case: Case, study: DropperOscillation) -> Delivered:
         case: Case with a mass drop, and with sensors on contact and messenger wire at a dropper.
         study: Stiffness coefficients, ascending.
 
-    Returns:
-        Study without a record.
-
     Raises:
         InputError: The first two sensors are not on contact and messenger wire at one position.
     """
@@ -94,9 +91,6 @@ def compare_oscillations(oscillation: list[RealArray], velocity: list[RealArray]
             without damping, each (n,) [m/s].
         velocity: Velocity of the contact wire at the dropper, in the same order, each (n,) [m/s].
         time: Time after the release, (n,) [s].
-
-    Returns:
-        Values by name of quantity.
     """
     remaining = [_window_rms(signal, time, LATE_S) / _window_rms(signal, time, EARLY_S) for signal in oscillation]
     changes = [_rms(other - velocity[0]) / _rms(velocity[0]) for other in velocity[1:]]

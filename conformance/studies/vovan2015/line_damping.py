@@ -109,9 +109,6 @@ HIGHEST_HZ = 6.0
 def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     """Compute the quantities by which Vo Van, Balmes and Lorang (2015) describe groups of span modes.
 
-    Args:
-        modes: Identified modes.
-
     Returns:
         Values by name of quantity. Lists start with group 1. Quantities that need more modes are left out.
     """
@@ -142,9 +139,6 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
 
 def compute_population_findings(population: PopulationFile) -> dict[str, Value]:
     """Quantities by which Vo Van, Balmes and Lorang (2015) describe all tests, each identified on its own.
-
-    Args:
-        population: Population of tests.
 
     Returns:
         Values by name of quantity, without those that need more tests or an outlier.

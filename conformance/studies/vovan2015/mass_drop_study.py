@@ -122,14 +122,7 @@ def _draw_observability(results: DampingResults) -> Chart:
 #
 # The first of the compared models of a case is the reference model of the paper.
 def run_mass_drop_study(case: Case) -> Delivered:
-    """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit.
-
-    Args:
-        case: Case with a mass drop.
-
-    Returns:
-        Study without a record.
-    """
+    """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit."""
     begin = time.perf_counter()
     identified = identify_drops(case)
     modes = identified.identification.modes

@@ -24,9 +24,6 @@ def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, print
     Args:
         limits: Limits of the case; their notes are the findings in words.
         computed, printed: Values by pantograph and name.
-
-    Returns:
-        Findings of the paper.
     """
     rows = []
     for limit in limits:

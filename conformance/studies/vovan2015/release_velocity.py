@@ -52,13 +52,6 @@ class VelocityWindow:
 def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     """Simulate the first drop of a case under each damping model and compare the velocity in every time window.
 
-    Args:
-        case: Case with a mass drop.
-        study: Damping models, sensor and time windows.
-
-    Returns:
-        Study without a record.
-
     Raises:
         InputError: The sensor or the model in place of the record does not exist, or a window lies outside the record.
     """
@@ -120,9 +113,6 @@ def compare_velocities(
     Args:
         record, reference, rayleigh, modal: Velocity of the record, under the reference model, with the fitted Rayleigh
             damping, and with modal damping besides.
-
-    Returns:
-        Values by name of quantity.
     """
     first = rayleigh[0]
     return {

@@ -26,15 +26,7 @@ FrequencyBands = tuple[tuple[float, float], ...]
 
 
 def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
-    """Simulate and identify the drops of a case without and with the dampers, and compare the bands.
-
-    Args:
-        case: Case with a mass drop.
-        study: Damper and frequency bands.
-
-    Returns:
-        Study without a record.
-    """
+    """Simulate and identify the drops of a case without and with the dampers, and compare the bands."""
     begin = time.perf_counter()
     line = build_catenary(case.line)
     arms = tuple(replace(arm, vertical_damper=study.damper_N_s_m) for arm in line.steady_arms)
