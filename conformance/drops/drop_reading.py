@@ -13,12 +13,12 @@ from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 from pantocheck.conformance.drops.drop_record import (
     DropChannel,
     DropDescription,
-    DropLine,
     DropRecord,
     find_sampling_rate,
 )
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns, read_drop_sidecar
 from pantocheck.conformance.records.force_checks import find_clipping
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 LARGEST_DROP = 30_000_000
 """Largest number of values in a record: 20 channels at 1 kHz for 25 minutes. Reading them takes about 1 GB."""
@@ -164,17 +164,17 @@ def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescr
     return drop
 
 
-def build_line(attributes: Attributes, where: str) -> DropLine:
+def build_line(attributes: Attributes, where: str) -> MeasuredLine:
     """Build the description of the line of a record; `where` is the name of the record in messages.
 
     Raises:
         InputError: An attribute is not a number.
     """
     spans = np.atleast_1d(attributes.get("spans_m", ()))
-    return DropLine(
-        tuple(_convert_number(span, "spans_m", where) for span in spans),
-        _read_number(attributes, "cw_tension_n", where),
-        _read_number(attributes, "mw_tension_n", where),
+    return MeasuredLine(
+        spans_m=tuple(_convert_number(span, "spans_m", where) for span in spans),
+        contact_wire_tension_N=_read_number(attributes, "cw_tension_n", where),
+        messenger_wire_tension_N=_read_number(attributes, "mw_tension_n", where),
     )
 
 

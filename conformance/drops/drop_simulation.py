@@ -11,8 +11,9 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.measured_table import Axis
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
@@ -132,5 +133,9 @@ def _build_record(case: Case, number: int, signals: RealArray, axes: tuple[Axis,
         ),
         quantity=mass_drop.quantity,
         drop=DropDescription(drop.mass_kg, SHORT_NAME[drop.wire], drop.x_m, mass_drop.hanging_s),
-        line=DropLine(line.geometry.span_lengths, line.contact_wire.tension_N, line.messenger_wire.tension_N),
+        line=MeasuredLine(
+            spans_m=line.geometry.span_lengths,
+            contact_wire_tension_N=line.contact_wire.tension_N,
+            messenger_wire_tension_N=line.messenger_wire.tension_N,
+        ),
     )

@@ -1,5 +1,6 @@
-"""Writing of mass-drop records as CSV with a sidecar, and as HDF5; reading these files gives the same record."""
+"""Writing of mass-drop records in the format of a suffix; reading these files gives the same record."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import tomli_w
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.files import produce_atomically, write_atomically
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.measured_table import CSV, HDF5, UFF, TableFormat
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.core.units import SI_UNITS
 from pantocheck.conformance.drops.drop_record import DropRecord
@@ -63,9 +65,9 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
         "drop_wire": first.drop.wire,
         "drop_position_m": first.drop.position,
         "trigger_nominal_s": first.drop.trigger_nominal,
-        "spans_m": list(first.line.spans) or None,
-        "cw_tension_n": first.line.contact_wire_tension,
-        "mw_tension_n": first.line.messenger_wire_tension,
+        "spans_m": list(first.line.spans_m) or None,
+        "cw_tension_n": first.line.contact_wire_tension_N,
+        "mw_tension_n": first.line.messenger_wire_tension_N,
     }
     channels = _list_channels(first)
     datasets: dict[str, Any] = {f"channels/{key}": [channel[key] for channel in channels] for key in channels[0]}
@@ -95,9 +97,9 @@ def write_drop_sidecar(record: DropRecord, path: Path) -> None:
     tables: dict[str, dict[str, Any]] = {
         "test": {
             "name": record.name,
-            "spans_m": list(record.line.spans) or None,
-            "cw_tension_n": record.line.contact_wire_tension,
-            "mw_tension_n": record.line.messenger_wire_tension,
+            "spans_m": list(record.line.spans_m) or None,
+            "cw_tension_n": record.line.contact_wire_tension_N,
+            "mw_tension_n": record.line.messenger_wire_tension_N,
         },
         "drop": {"mass_kg": record.drop.mass, "wire": record.drop.wire, "position_m": record.drop.position},
         "record": {
@@ -130,3 +132,40 @@ def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
 def _select_known(table: dict[str, Any]) -> dict[str, Any]:
     """Table without the values None, which TOML and HDF5 do not have."""
     return {key: value for key, value in table.items() if value is not None}
+
+
+# Formats of written records, by the suffix of the file.
+def _write_universal_file(record: DropRecord, path: Path) -> None:
+    from pantocheck.conformance.drops.uff_writing import write_drop_uff  # an optional package
+
+    write_drop_uff(record, path)
+
+
+DROP_WRITERS: dict[TableFormat, Callable[[DropRecord, Path], None]] = {
+    UFF: _write_universal_file,
+    CSV: write_drop_csv,
+    HDF5: lambda record, path: write_drop_hdf5((record,), path),
+}
+"""Writer of a record by its format."""
+
+FORMATS_WITH_SIDECAR = (UFF, CSV)
+"""Formats whose writer puts a sidecar beside the record."""
+
+
+def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
+    """Writer of the format of a file, by its suffix.
+
+    Raises:
+        InputError: Drop records are not written in this format, or its package is not installed.
+    """
+    suffixes = {table_format.suffixes[0]: table_format for table_format in DROP_WRITERS}
+    if (table_format := suffixes.get(out.suffix.lower())) is None:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(suffixes)}.")
+    table_format.require_library(out)
+    return DROP_WRITERS[table_format]
+
+
+def check_drop_target(out: Path) -> None:
+    """Check before a simulation that its record replaces no other file, as in `check_drop_sidecar`."""
+    if any(out.suffix.lower() in table_format.suffixes for table_format in FORMATS_WITH_SIDECAR):
+        check_drop_sidecar(out)

@@ -46,7 +46,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         band_Hz=(fit.band.low, fit.band.high),
         misfit=fit.misfit,
         warnings=(*identification.warnings, *warn_about_overlap(modes)),
-        spans_m=decays[0].record.line.spans,
+        spans_m=decays[0].record.line.spans_m,
         records=tuple(_record(decay) for decay in decays),
         groups=_groups(modes),
         modes=modes,

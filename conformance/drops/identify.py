@@ -93,7 +93,7 @@ def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
 def _line_key(record: DropRecord) -> object:
     line = record.line
     # Records without data of their line count as records of one line only if they are in the same file.
-    return line if line.spans else (line, record.file or record.source)
+    return line if line.spans_m else (line, record.file or record.source)
 
 
 def _identify_line(
@@ -111,7 +111,7 @@ def identify_decays(
     decays: list[PreparedDecay], band: FrequencyBand, start: ComplexArray | None, progress: Callable[[str], None]
 ) -> Identification:
     """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
-    name, spans = decays[0].record.name, decays[0].record.line.spans
+    name, spans = decays[0].record.name, decays[0].record.line.spans_m
     samples, places = share_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles")

@@ -4,11 +4,10 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import filter_gain
-from pantocheck.conformance.drops.drop_record import DropLine
 from pantocheck.conformance.drops.line_fit import FittedBlock, LineFit, RecordFit
 from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.projection import build_block, estimate_noise, residue_spread, solve_residues
-from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode, SensorShape
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
 UNCERTAIN = 0.05
 """Relative standard deviation above which a damping ratio is uncertain."""
@@ -55,7 +54,7 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         sensor_shape=_sensor_shape(best, residues, spread, scale),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
-        line=describe_line(decay.record.line),
+        line=decay.record.line,
         certain=damping_std < UNCERTAIN * damping,
         lateral=lateral_share is not None and lateral_share > LATERAL,
         amplitude_at_release=_finite(amplitude),
@@ -64,15 +63,6 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         half_power_points=2 * damping * frequency * linear.duration,
     )
     return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
-
-
-def describe_line(line: DropLine) -> MeasuredLine:
-    """Facts about the line of a record, as a damping fit compares them with its line."""
-    return MeasuredLine(
-        spans_m=line.spans,
-        contact_wire_tension_N=line.contact_wire_tension,
-        messenger_wire_tension_N=line.messenger_wire_tension,
-    )
 
 
 def _phase_collinearity(shape: ComplexArray) -> float | None:

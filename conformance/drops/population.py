@@ -188,8 +188,8 @@ FACTORS: dict[FactorName, Callable[[PopulationTest], str]] = {
     "drop wire": lambda test: test.record.drop.wire or "unknown",
     "drop position": lambda test: _format_known(test.record.drop.position, "m"),
     "sensors": lambda test: ", ".join(list_sensors(test)),
-    "contact wire tension": lambda test: _format_known(test.record.line.contact_wire_tension, "N"),
-    "messenger wire tension": lambda test: _format_known(test.record.line.messenger_wire_tension, "N"),
+    "contact wire tension": lambda test: _format_known(test.record.line.contact_wire_tension_N, "N"),
+    "messenger wire tension": lambda test: _format_known(test.record.line.messenger_wire_tension_N, "N"),
 }
 """Level of a test in each factor."""
 

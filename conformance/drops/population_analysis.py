@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.drops.mode_building import describe_line
 from pantocheck.conformance.drops.mode_groups import find_group_outliers
 from pantocheck.conformance.drops.population import (
     Population,
@@ -158,7 +157,7 @@ def _describe_record(test: PopulationTest, groups: list[GroupOverTests], t: int)
         mass_kg=record.drop.mass,
         drop_wire=record.drop.wire,
         drop_position_m=record.drop.position,
-        line=describe_line(record.line),
+        line=record.line,
         sensors=list_sensors(test),
         modes=len(modes),
         certain=sum(mode.certain for mode in modes),

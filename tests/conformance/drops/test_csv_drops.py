@@ -7,10 +7,9 @@ import pytest
 
 from helpers.drop_records import assert_same_record
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.drop_formats import select_drop_writer
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.drop_writing import write_drop_csv
+from pantocheck.conformance.drops.drop_writing import select_drop_writer, write_drop_csv
 
 
 def test_csv_reads_back(tmp_path: Path, record: DropRecord) -> None:

@@ -13,7 +13,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import find_linear_decay, find_release, prepare_decay
 from pantocheck.conformance.drops.drop_reading import read_drop_records
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import _find_longest, _try_start_orders, identify_modes
@@ -22,7 +22,7 @@ from pantocheck.conformance.drops.mode_groups import find_group_outliers, number
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
 from pantocheck.conformance.drops.start_poles import read_poles
-from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
 
 SPANS = (60.0,) * 6
 
@@ -41,7 +41,7 @@ def build_record(synthetic: SyntheticDrop, name: str = "synthetic", lateral: Rea
         signals.copy(),
         channels,
         drop=DropDescription(20, "CW", 100, 5.0),
-        line=DropLine(SPANS),
+        line=MeasuredLine(spans_m=SPANS),
     )
 
 
@@ -199,7 +199,7 @@ def test_files_of_one_name_without_line_data_belong_to_two_lines(tmp_path: Path)
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         record = build_record(drop(random, span_modes(random, 6), duration=40.0, rate=50.0, weak=0.0))
-        write_drop_csv(replace(record, line=DropLine()), tmp_path / folder / "T1.csv")
+        write_drop_csv(replace(record, line=MeasuredLine()), tmp_path / folder / "T1.csv")
         records += read_drop_records(tmp_path / folder / "T1.csv")
     assert [record.source for record in records] == ["T1.csv", "T1.csv"]
     assert len(identify_modes(tuple(records), highest=4.0)) == 2

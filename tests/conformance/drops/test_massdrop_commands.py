@@ -12,10 +12,11 @@ from typer.testing import CliRunner
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.model import discretise
 from pantocheck.model.modal.modes import compute_modes, damping_ratios, deflection_at
 
@@ -51,7 +52,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
     signal += 1e-4 * random.standard_normal(signal.shape)
     channels = tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (_, wire, x) in enumerate(SENSORS, 1))
-    facts = DropLine(file.geometry.span_lengths, file.contact_wire.tension_N, file.messenger_wire.tension_N)
+    facts = MeasuredLine(
+        spans_m=file.geometry.span_lengths,
+        contact_wire_tension_N=file.contact_wire.tension_N,
+        messenger_wire_tension_N=file.messenger_wire.tension_N,
+    )
     drop = DropDescription(20, "CW", 150.0, RELEASE)
     record = DropRecord("T", "T", RATE, signal, channels, drop=drop, line=facts)
     write_drop_csv(record, folder / "T.csv")

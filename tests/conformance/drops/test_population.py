@@ -8,9 +8,10 @@ import pytest
 from helpers.synthetic_drops import drop
 from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.population import Population, find_joint_mode, identify_population
 from pantocheck.conformance.drops.population_analysis import analyse_population
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.results.population_format import PopulationFile
 
 RATIOS = {1: 0.0050, 2: 0.0030, 3: 0.0024}
@@ -35,7 +36,13 @@ def build_record(name: str, seed: int, tension: float, rope: float = 0.0, mass: 
     channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 40.0 * i) for i in (1, 2, 3))
     facts = DropDescription(mass, "CW", 100.0, 5.0)
     return DropRecord(
-        name, name, 25.0, synthetic.samples, channels, drop=facts, line=DropLine((60.0,) * 5, 20e3, tension)
+        name,
+        name,
+        25.0,
+        synthetic.samples,
+        channels,
+        drop=facts,
+        line=MeasuredLine(spans_m=(60.0,) * 5, contact_wire_tension_N=20e3, messenger_wire_tension_N=tension),
     )
 
 
