@@ -1,6 +1,8 @@
-"""Reading of mass-drop records in any format of `input_files.table_formats`."""
+"""Reading of mass-drop records in any format of `TABLE_FORMATS`."""
 
+from contextlib import suppress
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -184,9 +186,9 @@ def _read_number(attributes: Attributes, name: str, where: str) -> float | None:
 
 
 def _convert_number(value: Any, name: str, where: str) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Write a number in file or sidecar."
-        ) from None
+    with suppress(TypeError, ValueError):
+        if isfinite(number := float(value)):
+            return number
+    raise InputError(
+        f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Write a number in file or sidecar."
+    )

@@ -1,4 +1,4 @@
-"""Formats in which modes are exported for other programs."""
+"""Export of modes for other programs: a table of comma-separated values, or a universal file."""
 
 import csv
 import io
@@ -12,22 +12,12 @@ from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import round_significant
-from pantocheck.conformance.core.uff_table import encode_identification_line, write_data_sets
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
-# Modes as a table of comma-separated values: one row per mode, three columns per sensor.
+# Table of comma-separated values: one row per mode, three columns per sensor.
 MODE_COLUMNS = (
-    *(
-        "record",
-        "frequency_Hz",
-        "frequency_std_Hz",
-        "damping_ratio",
-        "damping_ratio_std",
-        "group",
-        "certain",
-        "outlier",
-    ),
-    *("lateral", "error", "phase_collinearity", "half_power_points", "amplitude_at_release"),
+    *("record", "frequency_Hz", "frequency_std_Hz", "damping_ratio", "damping_ratio_std", "group", "certain"),
+    *("outlier", "lateral", "error", "phase_collinearity", "half_power_points", "amplitude_at_release"),
 )
 """Columns of the CSV file that have the names of keys of modes.json."""
 
@@ -88,38 +78,7 @@ def _format_cell(value: object) -> object:
     return repr(round_significant(value)) if isinstance(value, float) else value
 
 
-ModeWriter = Callable[[tuple[Mode, ...], Path], None]
-
-
-def _write_universal_file(modes: tuple[Mode, ...], path: Path) -> None:
-    # Imported here: pyuff takes 0.2 s, which an identification without this export does not need.
-    write_modes_uff(modes, path)
-
-
-MODE_FORMATS: dict[str, ModeWriter] = {
-    ".csv": write_modes_csv,
-    ".uff": _write_universal_file,
-    ".unv": _write_universal_file,
-}
-"""Writer of modes by the suffix of the file."""
-
-
-def select_mode_writer(path: Path) -> ModeWriter:
-    """Writer of the format that the suffix of a file names.
-
-    Raises:
-        InputError: No writer has this suffix, or its package is not installed.
-    """
-    if (writer := MODE_FORMATS.get(path.suffix.lower())) is None:
-        raise InputError(
-            str(path), f"format '{path.suffix}' cannot be written", f"Write one of {', '.join(MODE_FORMATS)}."
-        )
-    if writer is _write_universal_file:
-        require_package("pyuff", str(path))
-    return writer
-
-
-# Modes as a universal file in ASCII: units (data set 164), sensors as nodes (15) and shapes (55).
+# Universal file in ASCII: units (data set 164), sensors as nodes (15) and shapes (55).
 SI_SYSTEM = {
     "type": 164,
     "units_code": 1,
@@ -142,6 +101,8 @@ def write_modes_uff(modes: tuple[Mode, ...], path: Path) -> None:
     Raises:
         InputError: The file cannot be written.
     """
+    from pantocheck.conformance.core.uff_table import write_data_sets  # an optional package
+
     nodes = number_nodes(list_sensor_places(modes))
     shapes = [_build_shape_set(mode, number, nodes) for number, mode in enumerate(modes, 1)]
     write_data_sets(path, [SI_SYSTEM, *_build_node_sets(nodes), *shapes])
@@ -164,6 +125,8 @@ def _build_node_sets(nodes: dict[SensorPlace, int]) -> list[dict[str, Any]]:
 
 def _build_shape_set(mode: Mode, number: int, nodes: dict[SensorPlace, int]) -> dict[str, Any]:
     """Data set 55 of a mode; its identification lines name the record and the properties of the mode."""
+    from pantocheck.conformance.core.uff_table import encode_identification_line
+
     omega, ratio = 2 * np.pi * mode.frequency_Hz, mode.damping_ratio
     values = np.array([complex(component.re, component.im) for component in mode.sensor_shape])
     group = "no group of span modes" if mode.group is None else f"group {mode.group} of span modes"
@@ -191,3 +154,29 @@ def _build_shape_set(mode: Mode, number: int, nodes: dict[SensorPlace, int]) -> 
         "r2": np.zeros_like(values),
         "r3": values,
     }
+
+
+# Formats by the suffix of the file.
+ModeWriter = Callable[[tuple[Mode, ...], Path], None]
+
+MODE_FORMATS: dict[str, ModeWriter] = {
+    ".csv": write_modes_csv,
+    ".uff": write_modes_uff,
+    ".unv": write_modes_uff,
+}
+"""Writer of modes by the suffix of the file."""
+
+
+def select_mode_writer(path: Path) -> ModeWriter:
+    """Writer of the format that the suffix of a file names.
+
+    Raises:
+        InputError: No writer has this suffix, or its package is not installed.
+    """
+    if (writer := MODE_FORMATS.get(path.suffix.lower())) is None:
+        raise InputError(
+            str(path), f"format '{path.suffix}' cannot be written", f"Write one of {', '.join(MODE_FORMATS)}."
+        )
+    if writer is write_modes_uff:
+        require_package("pyuff", str(path))
+    return writer

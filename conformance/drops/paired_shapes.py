@@ -6,13 +6,15 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.drops.damping_model import (
+    MATRICES,
+    DampingBasis,
     DampingFit,
     MeasuredModes,
+    Term,
     fit_deviation,
     fit_weights,
     solve_weighted,
 )
-from pantocheck.conformance.drops.damping_terms import MATRICES, DampingBasis, Term
 from pantocheck.conformance.drops.mode_matching import KIND_OF_WIRE, MatchedModes, Positions, find_sensor_positions
 from pantocheck.conformance.results.damping_format import (
     Coefficient,

@@ -19,8 +19,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.dossier.dossier_reading import read_dossier
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
-from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
 from pantocheck.conformance.execution.plan import read_plan
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder

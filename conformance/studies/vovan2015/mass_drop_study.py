@@ -10,8 +10,8 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series, TextTable
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.damping_model import MATRICES, WIRES
 from pantocheck.conformance.drops.damping_results import build_damping_results
-from pantocheck.conformance.drops.damping_terms import MATRICES, WIRES
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop
 from pantocheck.conformance.drops.identify import Identification
 from pantocheck.conformance.drops.population_analysis import analyse_population

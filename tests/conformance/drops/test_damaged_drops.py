@@ -12,8 +12,7 @@ from helpers.drop_records import RATE
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
 
 Damage = Callable[[Path, DropRecord], Path]
 """Writes a record into a folder, damages it and gives its path."""

@@ -18,8 +18,7 @@ from pantocheck.conformance.core.measured_table import MeasuredTable, TableColum
 from pantocheck.conformance.drops.drop_reading import assemble_drop_record, build_drop, build_line, read_drop_records
 from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar
-from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 

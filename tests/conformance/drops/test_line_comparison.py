@@ -20,8 +20,7 @@ from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
-from pantocheck.conformance.drops.damping_results import build_damping_results
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_results import build_damping_results, write_damping_toml
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.drops.paired_shapes import judge_coefficients
 from pantocheck.conformance.line.catenary_model import build_catenary

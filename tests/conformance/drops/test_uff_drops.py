@@ -9,8 +9,7 @@ import pytest
 from helpers.drop_records import assert_same_record
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.drop_writing import write_drop_csv
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_uff
 
 
 @pytest.mark.parametrize("form", ["ascii", "binary"])
