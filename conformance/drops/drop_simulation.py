@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.measured_table import Axis
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER, DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
@@ -19,7 +19,6 @@ from pantocheck.model import Catenary, Kind
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 
 SHORT_NAME = {"contact_wire": "CW", "messenger_wire": "MW"}
-ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 STOP_BAND_DB = 90.0
 PASS_BAND = 0.8
 """Upper edge of the pass band of the anti-alias filter, relative to half the rate of the record."""
@@ -72,7 +71,7 @@ def simulate_drop(
         ),
         progress,
     )
-    motion = decay.motion[:, :, ORDER[mass_drop.quantity]].T
+    motion = decay.motion[:, :, MOTION_ORDER[mass_drop.quantity]].T
     signals = decimate(motion, round(1 / mass_drop.rate_Hz / discretisation.time_step_s))
     if mass_drop.noise_rms:
         # The noise differs between drops; it is the same in every run and under every damping model.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.figure_data import Chart, TextTable
 from pantocheck.conformance.grading.record_uncertainty import MIN_SECTIONS, largest_changes
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
@@ -14,7 +14,6 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.runs.system import (
     Delivered,
     Errored,
@@ -25,7 +24,11 @@ from pantocheck.conformance.runs.system import (
     missing_record_reason,
 )
 from pantocheck.conformance.studies.damping_sensitivity import PrintedValues, draw_band_bars, list_pantographs
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import (
+    build_findings_table,
+    build_provenance_table,
+    draw_curve,
+)
 
 COMPARED_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
 """Quantities of Table 1 of Vo Van, Balmes and Lorang (2015)."""
@@ -240,9 +243,7 @@ def _draw_rear_force(case: Case, span: int, signals: Mapping[str, RecordSignals]
                 continue
             position = record.position[-1]
             inside = (position >= start) & (position <= end)
-            series.append(
-                Series(label=model, style="line", x=thin_series(position[inside]), y=thin_series(force[inside]))
-            )
+            series.append(draw_curve(model, position[inside], force[inside]))
         if series:
             charts.append(
                 Chart(

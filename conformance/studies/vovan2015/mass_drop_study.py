@@ -17,7 +17,6 @@ from pantocheck.conformance.drops.identify import Identification
 from pantocheck.conformance.drops.population_analysis import analyse_population
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
@@ -34,7 +33,7 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     identify_tests,
     select_certain,
 )
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve
 from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modes import compute_modes_below
 
@@ -182,10 +181,7 @@ def _compute_ratios(case: Case) -> ComputedRatios:
 def _draw_frequencies(case: Case, identified: IdentifiedDrops, computed: ComputedRatios, bound: list[Mark]) -> Chart:
     """Damping ratio against frequency, identified and computed from each damping model (Figure 7 of the paper)."""
     frequency, ratios = computed
-    curves = [
-        Series(label=name, style="line", x=thin_series(frequency), y=thin_series(100 * ratio))
-        for name, ratio in ratios.items()
-    ]
+    curves = [draw_curve(name, frequency, 100 * ratio) for name, ratio in ratios.items()]
     groups = [
         Mark(label=f"printed: group {limit.item}", axis="x", low=limit.lower, high=limit.upper)
         for limit in case.limits

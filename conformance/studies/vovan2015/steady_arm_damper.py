@@ -20,7 +20,7 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     draw_damping_ratios,
     identify_drops,
 )
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table
 
 FrequencyBands = tuple[tuple[float, float], ...]
 

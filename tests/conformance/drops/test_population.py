@@ -9,8 +9,8 @@ from helpers.synthetic_drops import drop
 from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
-from pantocheck.conformance.drops.population import Population, find_joint_mode, identify_population
-from pantocheck.conformance.drops.population_analysis import analyse_population
+from pantocheck.conformance.drops.population import Population, identify_population
+from pantocheck.conformance.drops.population_analysis import analyse_population, find_joint_mode
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.results.population_format import PopulationFile
 

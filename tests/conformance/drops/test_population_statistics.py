@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.drops.population import measure_variability, median_interval, rank_correlation
+from pantocheck.conformance.drops.population_analysis import measure_variability, median_interval, rank_correlation
 
 
 def test_interval_of_one_test_is_that_of_its_standard_deviations() -> None:

@@ -7,7 +7,7 @@ from pantocheck.conformance.core.units import STANDARD_GRAVITY
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import prepare_decay
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
-from pantocheck.conformance.drops.frequency_response import compute_frequency_response
+from pantocheck.conformance.drops.identification_analysis import compute_frequency_response
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.drops.repeatability import compare_records
 from pantocheck.conformance.results.identified_modes import MeasuredLine

@@ -11,7 +11,11 @@ from helpers.lines import simple_line
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.studies.vovan2015.dropper_damping import compare_bands, find_transition, run_dropper_damping
+from pantocheck.conformance.studies.vovan2015.dropper_coefficient import (
+    compare_bands,
+    find_transition,
+    run_dropper_damping,
+)
 from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
 

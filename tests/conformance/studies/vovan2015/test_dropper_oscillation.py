@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.studies.vovan2015.dropper_oscillation import (
+from pantocheck.conformance.studies.vovan2015.dropper_coefficient import (
     compare_oscillations,
     find_oscillation,
     run_dropper_oscillation,
