@@ -13,6 +13,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.measured_table import Axis
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER, DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
 from pantocheck.model import Catenary, Kind
@@ -132,9 +133,14 @@ def _build_record(case: Case, number: int, signals: RealArray, axes: tuple[Axis,
         ),
         quantity=mass_drop.quantity,
         drop=DropDescription(drop.mass_kg, SHORT_NAME[drop.wire], drop.x_m, mass_drop.hanging_s),
-        line=MeasuredLine(
-            spans_m=line.geometry.span_lengths,
-            contact_wire_tension_N=line.contact_wire.tension_N,
-            messenger_wire_tension_N=line.messenger_wire.tension_N,
-        ),
+        line=describe_line(line),
+    )
+
+
+def describe_line(line: LineFile) -> MeasuredLine:
+    """Properties of a line as a record of its drops states them."""
+    return MeasuredLine(
+        spans_m=line.geometry.span_lengths,
+        contact_wire_tension_N=line.contact_wire.tension_N,
+        messenger_wire_tension_N=line.messenger_wire.tension_N,
     )

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from helpers.static_records import read_unequal_line
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
-from pantocheck.conformance.drops.drop_simulation import decimate
+from pantocheck.conformance.drops.drop_simulation import decimate, describe_line
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.model.dynamics.drop_values import MassDropSetup
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
@@ -67,11 +66,7 @@ def record_drop(
         channels=tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (wire, x) in enumerate(SENSORS, 1)),
         quantity=quantity,  # type: ignore[arg-type]
         drop=DropDescription(MASS, "CW", PLACE, RELEASE),
-        line=MeasuredLine(
-            spans_m=line.geometry.span_lengths,
-            contact_wire_tension_N=line.contact_wire.tension_N,
-            messenger_wire_tension_N=line.messenger_wire.tension_N,
-        ),
+        line=describe_line(line),
     )
     return replace(record, **changes)
 

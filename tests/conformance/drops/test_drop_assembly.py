@@ -40,15 +40,6 @@ def test_every_unit_of_a_sensor_becomes_si(tmp_path: Path, record: DropRecord, u
     assert read.signals == pytest.approx(factor * record.signals, rel=1e-7, abs=1e-8 * factor)
 
 
-def test_clipping_is_marked(tmp_path: Path, record: DropRecord) -> None:
-    signals = record.signals.copy()
-    signals[50:60, 0] = signals[:, 0].max()
-    clipped = DropRecord(record.name, record.source, RATE, signals, record.channels, drop=record.drop, line=record.line)
-    write_drop_csv(clipped, tmp_path / "r.csv")
-    (read,) = read_drop_records(tmp_path / "r.csv")
-    assert any("clipped" in text for text in read.warnings)
-
-
 def test_dead_channel_is_refused(tmp_path: Path, record: DropRecord) -> None:
     signals = record.signals.copy()
     signals[:, 1] = 0.25
