@@ -14,21 +14,19 @@ from pantocheck.conformance.drops.damping_model import (
     MATRICES,
     MODAL_GROUPS,
     TABLE_OF_KIND,
+    THRESHOLDS,
     WIRES,
     DampingBasis,
     build_damping_basis,
+    compute_observability,
     fit_damping_model,
     fit_modal_bands,
+    judge_coefficients,
     list_other_damping,
 )
 from pantocheck.conformance.drops.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.drops.mode_matching import MatchedModes, match_modes, select_usable
-from pantocheck.conformance.drops.paired_shapes import (
-    THRESHOLDS,
-    compute_observability,
-    judge_coefficients,
-    list_paired_shapes,
-)
+from pantocheck.conformance.drops.paired_shapes import list_paired_shapes
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,

@@ -10,8 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, fit_line, share_blocks
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, build_modes, fit_line, share_blocks
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
     estimate_block_noise,

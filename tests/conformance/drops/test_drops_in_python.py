@@ -20,7 +20,7 @@ from pantocheck.conformance import (
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import build_modes
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 

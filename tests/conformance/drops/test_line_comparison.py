@@ -20,10 +20,10 @@ from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.drops.damping_model import judge_coefficients
 from pantocheck.conformance.drops.damping_results import build_damping_results, write_damping_toml
 from pantocheck.conformance.drops.drop_simulation import describe_line
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
-from pantocheck.conformance.drops.paired_shapes import judge_coefficients
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.line.line_file import LineFile

@@ -10,8 +10,7 @@ from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.units import STANDARD_GRAVITY
 from pantocheck.conformance.drops.identification_analysis import analyse_identification, compute_frequency_response
 from pantocheck.conformance.drops.identify import Identification
-from pantocheck.conformance.drops.line_fit import LineFit
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import LineFit, build_modes
 
 FREQUENCY, RATIO = np.array([0.9, 1.7, 2.6]), np.array([0.012, 0.010, 0.008])
 POLES = 2 * np.pi * FREQUENCY * (-RATIO + 1j * np.sqrt(1 - RATIO**2))

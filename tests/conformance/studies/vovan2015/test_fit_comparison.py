@@ -7,7 +7,7 @@ import pytest
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import Chart
-from pantocheck.conformance.drops import paired_shapes
+from pantocheck.conformance.drops.damping_model import THRESHOLDS
 from pantocheck.conformance.pages.damping_figures import draw_observability
 from pantocheck.conformance.pages.damping_page import describe_observability
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
@@ -31,7 +31,7 @@ OBSERVED = tuple(
         ("steady_arm", 0.0, 0.0, False),
     )
 )
-RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED, thresholds=paired_shapes.THRESHOLDS)
+RESULTS = DampingResults.model_construct(coefficients=(), observability=OBSERVED, thresholds=THRESHOLDS)
 
 
 @pytest.fixture
@@ -55,7 +55,7 @@ def test_observable_coefficients_are_counted_for_the_wires_and_for_the_rest() ->
 
 def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart: Chart) -> None:
     assert "above the dashed line it is observable" not in chart.caption
-    assert f"{100 * paired_shapes.THRESHOLDS.largest_share:g} %" in chart.caption
+    assert f"{100 * THRESHOLDS.largest_share:g} %" in chart.caption
     assert chart.marks[0].label == "needed"
     described = re.findall(r"(\w+) mass: [\d.e+-]+, (observable|not observable)", chart.alternative)
     assert dict(described) == {
@@ -66,8 +66,8 @@ def test_well_determined_coefficient_with_a_small_share_is_not_observable(chart:
 
 
 def test_drawn_thresholds_are_those_of_the_fit(chart: Chart) -> None:
-    assert chart.marks[0].low == paired_shapes.THRESHOLDS.plausible_over_std
-    rows, thresholds = OBSERVED, paired_shapes.THRESHOLDS
+    assert chart.marks[0].low == THRESHOLDS.plausible_over_std
+    rows, thresholds = OBSERVED, THRESHOLDS
     left, right = draw_observability.__wrapped__(rows, thresholds).axes
     assert set(left.lines[0].get_xdata()) == {100 * thresholds.largest_share}
     assert set(right.lines[0].get_xdata()) == {thresholds.plausible_over_std}
