@@ -244,12 +244,7 @@ def _confidence_intervals(
 def fit_modal_bands(measured: MeasuredModes, groups: int = MODAL_GROUPS) -> tuple[ModalBand, ...]:
     """Median measured damping ratios of the first groups, each in a band that ends half-way to the next group.
 
-    Args:
-        measured: The measured modes.
-        groups: Number of groups with a band, from the first; a group without modes has none.
-
-    Returns:
-        Bands in ascending order.
+    A group without modes has no band; the bands ascend.
     """
     present = [number for number in range(1, groups + 2) if np.any(measured.group == number)]
     edges = {

@@ -228,11 +228,8 @@ MAX_NOTE = 4000
 def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = ()) -> str:
     """Text of the table `damping` of a line file, with the warnings as comments.
 
-    A coefficient that is not determined is also a comment, so that no simulation uses it.
-
-    Args:
-        results: The fit.
-        modal: Frequency bands of modal damping: `results.modal`, or none for Rayleigh damping alone.
+    A coefficient that is not determined is also a comment, so that no simulation uses it. Modal damping is
+    written in the bands of `modal`: `results.modal`, or none for Rayleigh damping alone.
     """
     tables: dict[str, Any] = {
         "trust": "provisional",

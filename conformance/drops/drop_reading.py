@@ -50,11 +50,7 @@ LARGEST_ACCELERATION = 500.0
 
 
 def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> DropRecord:
-    """Convert a measured table into a record in SI units.
-
-    Args:
-        table: One run.
-        sidecar: Sidecar of the file; it adds data that the file lacks.
+    """Convert a measured table into a record in SI units; its sidecar adds data that the file lacks.
 
     Raises:
         InputError: File and sidecar contradict each other, a value is missing, or a unit or direction is not known.
@@ -141,12 +137,7 @@ Attributes = dict[str, Any]
 
 
 def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescription:
-    """Build the description of the mass drop of a record.
-
-    Args:
-        attributes: Attributes of the record.
-        where: Name of the record in messages.
-        duration: Duration of the record [s].
+    """Build the description of the mass drop of a record of a duration [s]; `where` is its name in messages.
 
     Raises:
         InputError: An attribute is not a number, or the planned release is after the end of the record.

@@ -13,7 +13,7 @@ from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 UNKNOWN_LINE = MeasuredLine()
 
-MOTION_ORDER: dict[MotionQuantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
+MOTION_ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Order of the time derivative of the displacement."""
 
 

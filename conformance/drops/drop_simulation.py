@@ -94,16 +94,9 @@ def require_mass_drop(case: Case) -> MassDrop:
 
 
 def decimate(signals: RealArray, every: int) -> RealArray:
-    """Every k-th sample after a linear-phase low-pass without delay.
+    """Every k-th sample of signals, (n, c), after a linear-phase low-pass without delay, (n / k, c).
 
     The filter passes frequencies below 0.8 of half the new rate and attenuates those above half the new rate by 90 dB.
-
-    Args:
-        signals: Signals of c channels, (n, c).
-        every: Ratio k of the rates.
-
-    Returns:
-        Decimated signals, (n / k, c).
     """
     if every == 1:
         return signals

@@ -136,15 +136,10 @@ def _select_known(table: dict[str, Any]) -> dict[str, Any]:
 
 # Universal files, one data set 58 per channel.
 def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
-    """Write a record as universal file, with a sidecar beside it.
+    """Write a record as universal file, with a sidecar beside it; ASCII numbers have twelve digits.
 
     The format has no fields for wire, position, mass and planned release; they stand in its identification lines and in
     the sidecar.
-
-    Args:
-        record: One run.
-        path: The file.
-        form: Form of the numbers; ASCII numbers have twelve digits.
 
     Raises:
         InputError: A file cannot be written.

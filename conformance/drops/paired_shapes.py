@@ -28,17 +28,10 @@ SHAPE_WIRES = ("CW", "MW")
 
 
 def list_paired_shapes(matched: MatchedModes, line: Catenary) -> PairedShapes:
-    """Shapes of the matched modes of the first groups that have at least two sensors.
+    """Shapes of the matched modes of the first groups that have at least two sensors, in the order of frequency.
 
     A computed shape is scaled to its largest deflection. The measured values are multiplied by the complex factor that
     fits them best to it; their real part is listed.
-
-    Args:
-        matched: Identified and computed modes of the line.
-        line: The line.
-
-    Returns:
-        Shapes in the order of frequency.
     """
     positions = find_sensor_positions(matched.paired, line, "the modes")
     wires = _select_wires(line)

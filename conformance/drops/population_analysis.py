@@ -213,15 +213,8 @@ REDRAW_SEED = 1
 def median_interval(values: list[RealArray], deviations: list[RealArray]) -> tuple[float, float]:
     """95 % interval of the median over all values of all tests, by redrawing the tests (cluster bootstrap).
 
-    The values of one test are not independent of each other, so that whole tests are redrawn. In each replicate every
-    value also varies by its standard deviation.
-
-    Args:
-        values: Values of each test, each (n,).
-        deviations: Standard deviations of the values of each test, each (n,).
-
-    Returns:
-        Quantiles of 2.5 % and 97.5 % of the median.
+    The values of one test, (n,), are not independent of each other, so that whole tests are redrawn. In each replicate
+    every value also varies by its standard deviation.
 
     References:
         [1] A. C. Davison, D. V. Hinkley, Bootstrap Methods and their Application, Cambridge University Press, 1997,
@@ -245,9 +238,6 @@ def measure_variability(groups: list[RealArray], sides: list[OutlierSide | None]
         groups: Damping ratios of all tests, in the order of the groups, each (n,); groups with fewer than four values
             are left out.
         sides: Side on which each value is an outlier.
-
-    Returns:
-        Dispersion against frequency, and share of the outliers that overestimate.
     """
     ranges = np.array([np.subtract(*np.percentile(values, [75, 25])) for values in groups if values.size >= FEWEST])
     outliers = [side for side in sides if side is not None]

@@ -60,12 +60,7 @@ class ChainFit:
 
 
 def fit_chain(data: MeasuredStiffness, fixed: RealArray) -> ChainFit:
-    """Fit a chain.
-
-    Args:
-        data: Measured responses.
-        fixed: Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n); NaN: free.
-    """
+    """Fit a chain whose fixed masses [kg], stiffnesses [N/m] and dampings [N s/m], (3, n), are numbers; NaN: free."""
     coarse = ChainProblem(data.select_rows(_thin_rows(data.frequency)), fixed)
     trials = _try_starts(coarse)
     costs = np.array([cost for _, cost in trials])
@@ -229,10 +224,6 @@ def information_criterion(fit: ChainFit) -> float:
 
 def fit_chains(records: Sequence[ResponseRecord], task: FitTask) -> ChainSelection:
     """Fit chains to all responses together.
-
-    Args:
-        records: Measured responses at the centre of the head.
-        task: Choices.
 
     Raises:
         InputError: A response is not that of the centre of the head, or the band has too few rows.

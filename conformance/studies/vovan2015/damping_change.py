@@ -60,12 +60,7 @@ class ForceChanges:
 def compare_damping_runs(
     before: RecordSignals, after: RecordSignals, sections: Sequence[tuple[float, float]] = ()
 ) -> ForceChanges:
-    """Changes between two runs of a case.
-
-    Args:
-        before, after: Signals with the earlier damping and with that of the case.
-        sections: Shifted analysis sections [m, m].
-    """
+    """Changes from a run with the earlier damping to one with that of the case, also over shifted sections [m, m]."""
     shifted = (
         force_changes(before.evaluate_section(section).values, after.evaluate_section(section).values)
         for section in sections
@@ -114,12 +109,7 @@ def _compare_pantographs(
 
 # Tables of a changed damping: computed and printed values, and the changes with their range.
 def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
-    """Build a table of the computed and printed values under each damping model.
-
-    Args:
-        values: Computed values by damping model.
-        printed: Printed values by damping model and pantograph.
-    """
+    """Build a table of the computed and printed values; printed ones are by damping model and pantograph."""
     pantographs = list_pantographs(values)
     rows = []
     for quantity in ("mean_force_N", *COMPARED_QUANTITIES, "contact_loss_pct"):
@@ -156,15 +146,9 @@ def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTa
 
 # Change of the contact force by another damping model, band by band (Vo Van, Balmes and Lorang 2015, Table 1).
 def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
-    """Run a passage with the earlier damping and with that of the case, and compare the bands.
+    """Run a passage with the damping before the change and with that of the case, and compare the bands.
 
-    Args:
-        case: Passage with the damping after the change.
-        study: Damping before the change, and printed values.
-        system: System under test, which runs both passages.
-
-    Returns:
-        Delivered run with the damping of the case and the comparison; else the reason of the run without a record.
+    Without a record of both runs, the outcome is the reason.
     """
     ((name, damping),) = case.dampings.items()
     runs: dict[str, Delivered] = {}

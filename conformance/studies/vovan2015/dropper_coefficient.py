@@ -120,14 +120,9 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
 
 
 def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Value]:
-    """Largest change of the contact force in a band, of any pantograph, by small damping of the droppers.
+    """Largest change of the contact force in a band, of any pantograph, by the chosen damping of the droppers [%].
 
-    Args:
-        chosen, least: Quantities with the damping of the case and with the smallest coefficient, by pantograph and
-            name.
-
-    Returns:
-        Change [%] by name of quantity; empty without a band.
+    The reference is the smallest damping; the change is by name of quantity, and empty without a band.
     """
     pairs = [
         (values.get(band), least.get(owner, {}).get(band))
@@ -255,9 +250,7 @@ def run_dropper_oscillation(case: Case, study: DropperOscillation) -> Delivered:
 def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
     """High-frequency velocity of the extension of a dropper from the release on, (n,) [m/s].
 
-    Args:
-        motion: Velocity of the contact wire and of the messenger wire at the dropper, (2, m) [m/s].
-        time: Time after the release, (m,) [s]; the mass still hangs before 0.
+    The motion is that of contact and messenger wire at the dropper, (2, m) [m/s]; time is 0 at the release, (m,) [s].
     """
     extension = motion[MESSENGER] - motion[CONTACT]
     low = LowPass(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))

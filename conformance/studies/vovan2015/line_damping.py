@@ -87,15 +87,9 @@ def build_lines(case: Case) -> dict[str, Catenary]:
 
 
 def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> RealArray:
-    """Damping ratios of the undamped modes of a line; inside a modal band, its ratio replaces Rayleigh damping.
+    """Damping ratios, (n,) [-], of the undamped shapes of a mesh under the damping of a line with the same geometry.
 
-    Args:
-        mesh: Line in finite elements with any damping.
-        shapes: Undamped modes of this line.
-        line: The same line with the damping model.
-
-    Returns:
-        Damping ratio of every mode, (n,) [-].
+    Inside a modal band, its ratio replaces Rayleigh damping.
     """
     rayleigh = damping_ratios(with_damping(mesh, line.damping), shapes)
     return apply_modal_bands(rayleigh, shapes.frequency, line.modal_damping)

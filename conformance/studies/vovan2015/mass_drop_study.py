@@ -42,15 +42,9 @@ SMALLEST_DRAWN_RATIO = 1e-3
 
 
 def build_fit_report(case: Case, identification: Identification) -> StudyResult:
-    """Fit a damping model with coefficients of each wire, and report coefficients and their observability.
+    """Fit coefficients of each wire to the modes of simulated drops, and report them with their observability.
 
-    Args:
-        case: Case with the simulated drops.
-        identification: Modes identified from the drops.
-
-    Returns:
-        Numbers of observable coefficients by name of quantity, table and chart; without enough modes, a table with the
-        reason.
+    Without enough modes, the report is a table with the reason.
     """
     line, element = build_catenary(case.line), case.file.discretisation.element_m
     try:

@@ -25,9 +25,7 @@ FITTED = "fitted"
 def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, printed: ValuesByOwner) -> TextTable:
     """Build a table with one row per limit: finding in words, printed and computed value, agreement.
 
-    Args:
-        limits: Limits of the case; their notes are the findings in words.
-        computed, printed: Values by pantograph and name.
+    The notes of the limits are the findings in words; values are by pantograph and name.
     """
     rows = []
     for limit in limits:
