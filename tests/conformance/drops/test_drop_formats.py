@@ -156,17 +156,25 @@ def test_matlab_tables_of_one_size_are_refused(tmp_path: Path, record: DropRecor
 
 
 # TDMS and MDF records of mass drops, whose libraries are extras.
-def test_tdms(tmp_path: Path, record: DropRecord) -> None:
+def write_tdms(record: DropRecord, path: Path, *factors: float) -> Path:
+    """Record as TDMS with its sidecar; the sampling intervals of its channels are multiplied by the factors."""
     nptdms = pytest.importorskip("nptdms", reason="extra tdms")
-    write_drop_csv(record, tmp_path / "r.csv")
-    with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
+    write_drop_csv(record, path.with_suffix(".csv"))
+    with nptdms.TdmsWriter(str(path)) as writer:
         writer.write_segment(
             [
-                nptdms.ChannelObject("group", channel.name, record.signals[:, c], {"wf_increment": 1 / RATE})
-                for c, channel in enumerate(record.channels)
+                nptdms.ChannelObject("group", channel.name, record.signals[:, c], {"wf_increment": factor / RATE})
+                for c, (channel, factor) in enumerate(zip(record.channels, factors, strict=True))
             ]
         )
-    assert_same_record(read_drop_records(tmp_path / "r.tdms")[0], record, 0.0)
+    return path
+
+
+def test_tdms(tmp_path: Path, record: DropRecord) -> None:
+    path = write_tdms(record, tmp_path / "r.tdms", 1, 1, 1)
+    assert_same_record(read_drop_records(path)[0], record, 0.0)
+    with pytest.raises(InputError, match="channels with different sampling intervals"):
+        read_drop_records(write_tdms(record, path, 1, 1, 2))
 
 
 def write_mdf(record: DropRecord, path: Path) -> None:
@@ -199,20 +207,6 @@ def test_damaged_mdf_ends_in_one_message(tmp_path: Path, record: DropRecord, cap
             read_drop_records(tmp_path / "r.mf4")
     gc.collect()
     assert capfd.readouterr() == ("", "")
-
-
-def test_tdms_with_channels_of_two_rates_is_refused(tmp_path: Path, record: DropRecord) -> None:
-    nptdms = pytest.importorskip("nptdms", reason="extra tdms")
-    write_drop_csv(record, tmp_path / "r.csv")
-    with nptdms.TdmsWriter(str(tmp_path / "r.tdms")) as writer:
-        writer.write_segment(
-            [
-                nptdms.ChannelObject("group", one.name, record.signals[:, c], {"wf_increment": (1 + (c == 2)) / RATE})
-                for c, one in enumerate(record.channels)
-            ]
-        )
-    with pytest.raises(InputError, match="channels with different sampling intervals"):
-        read_drop_records(tmp_path / "r.tdms")
 
 
 def test_mdf_with_channels_of_two_rates_is_refused(
