@@ -30,8 +30,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.support_rows import check_line_table, read_line_table
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.pantograph.response_record import read_response
-from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_SCHEMA, ResponseSidecar
+from pantocheck.conformance.pantograph.response_record import RESPONSE_SCHEMA, ResponseSidecar, read_response
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples

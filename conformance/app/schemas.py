@@ -26,7 +26,7 @@ from pantocheck.conformance.execution.plan import Plan
 from pantocheck.conformance.line.elements.damping import DampingFile
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.pantograph.response_sidecar import ResponseSidecar
+from pantocheck.conformance.pantograph.response_record import ResponseSidecar
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.results.administration import Administration

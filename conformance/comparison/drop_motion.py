@@ -15,7 +15,8 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.step_log import ShareCallback, follow_part, ignore_progress
 from pantocheck.conformance.drops.decay_kernel import LOWEST_FREQUENCY
 from pantocheck.conformance.drops.decay_preparation import MIN_REST, Release, find_release
-from pantocheck.conformance.drops.drop_simulation import ORDER, decimate
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER
+from pantocheck.conformance.drops.drop_simulation import decimate
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
 from pantocheck.model import Catenary
 from pantocheck.model.dynamics.drop_values import MassDropSetup
@@ -206,7 +207,7 @@ class DropMotion:
         return noise_rms(self.rest, self.rate, self._derivatives(motion), band) if self.rest.size else None
 
     def _derivatives(self, motion: str) -> int:
-        return ORDER[motion] - ORDER[self.quantity]
+        return MOTION_ORDER[motion] - MOTION_ORDER[self.quantity]
 
 
 def simulate_models(
@@ -305,7 +306,7 @@ def _simulate(
         ),
         progress,
     )
-    motion = decay.motion[:, :, ORDER[drop.record.quantity]].T
+    motion = decay.motion[:, :, MOTION_ORDER[drop.record.quantity]].T
     return decimate(motion - motion[0], steps), decay.last_slack
 
 

@@ -8,9 +8,14 @@ import numpy as np
 from scipy.linalg import eigh
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.pantograph.chain_fit import ChainFit, FitIntervals, judge_parameters
+from pantocheck.conformance.pantograph.chain_fit import (
+    ChainFit,
+    ChainSelection,
+    FitIntervals,
+    information_criterion,
+    judge_parameters,
+)
 from pantocheck.conformance.pantograph.chain_problem import chain_response
-from pantocheck.conformance.pantograph.chain_selection import ChainSelection, information_criterion
 from pantocheck.conformance.results.comparison_format import ResponseComparison
 from pantocheck.conformance.results.pantograph_fit_format import (
     ChainCandidate,

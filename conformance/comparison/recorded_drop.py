@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropChannel, DropRecord
 from pantocheck.conformance.drops.line_comparison import compare_record_line, list_differences
-from pantocheck.conformance.drops.mode_building import describe_line
 from pantocheck.conformance.drops.mode_matching import KIND_OF_WIRE, find_wire
 from pantocheck.conformance.results.damping_format import LineComparison
 from pantocheck.model import Catenary
@@ -60,7 +59,7 @@ def locate_drop(record: DropRecord, catenary: Catenary) -> RecordedDrop:
             f"{where}, key drop.position_m", "missing", "Give the position of the mass from the first support [m]."
         )
     channels = [record.channels[c] for c in columns]
-    line = compare_record_line(describe_line(record.line), [(c.sensor, c.wire, c.position) for c in channels], catenary)
+    line = compare_record_line(record.line, [(c.sensor, c.wire, c.position) for c in channels], catenary)
     if line.differences:
         raise InputError(
             where,

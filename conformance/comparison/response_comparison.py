@@ -21,8 +21,7 @@ from pantocheck.conformance.core.verdicts import worst_verdict
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import head_receptance
-from pantocheck.conformance.pantograph.response_record import ResponseRecord
-from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_FORMS, ResponseForm
+from pantocheck.conformance.pantograph.response_record import RESPONSE_FORMS, ResponseForm, ResponseRecord
 from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
     ComparedResponse,

@@ -1,23 +1,32 @@
-"""Damping model of a line from its identified modes: the content of damping.json."""
+"""Damping model of a line from its identified modes: content of damping.json, and table of a line file."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+import tomli_w
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.damping_model import MODAL_GROUPS, fit_damping_model, fit_modal_bands
-from pantocheck.conformance.drops.damping_terms import DampingBasis, build_damping_basis, list_other_damping
+from pantocheck.conformance.drops.damping_model import (
+    JOINED_WIRES,
+    MATRICES,
+    MODAL_GROUPS,
+    TABLE_OF_KIND,
+    THRESHOLDS,
+    WIRES,
+    DampingBasis,
+    build_damping_basis,
+    compute_observability,
+    fit_damping_model,
+    fit_modal_bands,
+    judge_coefficients,
+    list_other_damping,
+)
 from pantocheck.conformance.drops.line_comparison import compare_line, warn_about_line
 from pantocheck.conformance.drops.mode_matching import MatchedModes, match_modes, select_usable
-from pantocheck.conformance.drops.paired_shapes import (
-    THRESHOLDS,
-    compute_observability,
-    judge_coefficients,
-    list_paired_shapes,
-)
+from pantocheck.conformance.drops.paired_shapes import list_paired_shapes
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
@@ -28,7 +37,7 @@ from pantocheck.conformance.results.damping_format import (
     StatedDamping,
 )
 from pantocheck.conformance.results.identified_modes import Mode
-from pantocheck.model import Catenary, Rayleigh
+from pantocheck.model import Catenary, Kind, Rayleigh
 from pantocheck.model.description.catenary import ModalBand
 from pantocheck.model.discretisation.discretised_line import with_damping
 from pantocheck.model.modal.modal_damping import apply_modal_bands
@@ -71,9 +80,6 @@ def build_damping_results(
         element: Element length [m].
         source: Name of the file of the modes, for messages.
         options: Coefficients of the wires, and bands of modal damping.
-
-    Returns:
-        Content of damping.json.
 
     Raises:
         InputError: There are too few modes, or too few of them have a computed counterpart.
@@ -212,3 +218,50 @@ def _warn_about_coefficients(coefficients: Sequence[Coefficient]) -> list[str]:
         if not c.determined:
             names.setdefault(c.reason, []).append(f"{c.kind.replace('_', ' ')} {c.matrix}")
     return [f"Not determined: {', '.join(terms)} ({reason})." for reason, terms in names.items()]
+
+
+# Table `damping` of a line file from a fitted damping model.
+MAX_NOTE = 4000
+"""Largest length of a note in a line file [characters]."""
+
+
+def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = ()) -> str:
+    """Text of the table `damping` of a line file, with the warnings as comments.
+
+    A coefficient that is not determined is also a comment, so that no simulation uses it. Modal damping is
+    written in the bands of `modal`: `results.modal`, or none for Rayleigh damping alone.
+    """
+    tables: dict[str, Any] = {
+        "trust": "provisional",
+        "source": f"fitted to {results.modes_file} by pantocheck drop fit"[:500],
+        "note": f"residual {100 * results.residual:.2g} % of the measured damping ratios",
+    }
+    comments = [f"warning: {text}" for text in results.warnings]
+    for c in results.coefficients:
+        key = MATRICES[c.matrix].key
+        for kind in WIRES if c.kind == JOINED_WIRES else (c.kind,):
+            table = TABLE_OF_KIND[Kind(kind)]
+            if c.determined:
+                tables.setdefault(table, {})[key] = c.value
+                comments.append(f"{table}.{key}: 95 % interval {c.low_95:.3g} to {c.high_95:.3g}")
+            else:
+                comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
+    for other in results.stated:
+        tables[TABLE_OF_KIND[Kind(other.kind)]] = {
+            MATRICES[matrix].key: value
+            for matrix, value in (("stiffness", other.stiffness_coefficient_s), ("mass", other.mass_coefficient_1_s))
+        }
+        comments.append(f"{TABLE_OF_KIND[Kind(other.kind)]}: as the line states it, not fitted")
+    if any(not c.determined for c in results.coefficients):
+        comments.append("In a simulation, a coefficient that is left out counts as 0.")
+    if results.warnings:
+        tables["note"] = " ".join((tables["note"] + ".", *results.warnings))[:MAX_NOTE]
+    if modal:
+        tables["modal"] = [band.model_dump() for band in modal]
+    lines = "".join(f"# {_join_lines(text)}\n" for text in comments)
+    return lines + tomli_w.dumps({"damping": tables}, multiline_strings=False)
+
+
+def _join_lines(text: str) -> str:
+    """Text in one line, without characters that are not possible in a TOML comment."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())

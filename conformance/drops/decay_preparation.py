@@ -43,9 +43,6 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
         nominal: Planned release, in the time of the record [s]; None if unknown.
         name: Name of the record, for messages.
 
-    Returns:
-        Time of the release.
-
     Raises:
         InputError: No channel moves, the record ends too early, or it has neither a planned release nor a rest at its
             start.
@@ -165,10 +162,6 @@ class PreparedDecay:
 def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     """Find the release and the linear decay of a record.
 
-    Args:
-        record: The record.
-        band: Band of the identification.
-
     Raises:
         InputError: The record has no vertical channel, or no usable free decay.
     """
@@ -218,9 +211,6 @@ def find_linear_decay(
         release: Release of the mass.
         band: Band of the identification.
         clipped_until: Time of the last clipped sample [s]; 0: no sample is clipped.
-
-    Returns:
-        Filtered and decimated samples.
 
     Raises:
         InputError: The linear decay is shorter than `SHORTEST_DECAY`, or a channel is constant after the release.

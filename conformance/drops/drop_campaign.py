@@ -107,9 +107,7 @@ def simulate_records(
     """Simulate one drop of a campaign; yield its records, which differ in their noise.
 
     Args:
-        case: Case with the line of the drop.
-        drop: Mass and place.
-        sensors: Axes and noise of the sensors.
+        case, drop, sensors: Line, drop, and axes and noise of the sensors.
         records: Numbers of the records in the campaign, from 0. Noise depends on the seed and on the number only.
         progress: Function that receives the completed share of the simulation, 0 to 1.
     """

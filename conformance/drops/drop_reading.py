@@ -1,6 +1,8 @@
-"""Reading of mass-drop records in any format of `input_files.table_formats`."""
+"""Reading of mass-drop records in any format of `TABLE_FORMATS`."""
 
+from contextlib import suppress
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +15,12 @@ from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 from pantocheck.conformance.drops.drop_record import (
     DropChannel,
     DropDescription,
-    DropLine,
     DropRecord,
     find_sampling_rate,
 )
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns, read_drop_sidecar
 from pantocheck.conformance.records.force_checks import find_clipping
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 LARGEST_DROP = 30_000_000
 """Largest number of values in a record: 20 channels at 1 kHz for 25 minutes. Reading them takes about 1 GB."""
@@ -29,9 +31,6 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
 
     Args:
         path: File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
-
-    Returns:
-        One record per run.
 
     Raises:
         InputError: The file cannot be read, is damaged, or does not describe its channels.
@@ -51,14 +50,7 @@ LARGEST_ACCELERATION = 500.0
 
 
 def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> DropRecord:
-    """Convert a measured table into a record in SI units.
-
-    Args:
-        table: One run.
-        sidecar: Sidecar of the file; it adds data that the file lacks.
-
-    Returns:
-        Record with its warnings.
+    """Convert a measured table into a record in SI units; its sidecar adds data that the file lacks.
 
     Raises:
         InputError: File and sidecar contradict each other, a value is missing, or a unit or direction is not known.
@@ -145,12 +137,7 @@ Attributes = dict[str, Any]
 
 
 def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescription:
-    """Build the description of the mass drop of a record.
-
-    Args:
-        attributes: Attributes of the record.
-        where: Name of the record in messages.
-        duration: Duration of the record [s].
+    """Build the description of the mass drop of a record of a duration [s]; `where` is its name in messages.
 
     Raises:
         InputError: An attribute is not a number, or the planned release is after the end of the record.
@@ -170,17 +157,17 @@ def build_drop(attributes: Attributes, where: str, duration: float) -> DropDescr
     return drop
 
 
-def build_line(attributes: Attributes, where: str) -> DropLine:
+def build_line(attributes: Attributes, where: str) -> MeasuredLine:
     """Build the description of the line of a record; `where` is the name of the record in messages.
 
     Raises:
         InputError: An attribute is not a number.
     """
     spans = np.atleast_1d(attributes.get("spans_m", ()))
-    return DropLine(
-        tuple(_convert_number(span, "spans_m", where) for span in spans),
-        _read_number(attributes, "cw_tension_n", where),
-        _read_number(attributes, "mw_tension_n", where),
+    return MeasuredLine(
+        spans_m=tuple(_convert_number(span, "spans_m", where) for span in spans),
+        contact_wire_tension_N=_read_number(attributes, "cw_tension_n", where),
+        messenger_wire_tension_N=_read_number(attributes, "mw_tension_n", where),
     )
 
 
@@ -190,9 +177,9 @@ def _read_number(attributes: Attributes, name: str, where: str) -> float | None:
 
 
 def _convert_number(value: Any, name: str, where: str) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Write a number in file or sidecar."
-        ) from None
+    with suppress(TypeError, ValueError):
+        if isfinite(number := float(value)):
+            return number
+    raise InputError(
+        f"{where}, attribute {name}", f"{str(value)[:40]!r} is not a number", "Write a number in file or sidecar."
+    )

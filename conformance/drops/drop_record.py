@@ -9,6 +9,12 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import Axis, MeasuredTable
 from pantocheck.conformance.core.units import MotionQuantity
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar
+from pantocheck.conformance.results.identified_modes import MeasuredLine
+
+UNKNOWN_LINE = MeasuredLine()
+
+MOTION_ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""Order of the time derivative of the displacement."""
 
 
 @dataclass(frozen=True)
@@ -42,17 +48,6 @@ class DropDescription:
 
 
 @dataclass(frozen=True)
-class DropLine:
-    """Properties by which two records are recognised as records of the same line."""
-
-    spans: tuple[float, ...] = ()
-    """Lengths of the spans [m]; empty if not known."""
-    contact_wire_tension: float | None = None
-    messenger_wire_tension: float | None = None
-    """Tensions of the wires [N]; None if not known."""
-
-
-@dataclass(frozen=True)
 class DropRecord:
     """Signals of all channels during rest, release and decay."""
 
@@ -70,7 +65,8 @@ class DropRecord:
     """Measured quantity."""
     drop: DropDescription = DropDescription()
     """Mass drop."""
-    line: DropLine = DropLine()
+    line: MeasuredLine = UNKNOWN_LINE
+    """Line, by which two records are recognised as records of the same line."""
     warnings: tuple[str, ...] = ()
     """Caveats on the record."""
     file: str = ""

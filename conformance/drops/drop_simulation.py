@@ -11,14 +11,15 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.measured_table import Axis
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER, DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
 
 SHORT_NAME = {"contact_wire": "CW", "messenger_wire": "MW"}
-ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 STOP_BAND_DB = 90.0
 PASS_BAND = 0.8
 """Upper edge of the pass band of the anti-alias filter, relative to half the rate of the record."""
@@ -50,9 +51,6 @@ def simulate_drop(
         line: Catenary; default: that of the case.
         axes: Axes of each sensor: vertical, and lateral on a line with stagger.
 
-    Returns:
-        Record and motion.
-
     Raises:
         NoInitialState, NoEquilibrium, DidNotConverge: The simulation has no solution.
     """
@@ -74,7 +72,7 @@ def simulate_drop(
         ),
         progress,
     )
-    motion = decay.motion[:, :, ORDER[mass_drop.quantity]].T
+    motion = decay.motion[:, :, MOTION_ORDER[mass_drop.quantity]].T
     signals = decimate(motion, round(1 / mass_drop.rate_Hz / discretisation.time_step_s))
     if mass_drop.noise_rms:
         # The noise differs between drops; it is the same in every run and under every damping model.
@@ -96,16 +94,9 @@ def require_mass_drop(case: Case) -> MassDrop:
 
 
 def decimate(signals: RealArray, every: int) -> RealArray:
-    """Every k-th sample after a linear-phase low-pass without delay.
+    """Every k-th sample of signals, (n, c), after a linear-phase low-pass without delay, (n / k, c).
 
     The filter passes frequencies below 0.8 of half the new rate and attenuates those above half the new rate by 90 dB.
-
-    Args:
-        signals: Signals of c channels, (n, c).
-        every: Ratio k of the rates.
-
-    Returns:
-        Decimated signals, (n / k, c).
     """
     if every == 1:
         return signals
@@ -135,5 +126,14 @@ def _build_record(case: Case, number: int, signals: RealArray, axes: tuple[Axis,
         ),
         quantity=mass_drop.quantity,
         drop=DropDescription(drop.mass_kg, SHORT_NAME[drop.wire], drop.x_m, mass_drop.hanging_s),
-        line=DropLine(line.geometry.span_lengths, line.contact_wire.tension_N, line.messenger_wire.tension_N),
+        line=describe_line(line),
+    )
+
+
+def describe_line(line: LineFile) -> MeasuredLine:
+    """Properties of a line as a record of its drops states them."""
+    return MeasuredLine(
+        spans_m=line.geometry.span_lengths,
+        contact_wire_tension_N=line.contact_wire.tension_N,
+        messenger_wire_tension_N=line.messenger_wire.tension_N,
     )

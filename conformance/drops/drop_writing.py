@@ -1,7 +1,8 @@
-"""Writing of mass-drop records as CSV with a sidecar, and as HDF5; reading these files gives the same record."""
+"""Writing of mass-drop records in the format of a suffix; reading these files gives the same record."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import tomli_w
@@ -9,9 +10,10 @@ import tomli_w
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.files import produce_atomically, write_atomically
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.measured_table import CSV, HDF5, UFF, TableFormat
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.core.units import SI_UNITS
-from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 
 UNWRITABLE = ",;\t\"'"
 """Characters that are not possible in the head line of a CSV file, because it is read without quoting."""
@@ -23,10 +25,6 @@ SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
 
 def write_drop_csv(record: DropRecord, path: Path) -> None:
     """Write a record as CSV (decimal points, commas), with a sidecar beside it.
-
-    Args:
-        record: One run.
-        path: The .csv file.
 
     Raises:
         InputError: A file cannot be written, or the name of a channel is not possible in a head line.
@@ -46,10 +44,6 @@ def write_drop_csv(record: DropRecord, path: Path) -> None:
 
 def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
     """Write the runs of one test as HDF5.
-
-    Args:
-        records: Runs of the test.
-        path: The file.
 
     Raises:
         InputError: The runs differ in channels, rate, quantity or drop, or the file cannot be written.
@@ -71,9 +65,9 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
         "drop_wire": first.drop.wire,
         "drop_position_m": first.drop.position,
         "trigger_nominal_s": first.drop.trigger_nominal,
-        "spans_m": list(first.line.spans) or None,
-        "cw_tension_n": first.line.contact_wire_tension,
-        "mw_tension_n": first.line.messenger_wire_tension,
+        "spans_m": list(first.line.spans_m) or None,
+        "cw_tension_n": first.line.contact_wire_tension_N,
+        "mw_tension_n": first.line.messenger_wire_tension_N,
     }
     channels = _list_channels(first)
     datasets: dict[str, Any] = {f"channels/{key}": [channel[key] for channel in channels] for key in channels[0]}
@@ -84,9 +78,6 @@ def write_drop_hdf5(records: tuple[DropRecord, ...], path: Path) -> None:
 
 def check_drop_sidecar(path: Path) -> None:
     """Check that the sidecar of a record replaces no other file, such as the case of the drop.
-
-    Args:
-        path: The record.
 
     Raises:
         InputError: The sidecar would overwrite a file that is not a sidecar of a drop record.
@@ -106,9 +97,9 @@ def write_drop_sidecar(record: DropRecord, path: Path) -> None:
     tables: dict[str, dict[str, Any]] = {
         "test": {
             "name": record.name,
-            "spans_m": list(record.line.spans) or None,
-            "cw_tension_n": record.line.contact_wire_tension,
-            "mw_tension_n": record.line.messenger_wire_tension,
+            "spans_m": list(record.line.spans_m) or None,
+            "cw_tension_n": record.line.contact_wire_tension_N,
+            "mw_tension_n": record.line.messenger_wire_tension_N,
         },
         "drop": {"mass_kg": record.drop.mass, "wire": record.drop.wire, "position_m": record.drop.position},
         "record": {
@@ -141,3 +132,104 @@ def _list_channels(record: DropRecord) -> list[dict[str, Any]]:
 def _select_known(table: dict[str, Any]) -> dict[str, Any]:
     """Table without the values None, which TOML and HDF5 do not have."""
     return {key: value for key, value in table.items() if value is not None}
+
+
+# Universal files, one data set 58 per channel.
+def write_drop_uff(record: DropRecord, path: Path, form: Literal["ascii", "binary"] = "binary") -> None:
+    """Write a record as universal file, with a sidecar beside it; ASCII numbers have twelve digits.
+
+    The format has no fields for wire, position, mass and planned release; they stand in its identification lines and in
+    the sidecar.
+
+    Raises:
+        InputError: A file cannot be written.
+    """
+    from pantocheck.conformance.core.uff_table import write_data_sets  # an optional package
+
+    sets = [_build_data_set(record, c, form) for c in range(len(record.channels))]
+    write_drop_sidecar(record, path)
+    write_data_sets(path, sets)
+
+
+def _build_data_set(record: DropRecord, c: int, form: Literal["ascii", "binary"]) -> dict[str, Any]:
+    """Data set 58 of a channel; fields for other kinds of data are 0 or NONE."""
+    import pyuff
+
+    from pantocheck.conformance.core.uff_table import DATA_TYPES, encode_identification_line
+
+    channel = record.channels[c]
+    data_set = pyuff.prepare_58(
+        binary=int(form == "binary"),
+        func_type=1,
+        rsp_node=channel.sensor,
+        rsp_dir="xyz".index(channel.axis) + 1,
+        ref_node=0,
+        ref_dir=0,
+        ord_data_type=4,
+        num_pts=record.signals.shape[0],
+        data=record.signals[:, c].copy(),
+        x=record.time,
+        abscissa_spacing=1,
+        abscissa_min=0.0,
+        abscissa_inc=1 / record.rate,
+        abscissa_spec_data_type=17,
+        abscissa_axis_units_lab="s",
+        ordinate_spec_data_type=DATA_TYPES[record.quantity],
+        ordinate_axis_units_lab=SI_UNITS[record.quantity],
+        orddenom_spec_data_type=0,
+        orddenom_axis_units_lab="NONE",
+        z_axis_spec_data_type=0,
+        z_axis_axis_units_lab="NONE",
+        id1=encode_identification_line(record.name),
+        id2=encode_identification_line(_format_drop(record.drop)),
+        id3=encode_identification_line(_format_channel(channel)),
+        id4=record.quantity,
+        id5="NONE",
+    )
+    return dict(data_set)
+
+
+def _format_drop(drop: DropDescription) -> str:
+    """Identification line of the mass drop; empty unless the drop is fully known."""
+    if drop.mass is None or drop.position is None or not drop.wire:
+        return ""
+    trigger = "" if drop.trigger_nominal is None else f", trigger at {drop.trigger_nominal:g} s"
+    return f"{drop.mass:g} kg on {drop.wire} at {drop.position:g} m{trigger}"
+
+
+def _format_channel(channel: DropChannel) -> str:
+    """Identification line of a channel; empty if the name is not possible there: the sidecar then holds it alone."""
+    if channel.position is None or not channel.wire or " " in channel.name or not channel.name.isascii():
+        return ""
+    return f"{channel.name} {channel.wire} at {channel.position:g} m dir +{channel.axis}"
+
+
+# Formats of written records, by the suffix of the file.
+DROP_WRITERS: dict[TableFormat, Callable[[DropRecord, Path], None]] = {
+    UFF: write_drop_uff,
+    CSV: write_drop_csv,
+    HDF5: lambda record, path: write_drop_hdf5((record,), path),
+}
+"""Writer of a record by its format."""
+
+FORMATS_WITH_SIDECAR = (UFF, CSV)
+"""Formats whose writer puts a sidecar beside the record."""
+
+
+def select_drop_writer(out: Path) -> Callable[[DropRecord, Path], None]:
+    """Writer of the format of a file, by its suffix.
+
+    Raises:
+        InputError: Drop records are not written in this format, or its package is not installed.
+    """
+    suffixes = {table_format.suffixes[0]: table_format for table_format in DROP_WRITERS}
+    if (table_format := suffixes.get(out.suffix.lower())) is None:
+        raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write one of {', '.join(suffixes)}.")
+    table_format.require_library(out)
+    return DROP_WRITERS[table_format]
+
+
+def check_drop_target(out: Path) -> None:
+    """Check before a simulation that its record replaces no other file, as in `check_drop_sidecar`."""
+    if any(out.suffix.lower() in table_format.suffixes for table_format in FORMATS_WITH_SIDECAR):
+        check_drop_sidecar(out)

@@ -1,5 +1,6 @@
 """Analysis of an identified line: groups of modes, repeatability, spectra and frequency responses."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil
 
@@ -7,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.units import STANDARD_GRAVITY
+from pantocheck.conformance.drops.decay_kernel import filter_gain
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
-from pantocheck.conformance.drops.frequency_response import compute_frequency_response
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER
 from pantocheck.conformance.drops.identify import Identification, PoleSearch
 from pantocheck.conformance.drops.line_fit import LineFit, RecordFit
 from pantocheck.conformance.drops.mode_groups import warn_about_overlap
@@ -46,7 +49,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         band_Hz=(fit.band.low, fit.band.high),
         misfit=fit.misfit,
         warnings=(*identification.warnings, *warn_about_overlap(modes)),
-        spans_m=decays[0].record.line.spans,
+        spans_m=decays[0].record.line.spans_m,
         records=tuple(_record(decay) for decay in decays),
         groups=_groups(modes),
         modes=modes,
@@ -241,3 +244,53 @@ def count_half_power_lines(modes: tuple[Mode, ...]) -> HalfPowerLines:
         fewer=sum(number < RECOMMENDED_LINES for number in lines),
         needed_s=RECOMMENDED_LINES / min(bandwidths) if bandwidths else None,
     )
+
+
+# Frequency responses to a mass drop. The release is an upward step force m g at the position of the mass.
+#
+# A step of height F at t = 0 has the transform F / (i w), so the accelerance of a sensor is
+#
+#     H(w) = i w A(w) / (m g)      [m/s2/N],        A(w) the transform of its acceleration from the release on.
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Accelerance of the sensors of one record [m/s2/N], each (k, c), at k frequencies [Hz].
+
+    The measured response is that from the release to the end of the linear decay. The identified response is that of
+    the poles, extrapolated back to the release.
+    """
+
+    frequency: RealArray
+    measured: ComplexArray
+    identified: ComplexArray
+
+
+def compute_frequency_response(fit: LineFit, record_fit: RecordFit) -> FrequencyResponse | None:
+    """Compute the frequency responses of one record of a fit; None if its mass is not known."""
+    decay, linear = record_fit.decay, record_fit.decay.linear
+    record, columns = decay.record, list(decay.columns)
+    if record.drop.mass is None:
+        return None
+    begin, end = (int(t * record.rate) for t in (decay.release.time, linear.end))
+    signals = record.signals[begin:end, columns]
+    rest = record.signals[: max(int(decay.release.rest_end * record.rate), 1), columns]
+    n = signals.shape[0]
+    frequency = np.asarray(np.fft.rfftfreq(n, 1 / record.rate), dtype=np.float64)
+    used = (frequency >= fit.band.low) & (frequency <= fit.band.high)
+    omega: RealArray = 2 * np.pi * frequency[used]
+    to_accelerance = (1j * omega) ** (3 - MOTION_ORDER[record.quantity]) / (record.drop.mass * STANDARD_GRAVITY)
+    offset = rest.mean(axis=0) if rest.shape[0] > 10 else signals.mean(axis=0)
+    measured = np.fft.rfft(signals - offset, axis=0)[used] / record.rate
+    to_release = np.exp(-fit.poles * (linear.first - decay.release.time))
+    to_release = to_release / filter_gain(linear.taps, fit.poles, linear.rate)
+    inside = np.abs(fit.poles) < 2 * np.pi * fit.band.fitted
+    residues = (record_fit.residues * to_release[:, None])[inside]
+    poles, duration = fit.poles[inside], n / record.rate
+
+    def transform(decays: ComplexArray) -> ComplexArray:
+        """Transform of exp(lambda t) over the duration, (k, m) [s]."""
+        difference = decays[None, :] - 1j * omega[:, None]
+        return np.asarray(np.expm1(difference * duration) / difference)
+
+    identified = transform(poles) @ residues
+    identified += transform(poles.conj()) @ residues.conj()
+    return FrequencyResponse(frequency[used], measured * to_accelerance[:, None], identified * to_accelerance[:, None])

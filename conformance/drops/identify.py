@@ -10,8 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, fit_line, share_blocks
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, build_modes, fit_line, share_blocks
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
     estimate_block_noise,
@@ -70,9 +69,6 @@ def identify_modes(
             records.
         progress: Function that receives the name of each step.
 
-    Returns:
-        One identification per line.
-
     Raises:
         InputError: A record cannot be used.
     """
@@ -96,7 +92,7 @@ def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
 def _line_key(record: DropRecord) -> object:
     line = record.line
     # Records without data of their line count as records of one line only if they are in the same file.
-    return line if line.spans else (line, record.file or record.source)
+    return line if line.spans_m else (line, record.file or record.source)
 
 
 def _identify_line(
@@ -114,7 +110,7 @@ def identify_decays(
     decays: list[PreparedDecay], band: FrequencyBand, start: ComplexArray | None, progress: Callable[[str], None]
 ) -> Identification:
     """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
-    name, spans = decays[0].record.name, decays[0].record.line.spans
+    name, spans = decays[0].record.name, decays[0].record.line.spans_m
     samples, places = share_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles")

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import UNKNOWN_LINE
 from pantocheck.conformance.drops.mode_matching import KIND_OF_WIRE, find_wire
 from pantocheck.conformance.results.damping_format import LineComparison, LineDifference
 from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
@@ -17,8 +18,6 @@ SPAN_TOLERANCE = 0.1
 
 TENSION_TOLERANCE = 0.01
 """Largest relative difference between the tensions of a wire [-]; it changes a fitted coefficient by about 1 %."""
-
-UNKNOWN_LINE = MeasuredLine()
 
 SensorFacts = tuple[int, str, float | None]
 """Number of a sensor, its wire in the record, and its position [m]; None if not known."""

@@ -1,14 +1,24 @@
-"""Fit of one line: common poles of all its records, and residues of each record."""
+"""Fit of one line: common poles of all its records, residues of each record, and its modes with their uncertainty."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
-from pantocheck.conformance.drops.decay_kernel import FrequencyBand
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_gain
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
+from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
-from pantocheck.conformance.drops.projection import DataBlock, ProjectionFit, residue_spread, solve_residues, whiten
+from pantocheck.conformance.drops.projection import (
+    DataBlock,
+    ProjectionFit,
+    build_block,
+    estimate_noise,
+    residue_spread,
+    solve_residues,
+    whiten,
+)
+from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
 SAME_LENGTH = 0.02
 """Largest relative difference in length of repeats that are cut to the shortest one and put into one block [-]."""
@@ -67,9 +77,6 @@ class LineFit:
 def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
     """Put records of about equal length into one block, cut to the shortest.
 
-    Args:
-        decays: The records.
-
     Returns:
         Samples and sampling interval [s] of each block, each (n, c).
         Block of each record, and its channels in the block.
@@ -107,9 +114,6 @@ def fit_line(
         poles: Selected poles, (m,) [1/s].
         noise: Noise of the channels of each block, each (c,) [unit of the spectrum].
         band: Band of the identification.
-
-    Returns:
-        Poles with covariance, and residues.
     """
     white = whiten(data, noise)
     refined = refine_poles(poles, white, iterations=10)
@@ -123,3 +127,154 @@ def fit_line(
     rows = sum(2 * block.spectrum.size for block in white)
     misfit = float(refined.cost / max(rows - unknowns - 2 * poles.size, 1))
     return LineFit(band, poles, refined.covariance, blocks, records, misfit)
+
+
+# Modes of a line from its fit: frequency, damping ratio, shape, and their uncertainty.
+UNCERTAIN = 0.05
+"""Relative standard deviation above which a damping ratio is uncertain."""
+
+LATERAL = 20.0
+"""Lateral over vertical amplitude, above which an oblique mounting of some degrees explains the vertical signal [-]."""
+
+COINCIDENT = 2.0
+"""Smallest distance of two modes that are separate in the spectrum, in half-power bandwidths [-]."""
+
+FREQUENCY_REACH = 3
+"""Number of spectral lines on each side of a mode, over which its residual is evaluated."""
+
+
+def build_modes(fit: LineFit, spans: int | None) -> tuple[Mode, ...]:
+    """Build the modes of the reported band, in the order of frequency; `spans` is their number, None if unknown."""
+    shares = [share for record in fit.records if (share := _lateral_shares(fit, record)) is not None]
+    frequency = np.abs(fit.poles) / (2 * np.pi)
+    reported = np.flatnonzero((frequency >= fit.band.low) & (frequency <= fit.band.high))
+    modes = [_build_mode(fit, int(j), max((float(share[j]) for share in shares), default=None)) for j in reported]
+    return assign_groups(modes, spans)
+
+
+def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
+    pole, m = fit.poles[j], fit.poles.size
+    variance = np.diag(fit.covariance)
+    inflation = _inflation(fit.blocks, pole)
+    decay_std, omega_std = np.sqrt(variance[j]) * inflation, np.sqrt(variance[m + j]) * inflation
+    frequency, damping = float(np.abs(pole)) / (2 * np.pi), float(-pole.real / np.abs(pole))
+    damping_std = float(decay_std / np.abs(pole))
+    frequencies = np.abs(fit.poles) / (2 * np.pi)
+    nearest = float(np.min(np.abs(np.delete(frequencies, j) - frequencies[j]), initial=np.inf))
+    best = max(fit.records, key=lambda record: float(np.sum(np.abs(record.residues[j] / record.noise) ** 2)))
+    decay, linear = best.decay, best.decay.linear
+    residues, spread = _shared_shape([r for r in fit.records if r.decay.test == decay.test], best, j)
+    scale = residues[np.argmax(np.abs(residues))]
+    gain = filter_gain(linear.taps, np.array([pole]), linear.rate)[0]
+    amplitude = 2 * np.abs(scale / gain * np.exp(-pole * (linear.first - decay.release.time)))
+    mode = Mode(
+        frequency_Hz=frequency,
+        frequency_std_Hz=_finite(omega_std / (2 * np.pi)),
+        damping_ratio=damping,
+        damping_ratio_std=_finite(damping_std),
+        sensor_shape=_sensor_shape(best, residues, spread, scale),
+        error=_band_error(fit.blocks, pole),
+        record=decay.record.name,
+        line=decay.record.line,
+        certain=damping_std < UNCERTAIN * damping,
+        lateral=lateral_share is not None and lateral_share > LATERAL,
+        amplitude_at_release=_finite(amplitude),
+        phase_collinearity=_phase_collinearity(residues),
+        lateral_over_vertical=lateral_share,
+        half_power_points=2 * damping * frequency * linear.duration,
+    )
+    return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
+
+
+def _phase_collinearity(shape: ComplexArray) -> float | None:
+    """Modal phase collinearity (Juang and Pappa 1985): 1 for a normal mode; None with fewer than two sensors."""
+    if shape.size < 2:
+        return None
+    # Moments about the origin, not about the mean: a shape with equal components is a normal mode.
+    xx, yy, xy = (float(np.sum(a * b)) for a, b in ((shape.real,) * 2, (shape.imag,) * 2, (shape.real, shape.imag)))
+    total = (xx + yy) ** 2
+    return ((xx - yy) ** 2 + 4 * xy**2) / total if total > 0 else None
+
+
+def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ...]:
+    """Caveats on a mode in a decay of a duration [s]; `nearest` is the distance of the nearest other mode [Hz]."""
+    warnings = []
+    bandwidth = 2 * mode.damping_ratio * mode.frequency_Hz
+    if not mode.certain:
+        relative = 100 * (mode.damping_ratio_std / mode.damping_ratio)
+        warnings.append(f"weakly excited: the standard deviation of the damping ratio is {relative:.0f} %")
+    if nearest < COINCIDENT * bandwidth or nearest * duration < 1.5:
+        warnings.append(f"near-coincident: the distance to another mode is only {1000 * nearest:.1f} mHz")
+    if mode.lateral:
+        warnings.append(
+            "lateral: the sensors move laterally; the signal of the vertical channels is due to oblique mounting"
+        )
+    return tuple(warnings)
+
+
+def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
+    """Factor by which standard deviations are increased if the residual near a mode exceeds the noise."""
+    energy, count = 0.0, 0
+    for block in blocks:
+        reach = max(FREQUENCY_REACH * 2 * np.pi / block.data.duration, -2 * pole.real)
+        near = np.abs(block.data.omega - pole.imag) < reach
+        energy += float(np.sum(np.abs(block.fit.residual[near] / block.noise) ** 2))
+        count += 2 * int(near.sum()) * block.noise.size
+    return float(np.sqrt(max(1.0, energy / count))) if count else 1.0
+
+
+def _shared_shape(repeats: list[RecordFit], best: RecordFit, j: int) -> tuple[ComplexArray, RealArray]:
+    """Common residues of the repeats of a drop, in the scale of the best record, and their standard deviation.
+
+    Residues are those at the first sample of a linear decay. Its time differs between repeats, and so does their scale.
+    """
+    table = np.array([record.residues[j] for record in repeats]).T
+    left, values, right = np.linalg.svd(table, full_matrices=False)
+    scale = right[0, next(i for i, record in enumerate(repeats) if record is best)]
+    noise = [record.noise * record.block.residue_std[j] for record in repeats]
+    return left[:, 0] * values[0] * scale, np.asarray(np.mean(noise, axis=0) * np.abs(scale))
+
+
+def _sensor_shape(
+    record: RecordFit, residues: ComplexArray, spread: RealArray, scale: complex
+) -> tuple[SensorShape, ...]:
+    shape, std = (residues / scale, spread / np.abs(scale)) if np.abs(scale) > 0 else (residues, spread)
+    return tuple(
+        SensorShape(
+            sensor=channel.sensor,
+            wire=channel.wire,
+            position_m=channel.position,
+            re=float(value.real),
+            im=float(value.imag),
+            std=_finite(deviation),
+        )
+        for channel, value, deviation in zip(record.decay.channels, shape, std, strict=True)
+    )
+
+
+def _band_error(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
+    """Residual over measured signal in the half-power band of a mode."""
+    residual = measured = 0.0
+    for block in blocks:
+        near = np.abs(block.data.omega - pole.imag) <= max(-pole.real, 2 * np.pi / block.data.duration)
+        residual += float(np.sum(np.abs(block.fit.residual[near] / block.noise) ** 2))
+        measured += float(np.sum(np.abs(block.data.spectrum[near] / block.noise) ** 2))
+    return float(np.sqrt(residual / measured)) if measured > 0 else 1.0
+
+
+def _lateral_shares(fit: LineFit, record: RecordFit) -> RealArray | None:
+    """Largest lateral over largest vertical amplitude of each pole, (m,); 0 if the lateral amplitude is noise."""
+    decay = record.decay
+    if decay.lateral.shape[1] == 0:
+        return None
+    data = build_block(decay.lateral, decay.linear.dt, fit.band.low, fit.band.fitted)
+    lateral = solve_residues(fit.poles, data)
+    noise = estimate_noise(lateral, fit.poles.size, data) * residue_spread(fit.poles, data)[:, None]
+    sideways = np.where(np.abs(lateral.residues) > 4 * noise, np.abs(lateral.residues), 0).max(axis=1)
+    upward = np.abs(record.residues).max(axis=1)
+    return np.asarray(sideways / np.maximum(upward, np.finfo(float).tiny))
+
+
+def _finite(value: float) -> float:
+    """The value, or 0 if the data do not determine it; a measured value is never 0."""
+    return float(value) if np.isfinite(value) else 0.0

@@ -98,14 +98,7 @@ ratio of up to 11 %. Separate modes have errors of up to 0.7 %, as their standar
 
 
 def warn_about_overlap(modes: Sequence[Mode]) -> tuple[str, ...]:
-    """Warning with the number and frequencies of the pairs of modes that overlap.
-
-    Args:
-        modes: Identified modes of a line; uncertain and lateral ones do not count.
-
-    Returns:
-        One warning, or none.
-    """
+    """Warn of the pairs of modes that overlap, by number and frequencies; uncertain and lateral modes do not count."""
     clear = [mode for mode in modes if mode.certain and not mode.lateral]
     frequency = np.array([mode.frequency_Hz for mode in clear])
     close = [i for i, mode in enumerate(clear) if overlaps(frequency, i, half_power_bandwidth(mode))]

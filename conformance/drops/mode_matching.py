@@ -124,15 +124,7 @@ def find_overlapping_modes(
 
 
 def find_sensor_positions(modes: Sequence[Mode], line: Catenary, source: str) -> Positions:
-    """Find the wires of the line under the sensors.
-
-    Args:
-        modes: Identified modes.
-        line: Line of the fit.
-        source: Name of the file of the modes, for messages.
-
-    Returns:
-        Wire of the line, by wire in the record and position of the sensor [m].
+    """Find the wires of the line under the sensors; `source` is the name of the file of the modes in messages.
 
     Raises:
         InputError: The line has no wire of this kind at the position of a sensor.
@@ -240,13 +232,6 @@ class MatchedModes:
 def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
     """Select the modes for a fit: certain, vertical and in a group.
 
-    Args:
-        modes: Identified modes.
-        source: Name of their file, for messages.
-
-    Returns:
-        Usable modes.
-
     Raises:
         InputError: None of the modes is usable.
     """
@@ -258,13 +243,7 @@ def select_usable(modes: Sequence[Mode], source: str) -> list[Mode]:
 
 @use_one_thread
 def match_modes(usable: list[Mode], line: Catenary, element: float, source: str) -> MatchedModes:
-    """Compute the modes of a line and pair them with identified modes.
-
-    Args:
-        usable: Usable identified modes.
-        line: Line of the fit.
-        element: Element length [m].
-        source: Name of the file of the modes, for messages.
+    """Pair identified modes with those of a line in elements of a length [m]; `source` as in `find_sensor_positions`.
 
     Raises:
         InputError: A sensor is not on the line, or too few modes have a computed counterpart.

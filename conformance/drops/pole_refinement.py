@@ -48,9 +48,6 @@ def refine_poles(
         blocks: Data, each channel in units of its noise.
         iterations: Largest number of steps.
         tolerance: Reduction of the cost in one step, below which the refinement ends [-].
-
-    Returns:
-        Poles with cost and information.
     """
     poles = poles[np.argsort(poles.imag)]
     current = build_normal_equations(poles, blocks)
@@ -104,14 +101,9 @@ class NormalEquations:
 
 
 def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> NormalEquations:
-    """Build the normal equations of the poles over all blocks; the residues of each channel are eliminated.
+    """Build the normal equations of the poles -delta + i omega, (m,) [1/s], over blocks in units of their noise.
 
-    Args:
-        poles: Poles lambda = -delta + i omega, (m,) [1/s].
-        blocks: Data, each channel in units of its noise.
-
-    Returns:
-        Sum over the blocks.
+    The residues of each channel are eliminated.
     """
     m = poles.size
     cost, matrix, gradient = 0.0, np.zeros((2 * m, 2 * m)), np.zeros(2 * m)

@@ -73,13 +73,7 @@ class ProjectionFit:
 
 
 def build_block(samples: RealArray, dt: float, low: float, high: float) -> DataBlock:
-    """Transform channels to spectral lines of a band, and build the residual terms.
-
-    Args:
-        samples: Channels, (n, c).
-        dt: Sampling interval [s].
-        low, high: Edges of the band [Hz].
-    """
+    """Transform channels, (n, c), at intervals dt [s] to the lines of a band [Hz], and build the residual terms."""
     n = samples.shape[0]
     lines = np.arange(max(1, int(np.ceil(low * n * dt))), min(n // 2, int(high * n * dt) + 1), dtype=np.int64)
     # The mean is line 0, which is not used; without it rounding errors are smaller.
@@ -195,30 +189,16 @@ def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> El
 
 
 def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:
-    """Solve columns c = x by least squares.
+    """Solve columns c = x, (n, m) and (n, c), by least squares: coefficients, (m, c), and residual, (n, c).
 
-    Args:
-        columns: Columns, n >= m, (n, m).
-        x: Right-hand sides, (n, c).
-
-    Returns:
-        Coefficients, (m, c); of dependent columns those with the smallest norm.
-        Residual, (n, c).
+    Of dependent columns, the coefficients are those with the smallest norm.
     """
     solved = eliminate_columns(columns, x, np.zeros((x.shape[0], 0)))
     return solved.coefficients, solved.residual
 
 
 def factor_columns(columns: RealArray) -> tuple[RealArray, RealArray]:
-    """Factor columns into an orthonormal basis and a triangular matrix, columns = Q R.
-
-    Args:
-        columns: Columns, n >= m, (n, m).
-
-    Returns:
-        Orthonormal basis Q, (n, m).
-        Upper triangular factor R, (m, m).
-    """
+    """Factor n >= m columns into an orthonormal basis Q, (n, m), and an upper triangular R, (m, m): columns = Q R."""
     try:
         first = _factor_gram_matrix(columns)
         second = _factor_gram_matrix(first.orthogonalise())

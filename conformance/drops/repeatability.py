@@ -7,7 +7,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.units import MotionQuantity
 from pantocheck.conformance.drops.decay_kernel import complete_overlap, low_pass_decay
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
-from pantocheck.conformance.drops.frequency_response import POWER_OF_OMEGA
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER
 from pantocheck.conformance.results.identification_format import (
     Comparison,
     Curve,
@@ -190,7 +190,7 @@ def convert_motion(samples: RealArray, rate: float, given: MotionQuantity, wante
     Returns:
         Motion in SI units, (n, c); the samples themselves if the quantity is the wanted one.
     """
-    power = POWER_OF_OMEGA[given] - POWER_OF_OMEGA[wanted]
+    power = MOTION_ORDER[wanted] - MOTION_ORDER[given]
     if power == 0:
         return samples
     n = scipy.fft.next_fast_len(samples.shape[0] + int(PADDING * rate), real=True)

@@ -47,11 +47,11 @@ def run_study(case: Case, system: System) -> Outcome:
 
             return run_release_velocity(case, study)
         case DropperDamping() as study:
-            from pantocheck.conformance.studies.vovan2015.dropper_damping import run_dropper_damping
+            from pantocheck.conformance.studies.vovan2015.dropper_coefficient import run_dropper_damping
 
             return run_dropper_damping(case, study)
         case DropperOscillation() as study:
-            from pantocheck.conformance.studies.vovan2015.dropper_oscillation import run_dropper_oscillation
+            from pantocheck.conformance.studies.vovan2015.dropper_coefficient import run_dropper_oscillation
 
             return run_dropper_oscillation(case, study)
         case SteadyArmDamper() as study:

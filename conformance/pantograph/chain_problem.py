@@ -31,14 +31,9 @@ class ChainResponse:
 
 
 def chain_response(values: RealArray, s: ComplexArray) -> ChainResponse:
-    """Response of a chain.
+    """Response of a chain at frequencies s = i omega, (m,) [rad/s].
 
-    Args:
-        values: Masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head, (3, n).
-        s: Frequencies i omega, (m,) [rad/s].
-
-    Returns:
-        Dynamic stiffness and motions.
+    The values are masses [kg], stiffnesses [N/m] and dampings [N s/m], base to head, (3, n).
     """
     n = values.shape[1]
     elements = values[1][:, None] + s * values[2][:, None]
@@ -56,15 +51,7 @@ def chain_response(values: RealArray, s: ComplexArray) -> ChainResponse:
 
 
 def logarithmic_derivatives(response: ChainResponse, s: ComplexArray) -> ComplexArray:
-    """Derivatives of ln D by the masses, stiffnesses and dampings.
-
-    Args:
-        response: Response of the chain.
-        s: Frequencies i omega, (m,) [rad/s].
-
-    Returns:
-        Derivatives, in the order of `values` of `chain_response`, (3, n, m).
-    """
+    """Derivatives of ln D by the values of `chain_response`, in their order, (3, n, m); `s` as there."""
     stretch = np.diff(response.motion, axis=0, prepend=0.0)
     by_stiffness = stretch**2 / response.stiffness
     return np.stack([s**2 * response.motion**2 / response.stiffness, by_stiffness, s * by_stiffness])

@@ -49,15 +49,7 @@ DAMPING_RANGE = (0.005, 1.0)
 
 
 def choose_starts(problem: ChainProblem, smaller: Sequence[RealArray]) -> list[RealArray]:
-    """Choose starts of a fit.
-
-    Args:
-        problem: Fit of a chain; its frequencies ascend.
-        smaller: Fitted chains with one mass less, each (3, n - 1).
-
-    Returns:
-        Free parameters of each start, each (p,).
-    """
+    """Choose starts of a fit over ascending frequencies, each (p,); `smaller` are fitted chains with one mass less."""
     lower, upper = problem.bounds
     split = _select_best(problem, [chain for each in smaller for chain in _split_masses(each, problem)], SPLIT_STARTS)
     chains = [*_rational_chains(problem), *split, *_random_chains(problem)]
@@ -184,13 +176,7 @@ class RationalResponse:
 
 
 def fit_rational_response(frequency: RealArray, stiffness: ComplexArray, n: int) -> RationalResponse:
-    """Fit the rational function of a chain of n masses.
-
-    Args:
-        frequency: Frequencies, (m,) [Hz].
-        stiffness: Measured dynamic stiffness, (m,) [N/m].
-        n: Number of masses.
-    """
+    """Fit the rational function of a chain of n masses to a stiffness [N/m] at frequencies [Hz], (m,)."""
     reference = 2 * np.pi * float(np.sqrt(frequency.min() * frequency.max()))
     powers = (2j * np.pi * frequency / reference)[:, None] ** np.arange(2 * n + 1)
     unknown = np.hstack([powers, -stiffness[:, None] * powers[:, : 2 * n - 2]])

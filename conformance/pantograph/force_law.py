@@ -57,13 +57,7 @@ class SpeedPolynomial(SourcedTable):
             )
 
     def evaluate(self, speed_km_h: float) -> float:
-        """Evaluate the polynomial.
-
-        Args:
-            speed_km_h: Speed [km/h].
-
-        Returns:
-            Force [N].
+        """Force [N] at a speed [km/h].
 
         Raises:
             LawInvalid: The law is not valid at this speed.

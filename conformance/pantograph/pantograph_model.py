@@ -30,9 +30,6 @@ def build_pantograph(
         working_height: Static height of the head under this force [m].
         wire_height: Nominal height of the contact wire [m].
         aerodynamic_force: Part of the uplift force that acts at the point of the aerodynamic force [N].
-
-    Returns:
-        Pantograph for the simulator.
     """
     model = _build_model(file, uplift_force, working_height, wire_height)
     shift = _aerodynamic_point(file) - _uplift_point(file)
@@ -100,15 +97,7 @@ def _choose_mass(chain_table: ChainTable, mass: int | str) -> RealArray:
 
 # Receptance of the head of a pantograph: its motion under a harmonic contact force.
 def head_receptance(file: PantographFile, omega: RealArray) -> NDArray[np.complex128]:
-    """Displacement of the head over a force on the head, e_h (K + i w C - w^2 M)^-1 e_h.
-
-    Args:
-        file: Pantograph of the case.
-        omega: Angular frequencies, (n,) [rad/s].
-
-    Returns:
-        Receptance, (n,) [m/N].
-    """
+    """Displacement of the head over a force on it, e_h (K + i w C - w^2 M)^-1 e_h, (n,) [m/N], at omega [rad/s]."""
     model, w = build_pantograph(file, 0.0, 0.0), omega[:, None, None]
     dynamic = model.stiffness + 1j * w * model.damping - w**2 * model.mass
     motion = np.linalg.solve(dynamic, model.head.astype(complex)[:, None])[..., 0]

@@ -8,7 +8,7 @@ from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
-from pantocheck.conformance.pantograph.response_sidecar import HeadPoint, ResponseKind
+from pantocheck.conformance.pantograph.response_record import HeadPoint, ResponseKind
 
 NumberPair = tuple[Rounded, Rounded]
 ComparedValue = Rounded | tuple[Rounded, ...]

@@ -30,13 +30,7 @@ def draw_band_bars(
 ) -> tuple[Chart, ...]:
     """Draw one bar chart per pantograph: computed and printed RMS of the contact force in each band.
 
-    Args:
-        values: Computed values by damping model.
-        printed: Printed values; may be empty.
-        bands: Names of the quantities.
-
-    Returns:
-        Charts in the order of the pantographs.
+    Bands are names of quantities; values are by damping model, and printed ones may be missing.
     """
     origin = "computed on the assumed line and printed" if printed else "computed under each damping model"
     table = "computed and printed values" if printed else "the same run under several damping models"

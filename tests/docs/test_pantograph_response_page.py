@@ -9,8 +9,12 @@ from jsonschema import validate
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.core.units import convert_key
-from pantocheck.conformance.pantograph.response_record import read_response
-from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_FORMS, ResponseSidecar, list_response_columns
+from pantocheck.conformance.pantograph.response_record import (
+    RESPONSE_FORMS,
+    ResponseSidecar,
+    list_response_columns,
+    read_response,
+)
 
 TEXT = (Path(__file__).parents[2] / "docs" / "pantograph-response.md").read_text(encoding="utf-8")
 SIDECAR, COLUMNS, LIMITS = re.findall(r"```toml\n(.*?)```", TEXT, re.DOTALL)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 RATE, N = 100.0, 400
 
@@ -16,7 +17,10 @@ def build_drop_record() -> DropRecord:
         DropChannel("S2_z", 2, "z", "MW", 40.5),
     )
     signals = np.random.default_rng(0).standard_normal((N, 3))
-    drop, line = DropDescription(30, "CW", 33, 1.5), DropLine((60.0, 54.0), 20e3, 15e3)
+    drop, line = (
+        DropDescription(30, "CW", 33, 1.5),
+        MeasuredLine(spans_m=(60.0, 54.0), contact_wire_tension_N=20e3, messenger_wire_tension_N=15e3),
+    )
     return DropRecord("T", "made", RATE, signals, channels, "acceleration", drop, line)
 
 

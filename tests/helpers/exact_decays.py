@@ -7,9 +7,10 @@ import numpy as np
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand, complete_overlap, low_pass_decay
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, Release
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.line_fit import LineFit, fit_line, share_blocks
 from pantocheck.conformance.drops.projection import build_block
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 RATE, RELEASE = 50.0, 2.0
 BAND = FrequencyBand.up_to(4.0, RATE)
@@ -42,7 +43,7 @@ def build_exact_decay(
     if lateral is not None:
         channels.append(DropChannel("S1_y", 1, "y", "CW", 20.0))
     drop = DropDescription(20.0, "CW", 100.0, RELEASE)
-    record = DropRecord(name, name, RATE, signals, tuple(channels), drop=drop, line=DropLine((60.0,) * 6))
+    record = DropRecord(name, name, RATE, signals, tuple(channels), drop=drop, line=MeasuredLine(spans_m=(60.0,) * 6))
     taps = low_pass_decay(RATE, BAND.fitted, BAND.stop, 80.0)
     begin, half = round((RELEASE + after) * RATE), (taps.size - 1) / 2 / RATE
     filtered = complete_overlap(signals[begin:], taps)

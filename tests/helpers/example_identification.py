@@ -7,7 +7,7 @@ import numpy as np
 from helpers.exact_decays import build_exact_decay, build_exact_fit
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import build_modes
 
 FREQUENCY = np.array([0.88, 0.92, 0.97, 1.75, 1.86, 1.93])
 RATIO = np.array([0.0050, 0.0048, 0.0046, 0.0030, 0.0029, 0.0028])

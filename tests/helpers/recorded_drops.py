@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from helpers.static_records import read_unequal_line
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.drops.drop_simulation import decimate
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_simulation import decimate, describe_line
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.line.line_file import LineFile
@@ -66,7 +66,7 @@ def record_drop(
         channels=tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (wire, x) in enumerate(SENSORS, 1)),
         quantity=quantity,  # type: ignore[arg-type]
         drop=DropDescription(MASS, "CW", PLACE, RELEASE),
-        line=DropLine(line.geometry.span_lengths, line.contact_wire.tension_N, line.messenger_wire.tension_N),
+        line=describe_line(line),
     )
     return replace(record, **changes)
 

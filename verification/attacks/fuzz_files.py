@@ -18,9 +18,8 @@ from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.dossier.dossier_reading import read_dossier
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
 from pantocheck.conformance.execution.plan import read_plan
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
@@ -28,6 +27,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from verification.attacks.fuzz_uses import (
     CASE,
@@ -229,7 +229,10 @@ def write_force_uff(path: Path, time: RealArray, channels: dict[str, RealArray])
     sensors = tuple(DropChannel(name, number, "z", "CW", 1.0) for number, name in enumerate(channels, 1))
     rate = float(1 / (time[1] - time[0]))
     signals = np.column_stack(list(channels.values()))
-    drop, line = DropDescription(30.0, "CW", 33.0, 1.5), DropLine((60.0, 54.0), 20e3, 15e3)
+    drop, line = (
+        DropDescription(30.0, "CW", 33.0, 1.5),
+        MeasuredLine(spans_m=(60.0, 54.0), contact_wire_tension_N=20e3, messenger_wire_tension_N=15e3),
+    )
     record = DropRecord("force", "fuzz", rate, signals, sensors, "acceleration", drop, line)
     write_drop_uff(record, path, "binary")
 
@@ -250,7 +253,10 @@ def _drop_record() -> DropRecord:
         DropChannel("S2_z", 2, "z", "MW", 40.5),
     )
     signals = np.random.default_rng(0).standard_normal((400, 3))
-    drop, line = DropDescription(30.0, "CW", 33.0, 1.5), DropLine((60.0, 54.0), 20e3, 15e3)
+    drop, line = (
+        DropDescription(30.0, "CW", 33.0, 1.5),
+        MeasuredLine(spans_m=(60.0, 54.0), contact_wire_tension_N=20e3, messenger_wire_tension_N=15e3),
+    )
     return DropRecord("drop", "fuzz", 100.0, signals, channels, "acceleration", drop, line)
 
 

@@ -12,9 +12,10 @@ from scipy.signal import resample_poly
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.drops.damping_results import build_damping_results
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from pantocheck.model import Kind, Rayleigh
 from pantocheck.model.dynamics.drop_values import MassDropSetup as SimulatedDrop
 from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
@@ -46,7 +47,7 @@ def main() -> None:
         signals,
         tuple(DropChannel(f"S{i}_z", i, "z", SHORT[wire], x) for i, (wire, x) in enumerate(SENSORS, 1)),
         drop=DropDescription(MASS, "CW", PLACE, HANGING),
-        line=DropLine(six_spans.span_lengths),
+        line=MeasuredLine(spans_m=six_spans.span_lengths),
     )
     (identification,) = identify_modes((record,))
     results = build_damping_results(identification.modes, line, ELEMENT, "the loop")

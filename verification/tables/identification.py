@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from pantocheck.conformance.drops.drop_reading import read_drop_records
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identify import Identification, identify_modes
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 Real = NDArray[np.float64]
 SSI_ROWS, SSI_ORDER, SSI_RATE = 60, 160, 25.0  # block rows, largest model order, rate of the decimated record [Hz]
@@ -71,7 +72,7 @@ def made_up(seed: int, peers: bool) -> None:
         made.samples,
         channels,
         drop=DropDescription(20, "CW", 0.0, 5.0),
-        line=DropLine((60.0,) * 6),
+        line=MeasuredLine(spans_m=(60.0,) * 6),
     )
     (found,) = identify_modes((record,))
     # The bound includes the modes in the fitted band that are not reported, or their leakage would count as signal.

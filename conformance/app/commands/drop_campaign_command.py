@@ -25,8 +25,8 @@ from pantocheck.conformance.drops.drop_campaign import (
     require_axes,
     simulate_records,
 )
-from pantocheck.conformance.drops.drop_formats import select_drop_writer
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop
+from pantocheck.conformance.drops.drop_writing import select_drop_writer
 
 _LOGGER = logging.getLogger(__name__)
 

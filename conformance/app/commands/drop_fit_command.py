@@ -12,8 +12,12 @@ from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.notebook.fitted_damping import write_damping_fit
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.drops.damping_model import MODAL_GROUPS
-from pantocheck.conformance.drops.damping_results import FitOptions, WireCoefficients, build_damping_results
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_results import (
+    FitOptions,
+    WireCoefficients,
+    build_damping_results,
+    write_damping_toml,
+)
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary

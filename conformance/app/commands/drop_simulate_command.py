@@ -14,8 +14,8 @@ from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.step_log import ShareCallback, StepSequence
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.drop_formats import check_drop_target, select_drop_writer
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop, simulate_drop
+from pantocheck.conformance.drops.drop_writing import check_drop_target, select_drop_writer
 
 _LOGGER = logging.getLogger(__name__)
 

@@ -21,7 +21,7 @@ from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.texts import DocumentationPage, count_noun
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
-from pantocheck.conformance.pantograph.chain_selection import MASS_COUNTS, FitTask, fit_chains
+from pantocheck.conformance.pantograph.chain_fit import MASS_COUNTS, FitTask, fit_chains
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 

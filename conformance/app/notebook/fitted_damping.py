@@ -16,7 +16,7 @@ from pantocheck.conformance.core.drawn_axes import provide_axes
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_results import write_damping_toml
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.results.damping_format import Coefficient, DampingResults
 

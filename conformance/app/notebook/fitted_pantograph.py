@@ -17,7 +17,7 @@ from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.toml_file import validate_model
-from pantocheck.conformance.pantograph.chain_selection import ChainSelection, FitTask, fit_chains
+from pantocheck.conformance.pantograph.chain_fit import ChainSelection, FitTask, fit_chains
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.response_record import ResponseRecord, read_response
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit

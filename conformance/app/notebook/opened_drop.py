@@ -9,9 +9,9 @@ from pantocheck.conformance.core.drawn_axes import provide_axes
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import SI_UNITS
-from pantocheck.conformance.drops.drop_formats import select_drop_writer
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.drop_writing import select_drop_writer
 
 
 @dataclass(frozen=True)

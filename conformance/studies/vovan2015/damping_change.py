@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DampingChange
-from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.figure_data import Chart, TextTable
 from pantocheck.conformance.grading.record_uncertainty import MIN_SECTIONS, largest_changes
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
@@ -14,7 +14,6 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.runs.system import (
     Delivered,
     Errored,
@@ -25,7 +24,11 @@ from pantocheck.conformance.runs.system import (
     missing_record_reason,
 )
 from pantocheck.conformance.studies.damping_sensitivity import PrintedValues, draw_band_bars, list_pantographs
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import (
+    build_findings_table,
+    build_provenance_table,
+    draw_curve,
+)
 
 COMPARED_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
 """Quantities of Table 1 of Vo Van, Balmes and Lorang (2015)."""
@@ -57,12 +60,7 @@ class ForceChanges:
 def compare_damping_runs(
     before: RecordSignals, after: RecordSignals, sections: Sequence[tuple[float, float]] = ()
 ) -> ForceChanges:
-    """Changes between two runs of a case.
-
-    Args:
-        before, after: Signals with the earlier damping and with that of the case.
-        sections: Shifted analysis sections [m, m].
-    """
+    """Changes from a run with the earlier damping to one with that of the case, also over shifted sections [m, m]."""
     shifted = (
         force_changes(before.evaluate_section(section).values, after.evaluate_section(section).values)
         for section in sections
@@ -72,9 +70,6 @@ def compare_damping_runs(
 
 def force_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
     """Changes of the statistics of the contact force [%].
-
-    Args:
-        before, after: Quantities by pantograph and name.
 
     Returns:
         Changes by pantograph and name, without those that one side lacks. The line holds the comparison of the first
@@ -114,12 +109,7 @@ def _compare_pantographs(
 
 # Tables of a changed damping: computed and printed values, and the changes with their range.
 def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValues) -> TextTable:
-    """Build a table of the computed and printed values under each damping model.
-
-    Args:
-        values: Computed values by damping model.
-        printed: Printed values by damping model and pantograph.
-    """
+    """Build a table of the computed and printed values; printed ones are by damping model and pantograph."""
     pantographs = list_pantographs(values)
     rows = []
     for quantity in ("mean_force_N", *COMPARED_QUANTITIES, "contact_loss_pct"):
@@ -137,12 +127,7 @@ def build_values_table(values: Mapping[str, ValuesByOwner], printed: PrintedValu
 
 
 def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTable:
-    """Build a table of the changes: printed, computed, and smallest and largest value over shifted sections.
-
-    Args:
-        changes: Computed changes.
-        printed: Changes of the printed values.
-    """
+    """Build a table of the changes: printed, computed, and smallest and largest value over shifted sections."""
     rows = []
     for owner, values in sorted(changes.values.items(), key=lambda item: (item[0] == LINE, item[0])):
         for name, value in values.items():
@@ -161,15 +146,9 @@ def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTa
 
 # Change of the contact force by another damping model, band by band (Vo Van, Balmes and Lorang 2015, Table 1).
 def run_damping_change(case: Case, study: DampingChange, system: System) -> Outcome:
-    """Run a passage with the earlier damping and with that of the case, and compare the bands.
+    """Run a passage with the damping before the change and with that of the case, and compare the bands.
 
-    Args:
-        case: Passage with the damping after the change.
-        study: Damping before the change, and printed values.
-        system: System under test, which runs both passages.
-
-    Returns:
-        Delivered run with the damping of the case and the comparison; else the reason of the run without a record.
+    Without a record of both runs, the outcome is the reason.
     """
     ((name, damping),) = case.dampings.items()
     runs: dict[str, Delivered] = {}
@@ -248,9 +227,7 @@ def _draw_rear_force(case: Case, span: int, signals: Mapping[str, RecordSignals]
                 continue
             position = record.position[-1]
             inside = (position >= start) & (position <= end)
-            series.append(
-                Series(label=model, style="line", x=thin_series(position[inside]), y=thin_series(force[inside]))
-            )
+            series.append(draw_curve(model, position[inside], force[inside]))
         if series:
             charts.append(
                 Chart(

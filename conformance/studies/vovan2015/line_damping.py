@@ -87,15 +87,9 @@ def build_lines(case: Case) -> dict[str, Catenary]:
 
 
 def computed_damping_ratios(mesh: DiscretisedLine, shapes: Modes, line: Catenary) -> RealArray:
-    """Damping ratios of the undamped modes of a line; inside a modal band, its ratio replaces Rayleigh damping.
+    """Damping ratios, (n,) [-], of the undamped shapes of a mesh under the damping of a line with the same geometry.
 
-    Args:
-        mesh: Line in finite elements with any damping.
-        shapes: Undamped modes of this line.
-        line: The same line with the damping model.
-
-    Returns:
-        Damping ratio of every mode, (n,) [-].
+    Inside a modal band, its ratio replaces Rayleigh damping.
     """
     rayleigh = damping_ratios(with_damping(mesh, line.damping), shapes)
     return apply_modal_bands(rayleigh, shapes.frequency, line.modal_damping)
@@ -108,9 +102,6 @@ HIGHEST_HZ = 6.0
 
 def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
     """Compute the quantities by which Vo Van, Balmes and Lorang (2015) describe groups of span modes.
-
-    Args:
-        modes: Identified modes.
 
     Returns:
         Values by name of quantity. Lists start with group 1. Quantities that need more modes are left out.
@@ -142,9 +133,6 @@ def compute_group_findings(modes: Sequence[Mode]) -> dict[str, Value]:
 
 def compute_population_findings(population: PopulationFile) -> dict[str, Value]:
     """Quantities by which Vo Van, Balmes and Lorang (2015) describe all tests, each identified on its own.
-
-    Args:
-        population: Population of tests.
 
     Returns:
         Values by name of quantity, without those that need more tests or an outlier.

@@ -10,14 +10,13 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series, TextTable
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.damping_model import MATRICES, WIRES
 from pantocheck.conformance.drops.damping_results import build_damping_results
-from pantocheck.conformance.drops.damping_terms import MATRICES, WIRES
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop
 from pantocheck.conformance.drops.identify import Identification
 from pantocheck.conformance.drops.population_analysis import analyse_population
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
@@ -34,7 +33,7 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     identify_tests,
     select_certain,
 )
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve
 from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modes import compute_modes_below
 
@@ -43,15 +42,9 @@ SMALLEST_DRAWN_RATIO = 1e-3
 
 
 def build_fit_report(case: Case, identification: Identification) -> StudyResult:
-    """Fit a damping model with coefficients of each wire, and report coefficients and their observability.
+    """Fit coefficients of each wire to the modes of simulated drops, and report them with their observability.
 
-    Args:
-        case: Case with the simulated drops.
-        identification: Modes identified from the drops.
-
-    Returns:
-        Numbers of observable coefficients by name of quantity, table and chart; without enough modes, a table with the
-        reason.
+    Without enough modes, the report is a table with the reason.
     """
     line, element = build_catenary(case.line), case.file.discretisation.element_m
     try:
@@ -122,14 +115,7 @@ def _draw_observability(results: DampingResults) -> Chart:
 #
 # The first of the compared models of a case is the reference model of the paper.
 def run_mass_drop_study(case: Case) -> Delivered:
-    """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit.
-
-    Args:
-        case: Case with a mass drop.
-
-    Returns:
-        Study without a record.
-    """
+    """Simulate the drops of a case, identify the modes, and report groups of modes, damping models and fit."""
     begin = time.perf_counter()
     identified = identify_drops(case)
     modes = identified.identification.modes
@@ -189,10 +175,7 @@ def _compute_ratios(case: Case) -> ComputedRatios:
 def _draw_frequencies(case: Case, identified: IdentifiedDrops, computed: ComputedRatios, bound: list[Mark]) -> Chart:
     """Damping ratio against frequency, identified and computed from each damping model (Figure 7 of the paper)."""
     frequency, ratios = computed
-    curves = [
-        Series(label=name, style="line", x=thin_series(frequency), y=thin_series(100 * ratio))
-        for name, ratio in ratios.items()
-    ]
+    curves = [draw_curve(name, frequency, 100 * ratio) for name, ratio in ratios.items()]
     groups = [
         Mark(label=f"printed: group {limit.item}", axis="x", low=limit.lower, high=limit.upper)
         for limit in case.limits

@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import ReleaseVelocity
 from pantocheck.conformance.comparison.drop_motion import (
@@ -24,16 +22,15 @@ from pantocheck.conformance.comparison.drop_motion import (
 from pantocheck.conformance.comparison.drop_statistics import compute_statistics, select_window
 from pantocheck.conformance.comparison.recorded_drop import locate_drop
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_data import Chart, Series, TextTable
+from pantocheck.conformance.core.figure_data import Chart, TextTable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop, simulate_drop
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.filters import is_observable
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.results.drop_comparison_format import ModelAgreement
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table, build_lines
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve, rms
 
 MEDIUM = MOTION_BANDS[1]
 """Medium frequencies, 5 to 20 Hz as in Table 1 of the paper."""
@@ -51,13 +48,6 @@ class VelocityWindow:
 
 def run_release_velocity(case: Case, study: ReleaseVelocity) -> Delivered:
     """Simulate the first drop of a case under each damping model and compare the velocity in every time window.
-
-    Args:
-        case: Case with a mass drop.
-        study: Damping models, sensor and time windows.
-
-    Returns:
-        Study without a record.
 
     Raises:
         InputError: The sensor or the model in place of the record does not exist, or a window lies outside the record.
@@ -120,27 +110,20 @@ def compare_velocities(
     Args:
         record, reference, rayleigh, modal: Velocity of the record, under the reference model, with the fitted Rayleigh
             damping, and with modal damping besides.
-
-    Returns:
-        Values by name of quantity.
     """
     first = rayleigh[0]
     return {
-        "modal_velocity_difference_pct": 100 * _rms(modal[0].velocity - first.velocity) / _rms(first.velocity),
-        "reference_residual_velocity_ratio": _rms(reference[-1].velocity) / _rms(record[-1].velocity),
-        "medium_frequency_velocity_ratio": _rms(first.medium) / _rms(reference[0].medium),
+        "modal_velocity_difference_pct": 100 * rms(modal[0].velocity - first.velocity) / rms(first.velocity),
+        "reference_residual_velocity_ratio": rms(reference[-1].velocity) / rms(record[-1].velocity),
+        "medium_frequency_velocity_ratio": rms(first.medium) / rms(reference[0].medium),
     }
-
-
-def _rms(signal: RealArray) -> float:
-    return float(np.sqrt(np.mean(signal**2)))
 
 
 def _rms_table(windows: dict[str, list[VelocityWindow]], study: ReleaseVelocity, place: str) -> TextTable:
     names = [f"{start:g} s to {end:g} s" for start, end in study.windows_s]
     band = MEDIUM.text
     rows = [
-        [model, *(f"{1e3 * _rms(signal):.4g} mm/s" for cut in cuts for signal in (cut.velocity, cut.medium))]
+        [model, *(f"{1e3 * rms(signal):.4g} mm/s" for cut in cuts for signal in (cut.velocity, cut.medium))]
         for model, cuts in windows.items()
     ]
     return TextTable(
@@ -187,14 +170,10 @@ def cut_windows(motion: DropMotion, study: ReleaseVelocity) -> dict[str, list[Ve
 
 
 def _draw_velocity(cuts: dict[str, VelocityWindow], window: tuple[float, float], place: str) -> Chart:
-    series = [
-        Series(label=name, style="line", x=thin_series(cut.time), y=thin_series(1e3 * cut.velocity))
-        for name, cut in cuts.items()
-    ]
     return Chart(
         caption=f"Velocity of the {place} after the release, {window[0]:g} s to {window[1]:g} s.",
         alternative="Velocity over time under each damping model; the RMS of each is in the table.",
         x_label="time after the release [s]",
         y_label="velocity [mm/s]",
-        series=series,
+        series=[draw_curve(name, cut.time, 1e3 * cut.velocity) for name, cut in cuts.items()],
     )

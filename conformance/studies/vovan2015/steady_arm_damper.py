@@ -20,21 +20,13 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     draw_damping_ratios,
     identify_drops,
 )
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table
 
 FrequencyBands = tuple[tuple[float, float], ...]
 
 
 def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
-    """Simulate and identify the drops of a case without and with the dampers, and compare the bands.
-
-    Args:
-        case: Case with a mass drop.
-        study: Damper and frequency bands.
-
-    Returns:
-        Study without a record.
-    """
+    """Simulate and identify the drops of a case without and with the dampers, and compare the bands."""
     begin = time.perf_counter()
     line = build_catenary(case.line)
     arms = tuple(replace(arm, vertical_damper=study.damper_N_s_m) for arm in line.steady_arms)

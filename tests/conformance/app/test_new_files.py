@@ -22,7 +22,7 @@ from pantocheck.conformance.core.validation_messages import list_bounds
 from pantocheck.conformance.dossier.dossier_file import DossierFile
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.pantograph.response_sidecar import ResponseSidecar
+from pantocheck.conformance.pantograph.response_record import ResponseSidecar
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered

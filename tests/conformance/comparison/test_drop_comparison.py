@@ -11,9 +11,10 @@ from helpers.recorded_drops import DURATION, RATE, RELEASE, WINDOWS, build_task,
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.drop_comparison import compare_drop
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_simulation import decimate
 from pantocheck.conformance.results.drop_comparison_format import DropComparison, ModelAgreement
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 ALL = (0.3, 20.0)
 EARLY, LATE = WINDOWS
@@ -206,7 +207,7 @@ def test_clipped_channel_leaves_its_limit_open() -> None:
 
 
 def test_record_of_an_unknown_line_is_at_best_unverified() -> None:
-    comparison = grade(replace(record_drop(), line=DropLine()), limit())
+    comparison = grade(replace(record_drop(), line=MeasuredLine()), limit())
     assert comparison.verdict == "unverified"
     assert any("not verified" in text for text in comparison.warnings)
 
@@ -236,9 +237,15 @@ def test_slow_record_is_aligned_too_and_a_very_slow_one_is_refused() -> None:
         ({"drop": DropDescription(30.0, "XW", 94.5)}, "key drop.wire: found 'XW'"),
         ({"drop": DropDescription(30.0, "CW", None)}, "key drop.position_m: missing"),
         ({"drop": DropDescription(30.0, "CW", 400.0)}, "key drop.position_m: no wire CW at 400 m"),
-        ({"line": DropLine((63.0, 63.0, 54.0))}, "length of span 3 is 54 m in the record, 58.5 m on the line"),
-        ({"line": DropLine((63.0, 63.0))}, "number of spans is 2 in the record, 3 on the line"),
-        ({"line": DropLine((), 24e3)}, "tension of the contact wire is 24000 N in the record, 20000 N on the line"),
+        (
+            {"line": MeasuredLine(spans_m=(63.0, 63.0, 54.0))},
+            "length of span 3 is 54 m in the record, 58.5 m on the line",
+        ),
+        ({"line": MeasuredLine(spans_m=(63.0, 63.0))}, "number of spans is 2 in the record, 3 on the line"),
+        (
+            {"line": MeasuredLine(spans_m=(), contact_wire_tension_N=24e3)},
+            "tension of the contact wire is 24000 N in the record, 20000 N on the line",
+        ),
     ],
 )
 def test_record_of_another_drop_or_line_is_refused(changes: dict[str, Any], message: str) -> None:

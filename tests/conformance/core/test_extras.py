@@ -32,7 +32,6 @@ for name in {sorted(EXTRA_OF_PACKAGE)}:
 
 NEEDS_AN_EXTRA = (
     *("conformance.documents.pdf_check", "conformance.documents.pdf_check"),
-    *("conformance.drops.mode_universal_file", "conformance.drops.uff_writing"),
     *("conformance.core.hdf5_table", "conformance.core.matlab_table"),
     *("conformance.core.uff_table", "conformance.core.uff_table"),
 )

@@ -11,10 +11,16 @@ import scipy.optimize
 
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.damping_model import MeasuredModes, fit_damping_model, fit_modal_bands
-from pantocheck.conformance.drops.damping_terms import DampingBasis, build_damping_basis
+from pantocheck.conformance.drops.damping_model import (
+    DampingBasis,
+    MeasuredModes,
+    build_damping_basis,
+    compute_observability,
+    fit_damping_model,
+    fit_modal_bands,
+    residual_without_term,
+)
 from pantocheck.conformance.drops.mode_matching import modal_assurance, pair_modes
-from pantocheck.conformance.drops.paired_shapes import compute_observability, residual_without_term
 from pantocheck.model.modal.modal_damping import apply_modal_bands
 from pantocheck.model.modal.modes import ComponentEnergies
 

@@ -51,7 +51,7 @@ def test_every_combination_is_one_record_per_repeat(case_path: Path) -> None:
     """Two masses, two places, two tensions and two repeats: 16 records whose sidecars state their drop and line."""
     options = ("--mass", "20", "--mass", "40", "--place", "CW:40.5", "--place", "MW:81", "--repeats", "2")
     records = read_campaign(case_path, *options, "--messenger-tension", "14000", "--messenger-tension", "15000")
-    factors = [(r.drop.mass, r.drop.wire, r.drop.position, r.line.messenger_wire_tension) for r in records]
+    factors = [(r.drop.mass, r.drop.wire, r.drop.position, r.line.messenger_wire_tension_N) for r in records]
     assert len(records) == 16
     assert len(set(factors)) == 8
     assert all(factors[k] == factors[k + 1] for k in range(0, 16, 2))

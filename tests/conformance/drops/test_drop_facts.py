@@ -16,10 +16,10 @@ from helpers.toml_edit import edit_toml
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn, parse_direction
 from pantocheck.conformance.drops.drop_reading import assemble_drop_record, build_drop, build_line, read_drop_records
-from pantocheck.conformance.drops.drop_record import DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar
-from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5
-from pantocheck.conformance.drops.uff_writing import write_drop_uff
+from pantocheck.conformance.drops.drop_writing import write_drop_csv, write_drop_hdf5, write_drop_uff
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 
 def write_hdf5(record: DropRecord, path: Path) -> None:
@@ -36,7 +36,7 @@ WRITERS: dict[str, Callable[[DropRecord, Path], None]] = {
 def unknown_facts(record: DropRecord) -> DropRecord:
     """Record of which only the signals and the names of its sensors are known."""
     channels = tuple(replace(channel, wire="", position=None) for channel in record.channels)
-    return replace(record, channels=channels, drop=DropDescription(), line=DropLine())
+    return replace(record, channels=channels, drop=DropDescription(), line=MeasuredLine())
 
 
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
@@ -110,7 +110,7 @@ def test_sidecar_completes_the_file_and_precedes_it(record: DropRecord, tmp_path
     runs = read_drop_records(tmp_path / "r.h5")
     assert [run.name for run in runs] == ["T9 run 1", "T9 run 2"]
     assert runs[1].drop == replace(record.drop, mass=31.0)
-    assert runs[1].line == replace(record.line, spans=(50.0,))
+    assert runs[1].line == record.line.model_copy(update={"spans_m": (50.0,)})
 
 
 def test_keys_of_a_sidecar_are_those_of_the_record(record: DropRecord, tmp_path: Path) -> None:
@@ -161,9 +161,11 @@ def test_fact_that_is_no_number_is_named(key: str) -> None:
 
 def test_facts_of_a_line_are_numbers() -> None:
     attributes = {"spans_m": np.array([60.0, 54.0]), "cw_tension_n": 2e4, "mw_tension_n": "15000"}
-    assert build_line(attributes, "here") == DropLine((60.0, 54.0), 2e4, 1.5e4)
-    assert build_line({"spans_m": 55}, "here") == DropLine((55.0,))
-    assert build_line({}, "here") == DropLine()
+    assert build_line(attributes, "here") == MeasuredLine(
+        spans_m=(60.0, 54.0), contact_wire_tension_N=2e4, messenger_wire_tension_N=1.5e4
+    )
+    assert build_line({"spans_m": 55}, "here") == MeasuredLine(spans_m=(55.0,))
+    assert build_line({}, "here") == MeasuredLine()
     for key in ("spans_m", "cw_tension_n", "mw_tension_n"):
         with pytest.raises(InputError, match=f"here, attribute {key}: 'a' is not a number"):
             build_line({key: "a"}, "here")

@@ -88,7 +88,7 @@ def test_record_is_the_decay_at_the_rate_of_the_record(drop_case: DropCase) -> N
         5,
     )
     assert [(c.wire, c.axis, c.position) for c in record.channels][2:] == [("MW", "z", 99.0), ("MW", "z", 18.0)]
-    assert record.line.spans == (63.0, 63.0)
+    assert record.line.spans_m == (63.0, 63.0)
     assert record.signals.shape == (1100, 4)
     # The mass hangs still before the release: the filter leaves a share of 1e-4 of the later motion, and it rings for
     # 0.3 s before the release.

@@ -17,10 +17,10 @@ from pantocheck.conformance import (
     open_drop,
     open_modes,
 )
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import build_modes
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
@@ -32,7 +32,10 @@ def drop() -> OpenedDrop:
     """Drop with two sensors and a decay of one second."""
     signals = np.outer(np.exp(-np.arange(100) / 50), (1.0, -2.0))
     channels = tuple(DropChannel(f"S{i}z", i, "z", "CW", 10.0 * i) for i in (1, 2))
-    drop, line = DropDescription(40.0, "CW", 30.0, 0.1), DropLine((63.0,), 20e3, 14e3)
+    drop, line = (
+        DropDescription(40.0, "CW", 30.0, 0.1),
+        MeasuredLine(spans_m=(63.0,), contact_wire_tension_N=20e3, messenger_wire_tension_N=14e3),
+    )
     return OpenedDrop(DropRecord("test drop", "test", 100.0, signals, channels, drop=drop, line=line))
 
 

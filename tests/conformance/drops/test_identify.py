@@ -13,16 +13,16 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import find_linear_decay, find_release, prepare_decay
 from pantocheck.conformance.drops.drop_reading import read_drop_records
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import _find_longest, _try_start_orders, identify_modes
 from pantocheck.conformance.drops.line_fit import share_blocks
-from pantocheck.conformance.drops.mode_groups import find_group_outliers, number_groups
+from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
 from pantocheck.conformance.drops.start_poles import read_poles
-from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
 
 SPANS = (60.0,) * 6
 
@@ -41,8 +41,17 @@ def build_record(synthetic: SyntheticDrop, name: str = "synthetic", lateral: Rea
         signals.copy(),
         channels,
         drop=DropDescription(20, "CW", 100, 5.0),
-        line=DropLine(SPANS),
+        line=MeasuredLine(spans_m=SPANS),
     )
+
+
+def simulate(
+    seed: int, modes: int = 6, duration: float = 60.0, rate: float = 50.0, weak: float = 0.0, **options: float
+) -> tuple[np.random.Generator, ComplexArray, SyntheticDrop]:
+    """Random numbers, poles, and the drop that they make."""
+    random = np.random.default_rng(seed)
+    true = span_modes(random, modes)
+    return random, true, drop(random, true, duration=duration, rate=rate, weak=weak, **options)
 
 
 def complex_poles(modes: tuple[Mode, ...]) -> ComplexArray:
@@ -79,9 +88,7 @@ def test_blind_identification_reaches_the_bound(seed: int) -> None:
 
 def test_weak_mode_is_uncertain_or_not_identified() -> None:
     """A mode thirty times below the others in strong noise: it never has a certain damping ratio."""
-    random = np.random.default_rng(8)
-    true = span_modes(random, 6)
-    synthetic = drop(random, true, duration=60.0, rate=50.0, noise=0.02, weak=0.0)
+    *_, synthetic = simulate(8, noise=0.02)
     t = np.arange(synthetic.samples.shape[0]) / synthetic.rate - synthetic.release
     weak = 2 * np.pi * 1.9 * (-0.003 + 1j)
     synthetic.samples[t > 0] += 0.012 * np.exp(weak * t[t > 0]).real[:, None]
@@ -94,9 +101,7 @@ def test_weak_mode_is_uncertain_or_not_identified() -> None:
 
 
 def test_linear_decay_lies_between_slack_droppers_and_a_disturbance() -> None:
-    random = np.random.default_rng(21)
-    true = span_modes(random, 12)
-    synthetic = drop(random, true, duration=120.0, rate=50.0, noise=0.002, nonlinear=1.5, weak=0.0)
+    random, _, synthetic = simulate(21, 12, duration=120.0, noise=0.002, nonlinear=1.5)
     wind = np.arange(synthetic.samples.shape[0]) / synthetic.rate > 80.0
     synthetic.samples[wind] += 0.02 * random.standard_normal((int(wind.sum()), 4))
     (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
@@ -107,9 +112,7 @@ def test_linear_decay_lies_between_slack_droppers_and_a_disturbance() -> None:
 
 
 def test_lateral_channel_identifies_lateral_modes() -> None:
-    random = np.random.default_rng(30)
-    true = span_modes(random, 6)
-    synthetic = drop(random, true, duration=80.0, rate=50.0, noise=0.002, weak=0.0)
+    random, _, synthetic = simulate(30, duration=80.0, noise=0.002)
     t = np.arange(synthetic.samples.shape[0]) / synthetic.rate - synthetic.release
     sideways = np.where(t > 0, 2.0 * np.exp(2 * np.pi * 1.45 * (-0.003 + 1j) * np.maximum(t, 0)).real, 0.0)
     synthetic.samples[:, 0] += 0.008 * sideways
@@ -172,9 +175,7 @@ def test_amplitude_at_release_does_not_depend_on_the_start_of_the_linear_decay()
     The noisier one alone gives amplitudes to some parts in a thousand. Residues extrapolated from the wrong start would
     have an error of more than 10 %, the decay during the gust.
     """
-    random = np.random.default_rng(43)
-    true = span_modes(random, 6)
-    synthetic = drop(random, true, duration=80.0, rate=50.0, noise=0.002, weak=0.0)
+    random, _, synthetic = simulate(43, duration=80.0, noise=0.002)
     noisy = build_record(
         replace(synthetic, samples=synthetic.samples + 0.02 * random.standard_normal(synthetic.samples.shape)), "noisy"
     )
@@ -199,16 +200,14 @@ def test_files_of_one_name_without_line_data_belong_to_two_lines(tmp_path: Path)
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
         record = build_record(drop(random, span_modes(random, 6), duration=40.0, rate=50.0, weak=0.0))
-        write_drop_csv(replace(record, line=DropLine()), tmp_path / folder / "T1.csv")
+        write_drop_csv(replace(record, line=MeasuredLine()), tmp_path / folder / "T1.csv")
         records += read_drop_records(tmp_path / folder / "T1.csv")
     assert [record.source for record in records] == ["T1.csv", "T1.csv"]
     assert len(identify_modes(tuple(records), highest=4.0)) == 2
 
 
 def test_hand_placed_poles_are_refined_and_none_is_removed() -> None:
-    random = np.random.default_rng(50)
-    true = span_modes(random, 6)
-    synthetic = drop(random, true, duration=60.0, rate=50.0, noise=0.002, weak=0.0)
+    _, true, synthetic = simulate(50, noise=0.002)
     (identification,) = identify_modes((build_record(synthetic),), highest=4.0, poles=true * (1 + 0.0005j))
     assert complex_poles(identification.modes) == pytest.approx(true, rel=1e-4)
 
@@ -218,8 +217,7 @@ def test_hand_placed_poles_are_refined_and_none_is_removed() -> None:
     [(8.0, "s after the release"), (4.0, "the release is planned")],
 )
 def test_short_records_are_refused(duration: float, message: str) -> None:
-    random = np.random.default_rng(60)
-    synthetic = drop(random, span_modes(random, 6), duration=duration, rate=50.0)
+    *_, synthetic = simulate(60, duration=duration, weak=0.15)
     with pytest.raises(InputError, match=message):
         identify_modes((build_record(synthetic),))
 
@@ -241,8 +239,7 @@ def test_low_highest_frequency_does_not_blame_the_sampling_rate() -> None:
 
 def test_repeats_at_a_low_rate_are_compared() -> None:
     """At 12 Hz the usual low-pass at 6 Hz would be at half the sampling rate."""
-    random = np.random.default_rng(66)
-    synthetic = drop(random, span_modes(random, 6), duration=60.0, rate=12.0, weak=0.0)
+    *_, synthetic = simulate(66, rate=12.0)
     (identification,) = identify_modes(
         (build_record(synthetic, "first"), build_record(synthetic, "second")), highest=2.0
     )
@@ -251,8 +248,7 @@ def test_repeats_at_a_low_rate_are_compared() -> None:
 
 
 def test_channel_lost_at_the_release_is_named() -> None:
-    random = np.random.default_rng(67)
-    synthetic = drop(random, span_modes(random, 6), duration=40.0, rate=50.0)
+    *_, synthetic = simulate(67, duration=40.0, weak=0.15)
     synthetic.samples[int(synthetic.release * synthetic.rate) + 10 :, 2] = 0.0
     with pytest.raises(InputError, match=r"channel 'S3_z'.*is constant after the release"):
         identify_modes((build_record(synthetic),))
@@ -272,8 +268,7 @@ def test_empty_modes_file_gives_no_start_poles(tmp_path: Path) -> None:
 
 
 def test_record_without_vertical_channel_is_refused() -> None:
-    random = np.random.default_rng(61)
-    synthetic = drop(random, span_modes(random, 6), duration=40.0, rate=50.0, sensors=1)
+    *_, synthetic = simulate(61, duration=40.0, sensors=1, weak=0.15)
     sideways = DropRecord(
         "x", "x", 50.0, synthetic.samples, (DropChannel("S1_y", 1, "y"),), drop=DropDescription(trigger_nominal=5.0)
     )
@@ -282,8 +277,7 @@ def test_record_without_vertical_channel_is_refused() -> None:
 
 
 def test_clipped_start_is_left_out() -> None:
-    random = np.random.default_rng(62)
-    synthetic = drop(random, span_modes(random, 6), duration=60.0, rate=50.0, weak=0.0)
+    *_, synthetic = simulate(62)
     top = 0.6 * np.abs(synthetic.samples).max()
     synthetic.samples[:] = np.clip(synthetic.samples, -top, top)
     (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
@@ -306,8 +300,7 @@ def test_linear_decay_begins_after_the_last_clipped_sample() -> None:
 
 
 def test_single_sensor_is_marked() -> None:
-    random = np.random.default_rng(63)
-    synthetic = drop(random, span_modes(random, 6), duration=60.0, rate=50.0, sensors=1, weak=0.0)
+    *_, synthetic = simulate(63, sensors=1)
     (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
     assert any("a single channel does not show" in text for text in identification.warnings)
     assert all(mode.phase_collinearity is None for mode in identification.modes)
@@ -323,8 +316,3 @@ def test_groups_hold_one_mode_per_span_where_they_touch() -> None:
     order = np.argsort(frequencies)
     numbers = number_groups(frequencies[order], frequencies[order], 6)
     assert np.mean(numbers == expected[order]) > 0.95
-
-
-def test_outliers_by_quartiles() -> None:
-    assert list(find_group_outliers(np.array([1.0, 1.1, 0.9, 1.05, 3.0]))) == [False, False, False, False, True]
-    assert not find_group_outliers(np.array([1.0, 9.0, 1.0])).any()

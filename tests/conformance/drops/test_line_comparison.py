@@ -20,10 +20,10 @@ from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
-from pantocheck.conformance.drops.damping_results import build_damping_results
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_model import judge_coefficients
+from pantocheck.conformance.drops.damping_results import build_damping_results, write_damping_toml
+from pantocheck.conformance.drops.drop_simulation import describe_line
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
-from pantocheck.conformance.drops.paired_shapes import judge_coefficients
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.line.line_file import LineFile
@@ -105,15 +105,6 @@ def build_mode(line: MeasuredLine | None, record: str = "T", wire: str = "CW", p
     )
 
 
-def describe_line(file: LineFile, **changes: object) -> MeasuredLine:
-    facts = {
-        "spans_m": file.geometry.span_lengths,
-        "contact_wire_tension_N": file.contact_wire.tension_N,
-        "messenger_wire_tension_N": file.messenger_wire.tension_N,
-    }
-    return MeasuredLine.model_validate(facts | changes)
-
-
 def fit_other_line(folder: Path, modes: Sequence[Mode], *options: str) -> tuple[int, str]:
     write_model(folder / "modes.json", ModesFile(tuple(modes)))
     command = ["drop", "fit", str(folder / "modes.json"), "--line", CASE, "--out", str(folder / "fit"), *options]
@@ -130,19 +121,16 @@ def test_line_of_several_sections_has_the_spans_of_all() -> None:
     assert (comparison.state, len(facts.spans_m)) == ("verified", 9)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
+def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary) -> None:
+    """Facts within 0.1 m and 1 % agree; such differences change a coefficient by about 1 %."""
+    for changes in (
         {},
         {"spans_m": (63.09, 62.91, 63.0, 63.0, 63.0, 63.0)},
         {"contact_wire_tension_N": 20.19e3, "messenger_wire_tension_N": 13.87e3},
-    ],
-)
-def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary, changes: dict) -> None:
-    """Facts within 0.1 m and 1 % agree; such differences change a coefficient by about 1 %."""
-    comparison = compare_line([build_mode(describe_line(file, **changes))], catenary)
-    assert (comparison.state, comparison.differences, comparison.missing) == ("verified", (), ())
-    refuse_other_line(comparison, "modes.json")
+    ):
+        comparison = compare_line([build_mode(describe_line(file).model_copy(update=changes))], catenary)
+        assert (comparison.state, comparison.differences, comparison.missing) == ("verified", (), ())
+        refuse_other_line(comparison, "modes.json")
 
 
 @pytest.mark.parametrize(
@@ -166,7 +154,7 @@ def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary, chan
 def test_refusal_names_each_difference_with_its_unit(
     file: LineFile, catenary: Catenary, changes: dict, differences: set[tuple[str, str, str]]
 ) -> None:
-    comparison = compare_line([build_mode(describe_line(file, **changes))], catenary)
+    comparison = compare_line([build_mode(describe_line(file).model_copy(update=changes))], catenary)
     assert comparison.state == "contradicted"
     assert {(row.fact, row.record, row.line) for row in comparison.differences} == differences
     with pytest.raises(InputError) as refusal:
@@ -199,31 +187,25 @@ def test_stitch_wire_must_reach_the_sensor() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "missing"),
+    ("changes", "wire", "position", "missing"),
     [
-        ({"spans_m": ()}, "lengths of the spans"),
-        ({"contact_wire_tension_N": None}, "tension of the contact wire"),
-        ({"messenger_wire_tension_N": None}, "tension of the messenger wire"),
+        ({"spans_m": ()}, "CW", 30.0, "lengths of the spans"),
+        ({"contact_wire_tension_N": None}, "CW", 30.0, "tension of the contact wire"),
+        ({"messenger_wire_tension_N": None}, "CW", 30.0, "tension of the messenger wire"),
+        *(({}, wire, x, "wire and position of sensor 1") for wire, x in (("", 30.0), ("CW", None), ("pole", 30.0))),
     ],
 )
-def test_line_with_a_missing_fact_is_not_verified(
-    file: LineFile, catenary: Catenary, changes: dict, missing: str
+def test_line_or_sensor_with_a_missing_fact_is_not_verified(
+    file: LineFile, catenary: Catenary, changes: dict, wire: str, position: float | None, missing: str
 ) -> None:
-    comparison = compare_line([build_mode(describe_line(file, **changes))], catenary)
+    facts = describe_line(file).model_copy(update=changes)
+    comparison = compare_line([build_mode(facts, wire=wire, position=position)], catenary)
     assert (comparison.state, comparison.missing) == ("unverified", (missing,))
     refuse_other_line(comparison, "modes.json")
 
 
-@pytest.mark.parametrize(("wire", "position"), [("", 30.0), ("CW", None), ("pole", 30.0)])
-def test_sensor_of_unknown_place_is_not_verified(
-    file: LineFile, catenary: Catenary, wire: str, position: float | None
-) -> None:
-    comparison = compare_line([build_mode(describe_line(file), wire=wire, position=position)], catenary)
-    assert (comparison.state, comparison.missing) == ("unverified", ("wire and position of sensor 1",))
-
-
 def test_missing_fact_hides_no_difference(file: LineFile, catenary: Catenary) -> None:
-    facts = describe_line(file, spans_m=(), messenger_wire_tension_N=15e3)
+    facts = describe_line(file).model_copy(update={"spans_m": (), "messenger_wire_tension_N": 15e3})
     comparison = compare_line([build_mode(facts)], catenary)
     assert (comparison.state, len(comparison.differences), len(comparison.missing)) == ("contradicted", 1, 1)
 
@@ -232,7 +214,7 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
     """One of two records is from another line: the difference names that record, in any order of the modes."""
     modes = [
         build_mode(describe_line(file), "T1"),
-        build_mode(describe_line(file, messenger_wire_tension_N=16e3), "T3"),
+        build_mode(describe_line(file).model_copy(update={"messenger_wire_tension_N": 16e3}), "T3"),
         build_mode(None, "T4"),
     ]
     for order in (modes, modes[::-1]):

@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_simulation import describe_line
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.damping import Damping
@@ -51,9 +52,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
     signal += 1e-4 * random.standard_normal(signal.shape)
     channels = tuple(DropChannel(f"S{i}_z", i, "z", wire, x) for i, (_, wire, x) in enumerate(SENSORS, 1))
-    facts = DropLine(file.geometry.span_lengths, file.contact_wire.tension_N, file.messenger_wire.tension_N)
     drop = DropDescription(20, "CW", 150.0, RELEASE)
-    record = DropRecord("T", "T", RATE, signal, channels, drop=drop, line=facts)
+    record = DropRecord("T", "T", RATE, signal, channels, drop=drop, line=describe_line(file))
     write_drop_csv(record, folder / "T.csv")
     run_identify(folder, "out")
     return folder
@@ -62,14 +62,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
     rows = json.loads((folder / "out" / "modes.json").read_text())
     required = {
-        "frequency_Hz",
-        "damping_ratio",
-        "damping_ratio_std",
-        "group",
-        "sensor_shape",
-        "error",
-        "record",
-        "warnings",
+        *("frequency_Hz", "damping_ratio", "damping_ratio_std", "group"),
+        *("sensor_shape", "error", "record", "warnings"),
     }
     assert len(rows) > 10
     assert all(required <= set(row) for row in rows)
@@ -98,17 +92,8 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire is
     not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
     """
-    command = [
-        "drop",
-        "fit",
-        str(folder / "out" / "modes.json"),
-        "--line",
-        CASE,
-        "--out",
-        str(folder / "fit"),
-        "--element",
-        "2",
-    ]
+    command = ["drop", "fit", str(folder / "out" / "modes.json"), "--line", CASE]
+    command += ["--out", str(folder / "fit"), "--element", "2"]
     result = CliRunner().invoke(app, command)
     assert result.exit_code == 0, result.output
     text = (folder / "fit" / "damping.toml").read_text()

@@ -8,11 +8,9 @@ import pytest
 from helpers.exact_decays import BAND, RATE, RELEASE, build_exact_decay, build_exact_fit, with_quantity
 from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.units import STANDARD_GRAVITY
-from pantocheck.conformance.drops.frequency_response import compute_frequency_response
-from pantocheck.conformance.drops.identification_analysis import analyse_identification
+from pantocheck.conformance.drops.identification_analysis import analyse_identification, compute_frequency_response
 from pantocheck.conformance.drops.identify import Identification
-from pantocheck.conformance.drops.line_fit import LineFit
-from pantocheck.conformance.drops.mode_building import build_modes
+from pantocheck.conformance.drops.line_fit import LineFit, build_modes
 
 FREQUENCY, RATIO = np.array([0.9, 1.7, 2.6]), np.array([0.012, 0.010, 0.008])
 POLES = 2 * np.pi * FREQUENCY * (-RATIO + 1j * np.sqrt(1 - RATIO**2))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
-from pantocheck.conformance.drops.model_order import select_poles
+from pantocheck.conformance.drops.model_order import _are_equal, select_poles
 from pantocheck.conformance.drops.pole_refinement import build_normal_equations, refine_poles
 from pantocheck.conformance.drops.projection import build_block, estimate_noise, solve_residues, whiten
 from pantocheck.conformance.drops.start_poles import find_start_poles
@@ -108,3 +108,14 @@ def test_standard_deviations_are_those_of_repeated_noise() -> None:
         standardised.append(error / np.sqrt(np.diag(refined.covariance)))
     variance = np.var(standardised)
     assert variance == pytest.approx(1.0, abs=4 * np.sqrt(2 / 360))
+
+
+# Model order: the search ends where the poles do not change any more.
+@pytest.mark.parametrize(("difference", "equal"), [(0.004, True), (0.006, False), (-0.004, True), (-0.006, False)])
+@pytest.mark.parametrize("direction", [1.0, 1j])
+def test_poles_are_equal_to_one_percent_of_their_decay_rate(difference: float, equal: bool, direction: complex) -> None:
+    """A decay rate of 0.5 1/s: up to 0.005 1/s in damping or frequency; every pole counts."""
+    poles = np.array([-0.5 + 7.0j, -0.5 + 14.0j])
+    other = poles + np.array([0.0, difference * direction])
+    assert _are_equal(other, poles) == equal
+    assert not _are_equal(poles[:1], poles)

@@ -6,10 +6,11 @@ import pytest
 from pantocheck.conformance.core.units import STANDARD_GRAVITY
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import prepare_decay
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
-from pantocheck.conformance.drops.frequency_response import compute_frequency_response
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.identification_analysis import compute_frequency_response
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.drops.repeatability import compare_records
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 RATE, RELEASE, MASS = 50.0, 5.0, 20.0
 MODAL_MASS = 100.0  # [kg]
@@ -45,7 +46,7 @@ def build_record(
         signal,
         channels,
         drop=DropDescription(MASS, "CW", 10.0, RELEASE),
-        line=DropLine((60.0,)),
+        line=MeasuredLine(spans_m=(60.0,)),
     )
 
 

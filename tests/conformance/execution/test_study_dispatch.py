@@ -11,13 +11,13 @@ from pantocheck.conformance.execution.study_dispatch import ONLY_BUILTIN, run_st
 from pantocheck.conformance.runs.system import Outcome, Skipped
 
 STUDIES = {
-    "vovan2015/mass-drop/stand-in": "mass_drop_study",
-    "vovan2015/release-velocity": "release_velocity",
-    "vovan2015/dropper-damping": "dropper_damping",
-    "vovan2015/dropper-oscillation": "dropper_oscillation",
-    "vovan2015/steady-arm-damper": "steady_arm_damper",
+    "vovan2015/mass-drop/stand-in": "mass_drop_study.run_mass_drop_study",
+    "vovan2015/release-velocity": "release_velocity.run_release_velocity",
+    "vovan2015/dropper-damping": "dropper_coefficient.run_dropper_damping",
+    "vovan2015/dropper-oscillation": "dropper_coefficient.run_dropper_oscillation",
+    "vovan2015/steady-arm-damper": "steady_arm_damper.run_steady_arm_damper",
 }
-"""Studies that need the reference simulator: module by case."""
+"""Studies that need the reference simulator: module and function by case."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class SingleRun:
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_reference_simulator_runs_the_study_of_the_case(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in STUDIES.values():
-        function = f"pantocheck.conformance.studies.vovan2015.{module}.run_{module}"
-        monkeypatch.setattr(function, lambda case, *_, module=module: Skipped(module))
+    for study in STUDIES.values():
+        function = f"pantocheck.conformance.studies.vovan2015.{study}"
+        monkeypatch.setattr(function, lambda case, *_, study=study: Skipped(study))
     (case,) = select_cases([name])
     assert run_study(case, SingleRun("builtin")) == Skipped(STUDIES[name])
 

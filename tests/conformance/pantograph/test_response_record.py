@@ -16,8 +16,7 @@ from helpers.response_records import (
 )
 from pantocheck.conformance.core.hdf5_table import write_hdf5_table
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.pantograph.response_record import read_response
-from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_FORMS, ResponseKind
+from pantocheck.conformance.pantograph.response_record import RESPONSE_FORMS, ResponseKind, read_response
 
 STIFFNESS = chain_stiffness(read_pantograph())
 S = 2j * np.pi * FREQUENCY

@@ -16,9 +16,15 @@ from helpers.response_records import (
     write_response,
 )
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.pantograph.chain_fit import ChainFit, compute_intervals, fit_chain, judge_parameters
+from pantocheck.conformance.pantograph.chain_fit import (
+    ChainFit,
+    FitTask,
+    compute_intervals,
+    fit_chain,
+    fit_chains,
+    judge_parameters,
+)
 from pantocheck.conformance.pantograph.chain_problem import ChainProblem, MeasuredStiffness, chain_response
-from pantocheck.conformance.pantograph.chain_selection import FitTask, fit_chains
 from pantocheck.conformance.pantograph.chain_starts import expand_chain, fit_rational_response
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropLine, DropRecord
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identify import Identification, identify_modes
+from pantocheck.conformance.results.identified_modes import MeasuredLine
 from verification.guide.comparisons import compare_relative
 from verification.guide.guide_format import CheckedValue
 
@@ -66,7 +67,7 @@ def build_known_drop() -> DropRecord:
     samples[after] += (2 * np.exp(np.outer(time[after], poles)) @ residues).real
     channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 20.0 * i) for i in range(4))
     drop = DropDescription(20, "CW", 0.0, RELEASE_S)
-    return DropRecord("known", "known", DROP_RATE, samples, channels, drop=drop, line=DropLine((60.0,) * 6))
+    return DropRecord("known", "known", DROP_RATE, samples, channels, drop=drop, line=MeasuredLine(spans_m=(60.0,) * 6))
 
 
 def identify_by_subspace(found: Identification) -> RealArray:

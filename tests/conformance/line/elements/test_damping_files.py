@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results, write_damping_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.damping_format import DampingResults

@@ -1,16 +1,20 @@
-"""Tables of a study of Vo Van, Balmes and Lorang (2015): its findings, and the origin of its inputs and limits."""
+"""Report of a study of Vo Van, Balmes and Lorang (2015): findings, origin of inputs and limits, and curves."""
 
 from collections.abc import Sequence
+
+import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.core.figure_data import TextTable
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import Series, TextTable
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.records.traces import thin_series
 
 PAPER = "vovan2015"
 """Key of Vo Van, Balmes and Lorang (2015) in the bibliography."""
@@ -21,12 +25,7 @@ FITTED = "fitted"
 def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, printed: ValuesByOwner) -> TextTable:
     """Build a table with one row per limit: finding in words, printed and computed value, agreement.
 
-    Args:
-        limits: Limits of the case; their notes are the findings in words.
-        computed, printed: Values by pantograph and name.
-
-    Returns:
-        Findings of the paper.
+    The notes of the limits are the findings in words; values are by pantograph and name.
     """
     rows = []
     for limit in limits:
@@ -56,6 +55,16 @@ def build_provenance_table(case: Case) -> TextTable:
     quantities = dict.fromkeys(limit.quantity for limit in case.limits)
     rows += [[name, "computed", QUANTITIES[name].definition] for name in quantities]
     return TextTable(caption="Origin of inputs, limits and quantities", columns=["Item", "Origin", "Source"], rows=rows)
+
+
+def rms(signal: RealArray) -> float:
+    """Root mean square of a signal, in its unit."""
+    return float(np.sqrt(np.mean(signal**2)))
+
+
+def draw_curve(label: str, x: RealArray, y: RealArray) -> Series:
+    """Draw a line with the points that a figure can show."""
+    return Series(label=label, style="line", x=thin_series(x), y=thin_series(y))
 
 
 def _name_origin(trust: Trust, keys: Sequence[str]) -> str:

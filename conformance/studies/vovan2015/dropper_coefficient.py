@@ -1,4 +1,4 @@
-"""Largest compensation force of a dropper against its stiffness coefficient.
+"""Stiffness coefficient of the droppers: compensation force in a passage, and oscillation after a release.
 
 Vo Van, Balmes and Lorang (2015), Figure 8. The matrices of the system hold every dropper as taut. While a dropper is
 slack, a force compensates it. Two laws are compared:
@@ -11,23 +11,27 @@ slack, a force compensates it. Two laws are compared:
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.study_tables import DropperDamping
+from pantocheck.conformance.cases.study_tables import DropperDamping, DropperOscillation
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_data import Chart, Mark, Series
+from pantocheck.conformance.core.figure_data import Chart, Mark, TextTable
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import MOTION_ORDER
+from pantocheck.conformance.drops.drop_simulation import require_mass_drop, simulate_drop
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
+from pantocheck.conformance.quantities.filters import LowPass
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.runs.case_run import build_passage, build_run_table, integrate_passage, record_passage
 from pantocheck.conformance.runs.system import Delivered, StudyResult
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve, rms
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise
 from pantocheck.model.discretisation.discretised_line import keep_viscous_part, with_damping
 
@@ -47,10 +51,6 @@ GRADED = "only the elastic force is compensated"
 
 def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     """Run the passage of a case once for every coefficient and compensation law.
-
-    Args:
-        case: Passage with stated uplift forces.
-        study: Dropper and its stiffness coefficients.
 
     Returns:
         Study with the record of the passage under the damping of the case.
@@ -120,14 +120,9 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
 
 
 def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Value]:
-    """Largest change of the contact force in a band, of any pantograph, by small damping of the droppers.
+    """Largest change of the contact force in a band, of any pantograph, by the chosen damping of the droppers [%].
 
-    Args:
-        chosen, least: Quantities with the damping of the case and with the smallest coefficient, by pantograph and
-            name.
-
-    Returns:
-        Change [%] by name of quantity; empty without a band.
+    The reference is the smallest damping; the change is by name of quantity, and empty without a band.
     """
     pairs = [
         (values.get(band), least.get(owner, {}).get(band))
@@ -195,13 +190,117 @@ def _draw_forces(case: Case, study: DropperDamping, force: dict[str, RealArray])
         x_scale="log",
         y_scale="log",
         series=[
-            Series(
-                label=name,
-                style="line",
-                x=thin_series(np.array(study.coefficients_s)),
-                y=thin_series(np.maximum(values, SMALLEST_DRAWN_FORCE)),
-            )
+            draw_curve(name, np.array(study.coefficients_s), np.maximum(values, SMALLEST_DRAWN_FORCE))
             for name, values in force.items()
         ],
         marks=marks,
+    )
+
+
+# Oscillation of a dropper after a release against its stiffness coefficient (Vo Van, Balmes and Lorang 2015).
+#
+# The extension of the dropper beside the mass oscillates at high frequency. Its velocity is the difference between the
+# velocities of two sensors, on the contact wire and on the messenger wire at the dropper.
+HIGH_HZ = 50.0
+"""High frequencies: above the bands of the contact force [Hz]."""
+EARLY_S, LATE_S = (0.0, 0.1), (0.8, 1.6)
+"""Windows after the release between which the decay is measured [s]."""
+CONTACT, MESSENGER = 0, 1
+"""Sensors at the dropper, on the contact wire and on the messenger wire."""
+
+
+def run_dropper_oscillation(case: Case, study: DropperOscillation) -> Delivered:
+    """Simulate the first drop of a case once for every stiffness coefficient of the droppers.
+
+    Args:
+        case: Case with a mass drop, and with sensors on contact and messenger wire at a dropper.
+        study: Stiffness coefficients, ascending.
+
+    Raises:
+        InputError: The first two sensors are not on contact and messenger wire at one position.
+    """
+    begin, line = time.perf_counter(), build_catenary(case.line)
+    sensors = require_mass_drop(case).sensor
+    places = [(sensor.wire, sensor.x_m) for sensor in sensors[:2]]
+    if len({x for _, x in places}) != 1 or [wire for wire, _ in places] != ["contact_wire", "messenger_wire"]:
+        raise InputError(
+            f"case '{case.id}', key mass_drop.sensor",
+            "the first two sensors are not at one dropper",
+            "Place sensor 1 on the contact wire and sensor 2 on the messenger wire, both at the position of a dropper.",
+        )
+    velocity = []
+    for coefficient in study.coefficients_s:
+        damping = dict(line.damping) | {Kind.DROPPER: Rayleigh(stiffness_coefficient=coefficient)}
+        decay = simulate_drop(case, 1, line=replace(line, damping=damping)).decay
+        velocity.append(decay.motion[:2, :, MOTION_ORDER["velocity"]])
+    after = decay.time >= 0
+    oscillation = [find_oscillation(motion, decay.time) for motion in velocity]
+    findings = compare_oscillations(oscillation, [motion[CONTACT, after] for motion in velocity], decay.time[after])
+    place = f"{sensors[0].x_m:g} m"
+    return Delivered(
+        run=build_drop_run_table(case, len(velocity), begin),
+        study=StudyResult(
+            findings={LINE: findings},
+            charts=(_draw_oscillation(study, oscillation, decay.time[after], place),),
+            tables=(_rms_table(study, oscillation, decay.time[after]), build_provenance_table(case)),
+        ),
+    )
+
+
+def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
+    """High-frequency velocity of the extension of a dropper from the release on, (n,) [m/s].
+
+    The motion is that of contact and messenger wire at the dropper, (2, m) [m/s]; time is 0 at the release, (m,) [s].
+    """
+    extension = motion[MESSENGER] - motion[CONTACT]
+    low = LowPass(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
+    return np.asarray((extension - low)[time >= 0])
+
+
+def compare_oscillations(oscillation: list[RealArray], velocity: list[RealArray], time: RealArray) -> dict[str, Value]:
+    """Findings on the oscillation of a dropper.
+
+    Args:
+        oscillation: High-frequency velocity of its extension, one array per coefficient in ascending order, the first
+            without damping, each (n,) [m/s].
+        velocity: Velocity of the contact wire at the dropper, in the same order, each (n,) [m/s].
+        time: Time after the release, (n,) [s].
+    """
+    remaining = [_window_rms(signal, time, LATE_S) / _window_rms(signal, time, EARLY_S) for signal in oscillation]
+    changes = [rms(other - velocity[0]) / rms(velocity[0]) for other in velocity[1:]]
+    early = _window_rms(oscillation[0], time, EARLY_S) / _window_rms(velocity[0], time, EARLY_S)
+    return {
+        "dropper_oscillation_pct": 100 * early,
+        "dropper_oscillation_decay_ratio": max(b / a for a, b in pairwise(remaining)),
+        "dropper_velocity_change_pct": tuple(100 * change for change in changes),
+    }
+
+
+def _window_rms(signal: RealArray, time: RealArray, window: tuple[float, float]) -> float:
+    return rms(signal[(time >= window[0]) & (time < window[1])])
+
+
+def _rms_table(study: DropperOscillation, oscillation: list[RealArray], time: RealArray) -> TextTable:
+    rows = [
+        [f"{value:g} s", *(f"{1e3 * _window_rms(signal, time, window):.3g} mm/s" for window in (EARLY_S, LATE_S))]
+        for value, signal in zip(study.coefficients_s, oscillation, strict=True)
+    ]
+    return TextTable(
+        caption=f"RMS of the velocity of the dropper's extension above {HIGH_HZ:g} Hz",
+        columns=["Stiffness coefficient", *(f"{start:g} s to {end:g} s" for start, end in (EARLY_S, LATE_S))],
+        rows=rows,
+    )
+
+
+def _draw_oscillation(study: DropperOscillation, oscillation: list[RealArray], time: RealArray, place: str) -> Chart:
+    shown = time <= LATE_S[0]
+    return Chart(
+        caption=f"Velocity of the extension of the dropper at {place} above {HIGH_HZ:g} Hz, after the release.",
+        alternative="Velocity over time for each stiffness coefficient; the table has its RMS in two windows.",
+        x_label="time after the release [s]",
+        y_label="velocity [mm/s]",
+        series=[
+            draw_curve(f"{value:g} s", time[shown], 1e3 * signal[shown])
+            for value, signal in zip(study.coefficients_s, oscillation, strict=True)
+        ],
     )

@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
-from pantocheck.conformance.studies.vovan2015.paper_tables import build_findings_table, build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_findings_table, build_provenance_table
 
 CHANGE = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust="primary", source="test", note="less below 5 Hz")
 SECOND = Limit(quantity="mode_frequency_Hz", item=2, lower=1.0, upper=2.0, trust="primary", source="test")
