@@ -10,11 +10,10 @@ from typing import Any
 
 import pytest
 
+from helpers.shown_page import show_certificate
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, PlainHeader
 from pantocheck.conformance.pages.html import render_html
-from pantocheck.conformance.results.results_format import Results
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br", "use"}
 
@@ -47,7 +46,7 @@ class Outline(HTMLParser):
 
 
 def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
-    assert render_html(build_certificate(Results.model_validate(results))) == page_text
+    assert show_certificate(results) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])
@@ -111,7 +110,7 @@ def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], 
 def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequest) -> None:
     """The data block has every key in the order of the results; hostile text cannot end it."""
     results = request.getfixturevalue(name)
-    page = render_html(build_certificate(Results.model_validate(results)))
+    page = show_certificate(results)
     [block] = re.findall('<script type="application/json" id="pantocheck-results">(.*?)</script>', page)
     assert not set("<>&") & set(block)
     assert block.isascii()

@@ -8,8 +8,7 @@ import pytest
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.drops import paired_shapes
-from pantocheck.conformance.pages.damping_figures import draw_observability
-from pantocheck.conformance.pages.damping_page import describe_observability
+from pantocheck.conformance.pages.damping_page import describe_observability, draw_observability
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
 
