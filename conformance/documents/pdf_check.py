@@ -50,15 +50,7 @@ DEEPEST_SEARCHED = 100
 
 
 def list_foreign_parts(reader: PdfReader, content: bytes) -> Iterator[str]:
-    """Parts that Pantocheck never writes.
-
-    Args:
-        reader: Document.
-        content: Content of the document.
-
-    Yields:
-        One sentence per kind of part.
-    """
+    """Parts that Pantocheck never writes."""
     if not content.startswith(b"%PDF-"):
         yield "bytes stand before the header of the PDF"
     try:
@@ -111,10 +103,6 @@ DEEPEST_COMPARED = 60
 def read_date(reader: PdfReader, name: str) -> int:
     """Date in the metadata of a PDF [s since 1970]; 0 if there is none.
 
-    Args:
-        reader: Document.
-        name: Name of the file in messages.
-
     Raises:
         InputError: The date cannot be read.
     """
@@ -136,12 +124,7 @@ def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]
 
 
 def compare_pdfs(stated: PdfReader, expected: bytes) -> list[str]:
-    """Differences of a PDF from the expected one; at least one.
-
-    Args:
-        stated: Document, whose bytes differ.
-        expected: Document that the results give.
-    """
+    """Differences of a PDF from the expected one; at least one."""
     other = PdfReader(BytesIO(expected))
     try:
         found = [*_compare_metadata(stated, other), *compare_texts(stated, expected), *_compare_drawings(stated, other)]

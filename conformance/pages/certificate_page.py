@@ -24,7 +24,7 @@ from pantocheck.conformance.pages.scope_page import (
 from pantocheck.conformance.pages.step_sections import build_step_section
 from pantocheck.conformance.pages.two_verdicts import build_verdict_section, case_verdict
 from pantocheck.conformance.pages.verdict_reasons import build_headline, count_incomplete, list_reasons, summarise_case
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict, read_words
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 HEADING = "Conformance report"
@@ -52,7 +52,7 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
     reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
     return doc.Document(
-        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(prepared)}",
+        title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",
         header=header,
         blocks=(
             *((doc.WarningBox(warnings),) if warnings else ()),

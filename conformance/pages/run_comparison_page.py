@@ -5,11 +5,11 @@ from pantocheck.conformance.pages.comparison_parts import clean_model
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
+    format_signed,
     format_value,
     name_pantograph,
     quantity_label,
     quantity_unit,
-    replace_minus,
 )
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
@@ -91,10 +91,6 @@ def _name_quantity(name: str) -> str:
 def format_compared(quantity: ComparedQuantity, index: int) -> str:
     """Value of a subject with its uncertainty and its difference from the first subject.
 
-    Args:
-        quantity: Values of a quantity.
-        index: Place of the subject in the list of subjects.
-
     Returns:
         Text such as `28.12 ± 0.4 (+1.2 *)`; for several numbers their count and the largest difference.
     """
@@ -109,4 +105,4 @@ def format_compared(quantity: ComparedQuantity, index: int) -> str:
     if index == 0 or difference is None:
         return text
     mark = " *" if quantity.beyond_uncertainty[index] else ""
-    return f"{text} ({replace_minus(f'{difference:+.3g}')}{mark})"
+    return f"{text} ({format_signed(difference)}{mark})"

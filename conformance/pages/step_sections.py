@@ -6,18 +6,18 @@ from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.pantograph_pages import build_response_sections
 from pantocheck.conformance.pages.procedure_page import anchor_step, name_step
-from pantocheck.conformance.pages.response_sections import build_response_sections
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
+    format_signed,
     format_value,
     name_pantograph,
     quantity_label,
     quantity_unit,
     read_words,
-    replace_minus,
 )
 from pantocheck.conformance.quantities.limit_text import is_relative_margin
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
@@ -193,10 +193,10 @@ def _build_joined_table(joined: Sequence[JoinedQuantity]) -> doc.Table:
             quantity_label(item.quantity),
             name_pantograph(item.pantograph),
             str(item.runs),
-            replace_minus(f"{item.mean_difference:+.3g}"),
+            format_signed(item.mean_difference),
             format_value(item.uncertainty, 2),
             format_value(item.spread, 2),
-            replace_minus(f"{item.largest_difference:+.3g}"),
+            format_signed(item.largest_difference),
             quantity_unit(item.quantity),
             item.largest_in.removeprefix("pair/"),
         )

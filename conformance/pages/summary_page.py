@@ -17,7 +17,7 @@ from pantocheck.conformance.pages.scope_page import (
 )
 from pantocheck.conformance.pages.two_verdicts import NAMES, build_verdict_section, describe_comparison, list_criteria
 from pantocheck.conformance.pages.verdict_reasons import describe_record, list_reasons
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
@@ -27,9 +27,6 @@ def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Doc
     Args:
         results: Results of a run.
         certificates: Names of the certificates in the same folder, which the page links.
-
-    Returns:
-        The page.
     """
     results = prepare_results(results)
     header = build_header(results)
@@ -75,8 +72,7 @@ def _case_section(case: CaseResult) -> doc.Section:
         blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
         if drifts := list_criteria(case, "baseline"):
             blocks.append(_criteria(drifts, case.uncertainty_basis))
-    word = read_words()["verdict"][case.verdict]["word"]
-    return doc.Section(f"{word}: {case.title}", tuple(blocks))
+    return doc.Section(f"{name_verdict(case.verdict)}: {case.title}", tuple(blocks))
 
 
 def _criteria(criteria: Sequence[Criterion], basis: Basis = NO_BASIS) -> doc.Table:

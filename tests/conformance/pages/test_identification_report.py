@@ -15,7 +15,6 @@ from pantocheck.conformance.core.figure_style import format_decade
 from pantocheck.conformance.pages.document import Document, Paragraph
 from pantocheck.conformance.pages.document import Figure as PageFigure
 from pantocheck.conformance.pages.document import Figures as PageFigures
-from pantocheck.conformance.pages.drop_figures import DrawnPlace, draw_drop_layout, draw_motion
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_figures import (
     draw_half_power,
@@ -25,8 +24,8 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_spectra,
 )
 from pantocheck.conformance.pages.identification_page import build_identification_document
+from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_measured_shapes, list_paired_rows
-from pantocheck.conformance.pages.spectrogram_figure import draw_spectrogram
 from pantocheck.conformance.results.damping_format import PairedShape
 from pantocheck.conformance.results.identification_format import (
     IdentifiedLine,

@@ -29,7 +29,7 @@ from pantocheck.conformance.pages.document import (
 )
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.quantity_list import render_quantity_list
+from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.report_writers import write_pages
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
