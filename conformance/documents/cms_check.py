@@ -1,4 +1,4 @@
-"""Result of the check of signatures: one entry per signature, and changes of the document."""
+"""Check of a CMS signature: content, chain, validity, key usage and time stamp; and its result in words."""
 
 import asyncio
 from dataclasses import dataclass

@@ -1,4 +1,8 @@
-"""Parts of an HTML page that could run, fetch or hide something, and that Pantocheck did not write into it."""
+"""Check of the pages: they are made again from the embedded results, and compared byte by byte.
+
+The pages follow from the results, the versions of the software and the date. Where the versions agree, every difference
+is a contradiction. Where they do not, the texts are compared, and the check stays incomplete.
+"""
 
 import re
 from collections import Counter
@@ -26,6 +30,7 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.words import name_verdict
 
+# Parts of an HTML page that could run, fetch or hide something.
 ACTIVE_ELEMENTS = frozenset(
     ("script", "style", "link", "iframe", "frame", "object", "embed", "base", "form", "applet", "template", "meta")
 )
@@ -41,11 +46,13 @@ ADDRESSES = frozenset(("href", "src", "srcset", "action", "formaction", "data", 
 """Attributes with an address."""
 
 
-class _Parts(HTMLParser):
-    """Active parts of a page, each as a short text."""
+class _Page(HTMLParser):
+    """Tags with their attributes, texts and comments of a page in their order, and its active parts."""
 
     def __init__(self, text: str) -> None:
         super().__init__(convert_charrefs=True)
+        self.tokens: list[tuple[str, str]] = []
+        self.texts: list[str] = []
         self.parts: Counter[tuple[str, str]] = Counter()
         self.foreign: list[str] = []
         self.policies: list[str] = []
@@ -56,6 +63,7 @@ class _Parts(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Note elements, events, styles and addresses that can change or load a part of the page."""
         self.open = tag
+        self.tokens.append(("tag", " ".join([tag, *(f'{name}="{value}"' for name, value in attrs)])))
         if tag in ACTIVE_ELEMENTS:
             text = " ".join(f"{name}={value}" for name, value in attrs)
             self.parts[f"an element <{tag}>", text] += 1
@@ -73,19 +81,32 @@ class _Parts(HTMLParser):
                 self.foreign.append(f"an address outside the page in {name} of <{tag}>")
                 self.parts[f"an address in {name} of <{tag}>", value or ""] += 1
 
-    def handle_data(self, data: str) -> None:
-        if self.open == "style" and data.strip():
-            self.parts["a style sheet", data] += 1
-        elif self.open == "script" and data.strip() and not data.startswith("{"):
-            self.parts["a script", data] += 1
-
     def handle_endtag(self, tag: str) -> None:
         self.open = ""
+        self.tokens.append(("end of", tag))
+
+    def handle_data(self, data: str) -> None:
+        line = " ".join(data.split())
+        if not line:
+            return
+        self.tokens.append(("text", line))
+        if self.open == "style":
+            self.parts["a style sheet", data] += 1
+        elif self.open != "script":
+            self.texts.append(line)
+        elif not data.startswith("{"):
+            self.parts["a script", data] += 1
+
+    def handle_comment(self, data: str) -> None:
+        self.tokens.append(("comment", data))
+
+    def handle_decl(self, decl: str) -> None:
+        self.tokens.append(("declaration", decl))
 
 
 def list_active_parts(stated: str, expected: str) -> Iterator[str]:
     """Active parts of a page that the page of its results does not have, or lacks."""
-    parts, others = _Parts(stated).parts, _Parts(expected).parts
+    parts, others = _Page(stated).parts, _Page(expected).parts
     for (name, text), number in (parts - others).items():
         yield f"the page has {name} that the results do not give{_quote(text)}{_count(number)}"
     for (name, text), number in (others - parts).items():
@@ -94,7 +115,7 @@ def list_active_parts(stated: str, expected: str) -> Iterator[str]:
 
 def list_foreign_elements(stated: str) -> Iterator[str]:
     """Parts of a page that no version of Pantocheck writes; parameter and sentences as in `list_active_parts`."""
-    page = _Parts(stated)
+    page = _Page(stated)
     yield from (f"the page has {part}" for part in dict.fromkeys(page.foreign))
     if len(page.policies) != 1 or not page.policies[0].startswith(POLICY):
         yield "the page lacks the content security policy that fetches nothing"
@@ -114,41 +135,6 @@ TITLE = re.compile("<title>([^<]*)</title>")
 
 DATE = re.compile('<meta name="dcterms.created" content="([0-9: -]+UTC)">')
 
-WITHOUT_TEXT = frozenset(("style", "script"))
-"""Elements whose content is no text of the page."""
-
-
-class _Tokens(HTMLParser):
-    """Tags with their attributes, texts and comments of a page, in their order."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.tokens: list[tuple[str, str]] = []
-        self.texts: list[str] = []
-        self.open = ""
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.open = tag
-        self.tokens.append(("tag", " ".join([tag, *(f'{name}="{value}"' for name, value in attrs)])))
-
-    def handle_endtag(self, tag: str) -> None:
-        self.open = ""
-        self.tokens.append(("end of", tag))
-
-    def handle_data(self, data: str) -> None:
-        if line := " ".join(data.split()):
-            self.tokens.append(("text", line))
-            if self.open not in WITHOUT_TEXT:
-                self.texts.append(line)
-
-    def handle_comment(self, data: str) -> None:
-        self.tokens.append(("comment", data))
-
-    def handle_decl(self, decl: str) -> None:
-        self.tokens.append(("declaration", decl))
-
 
 def compare_html(stated: str, expected: str) -> Iterator[str]:
     """Differences of a page from the expected one; at least one.
@@ -156,7 +142,7 @@ def compare_html(stated: str, expected: str) -> Iterator[str]:
     Yields:
         The first different tag or text; if there is none, the kind of the difference.
     """
-    page, other = _Tokens(_cut_data(stated)), _Tokens(_cut_data(expected))
+    page, other = _Page(_cut_data(stated)), _Page(_cut_data(expected))
     for token, wanted in zip_longest(page.tokens, other.tokens):
         if token != wanted:
             texts = (None if pair is None else f"{pair[0]} {pair[1]}" for pair in (token, wanted))
@@ -171,7 +157,7 @@ def compare_html(stated: str, expected: str) -> Iterator[str]:
 
 def compare_html_texts(stated: str, expected: str) -> Iterator[str]:
     """First difference of the texts of two pages; parameters as in `compare_html`."""
-    yield from compare_lines(_Tokens(_cut_data(stated)).texts, _Tokens(_cut_data(expected)).texts)
+    yield from compare_lines(_Page(_cut_data(stated)).texts, _Page(_cut_data(expected)).texts)
 
 
 def read_html_date(page: str) -> int:
@@ -199,10 +185,7 @@ def _blocks(page: str) -> list[str]:
     return DATA_BLOCK.findall(page)
 
 
-# Check of the pages: they are made again from the embedded results, and compared byte by byte.
-#
-# The pages follow from the results, the versions of the software and the date. Where the versions agree, every
-# difference is a contradiction. Where they do not, the texts are compared, and the check stays incomplete.
+# Verdict of the check, for every kind of document.
 @dataclass(frozen=True)
 class PageDifferences:
     """Differences of a document from the one that its results give."""
@@ -240,12 +223,10 @@ def check_pages(document: Certificate) -> DocumentCheck:
     if isinstance(document, ResultsFile):
         return DocumentCheck("incomplete", "The layout of the file was not compared.")
     if found.texts:
-        return DocumentCheck(
-            "incomplete", "The texts are not those of the installed version.", shorten_details(found.texts)
-        )
-    return DocumentCheck(
-        "incomplete", "All texts are those of the installed version. Figures and layout were not compared."
-    )
+        statement = "The texts are not those of the installed version."
+    else:
+        statement = "All texts are those of the installed version. Figures and layout were not compared."
+    return DocumentCheck("incomplete", statement, shorten_details(found.texts))
 
 
 def _compare(document: Certificate) -> PageDifferences:
@@ -271,19 +252,15 @@ def _compare(document: Certificate) -> PageDifferences:
 
 
 def _compare_pdf(document: PdfCertificate) -> PageDifferences:
-    from pantocheck.conformance.documents.pdf_check import compare_pdfs, compare_texts, list_foreign_parts, read_date
+    from pantocheck.conformance.documents.pdf_check import compare_pdfs, list_foreign_parts, read_date
 
     date = read_date(document.reader, document.name)
     page = render_pdf(build_dated_certificate(document.results, date))
     if document.original == page:
         return PageDifferences(True)
     foreign = tuple(list_foreign_parts(document.reader, document.original))
-    return PageDifferences(
-        False,
-        (*foreign, *compare_pdfs(document.reader, page)),
-        tuple(compare_texts(document.reader, page)),
-        foreign,
-    )
+    found, texts = compare_pdfs(document.reader, page)
+    return PageDifferences(False, (*foreign, *found), tuple(texts), foreign)
 
 
 def _find_other_verdict(document: Certificate) -> Iterator[str]:

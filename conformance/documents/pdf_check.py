@@ -123,20 +123,21 @@ def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]
     return title, next((line for line in lines if line.startswith(beginning)), "")
 
 
-def compare_pdfs(stated: PdfReader, expected: bytes) -> list[str]:
-    """Differences of a PDF from the expected one; at least one."""
+def compare_pdfs(stated: PdfReader, expected: bytes) -> tuple[list[str], list[str]]:
+    """Differences of a PDF from the expected one, at least one; and those of the text of every page alone."""
     other = PdfReader(BytesIO(expected))
+    texts = _compare_texts(stated, other)
     try:
-        found = [*_compare_metadata(stated, other), *compare_texts(stated, expected), *_compare_drawings(stated, other)]
+        found = [*_compare_metadata(stated, other), *texts, *_compare_drawings(stated, other)]
         found += _compare_attachments(stated, other)
     except Exception as error:  # the parser has no common base of its exceptions
         found = [f"an object of the file cannot be read ({type(error).__name__})"]
-    return found or ["the file was written again by another program; pages and attachment are equal, its bytes are not"]
+    rewritten = "the file was written again by another program; pages and attachment are equal, its bytes are not"
+    return found or [rewritten], texts
 
 
-def compare_texts(stated: PdfReader, expected: bytes) -> list[str]:
-    """First difference of the text of every page; parameters as in `compare_pdfs`."""
-    other = PdfReader(BytesIO(expected))
+def _compare_texts(stated: PdfReader, other: PdfReader) -> list[str]:
+    """First difference of the text of every page."""
     pages, others = len(stated.pages), len(other.pages)
     found = [] if pages == others else [f"the document has {pages} pages, {others} follow from the results"]
     for number in range(min(pages, others)):

@@ -47,7 +47,6 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
     cases = prepared.cases
     shown = list_shown_cases(cases)
     anchors = {one.case.id: one.anchor for one in shown}
-    warnings = list_identity_warnings(prepared)
     steps = () if prepared.procedure is None else list_step_reasons(prepared.procedure)
     reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
@@ -55,7 +54,7 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
         title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",
         header=header,
         blocks=(
-            *((doc.WarningBox(warnings),) if warnings else ()),
+            *doc.warn(list_identity_warnings(prepared)),
             build_document_section(prepared, digest_results(results), date),
             *_build_scope(prepared, anchors),
             *build_findings_section(prepared),

@@ -35,8 +35,9 @@ def build_comparison(comparison: ModelComparison) -> doc.Document:
         f"{kind.describe(comparison)} {suite}.",
         f"{suite} · {kind.label(comparison)}",
     )
-    remarks = tuple(list_remarks(comparison))
-    blocks: list[doc.Block] = [doc.WarningBox(remarks)] if remarks else []
-    blocks += [doc.Paragraph(kind.scope), *kind.opening(comparison), *build_criteria_sections(comparison.criteria)]
-    blocks += [*kind.sections(comparison), *kind.closing(comparison)]
-    return doc.Document(header.heading, header, tuple(blocks))
+    blocks: tuple[doc.Block, ...] = (
+        *doc.warn(list_remarks(comparison)),
+        *(doc.Paragraph(kind.scope), *kind.opening(comparison), *build_criteria_sections(comparison.criteria)),
+        *(*kind.sections(comparison), *kind.closing(comparison)),
+    )
+    return doc.Document(header.heading, header, blocks)

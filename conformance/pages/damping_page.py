@@ -1,4 +1,4 @@
-"""Report on a damping fit, from damping.json."""
+"""Report on a damping fit, from damping.json, with its figures."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -50,13 +50,12 @@ def build_damping_document(results: DampingResults, block: str) -> doc.Document:
         f"{sum(row.determined for row in results.coefficients)} of {len(results.coefficients)} coefficients "
         f"are determined. {LINE_STATES[results.line.state]}"
     )
-    header = doc.PlainHeader("Damping model from mass drops", headline)
     warnings = list(results.warnings)
     if results.unpaired:
         frequencies = ", ".join(format_value(frequency) for frequency in results.unpaired)
         warnings.append(f"measured modes without a counterpart in the model: {frequencies} Hz")
-    blocks: list[doc.Block] = [doc.WarningBox(tuple(warnings))] if warnings else []
-    blocks.append(doc.Paragraph(describe_matching(results.matching, results.thresholds)))
+    matching = describe_matching(results.matching, results.thresholds)
+    blocks: list[doc.Block] = [*doc.warn(warnings), doc.Paragraph(matching)]
     comparison = doc.Figure(
         draw_comparison(results.comparison),
         "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
@@ -80,7 +79,7 @@ def build_damping_document(results: DampingResults, block: str) -> doc.Document:
         "Pairs of modes": (_pair_table(results.pairs),),
     }
     blocks += (doc.Section(heading, parts) for heading, parts in sections.items() if parts)
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Damping model from mass drops", headline, blocks)
 
 
 def describe_observability(thresholds: Thresholds) -> str:

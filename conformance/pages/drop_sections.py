@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LINES, SHADES, add_legend, render_svg, use_decades
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_parts import PageKind, format_range, select_facts
+from pantocheck.conformance.pages.comparison_parts import PageKind, format_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.drop_comparison_format import (
     ComparedModel,
@@ -37,17 +37,19 @@ def _build_opening(comparison: DropComparison) -> tuple[doc.Block, ...]:
         "Digest of the record": comparison.record.digest,
         "Digest of the suite": comparison.suite.digest,
     }
-    return (select_facts(facts), _build_model_table(comparison.models))
+    return (doc.select_facts(facts), _build_model_table(comparison.models))
 
 
 def _build_model_table(models: tuple[ComparedModel, ...]) -> doc.Table:
-    columns = (
-        doc.Column("Model"),
-        doc.Column("Source", share=1),
-        doc.Column("Last slack dropper [s]", number=True),
+    return doc.make_table(
+        models,
+        {
+            doc.Column("Model"): lambda model: model.name,
+            doc.Column("Source", share=1): lambda model: model.source,
+            doc.Column("Last slack dropper [s]", number=True): lambda model: format_value(model.last_slack_s, 3),
+        },
+        "Damping models",
     )
-    rows = tuple((model.name, model.source, format_value(model.last_slack_s, 3)) for model in models)
-    return doc.Table(columns, rows, "Damping models")
 
 
 def _build_sections(comparison: DropComparison) -> tuple[doc.Section, ...]:

@@ -1,4 +1,4 @@
-"""Section on the fit of an identification: residual, model order and spectra."""
+"""Report on an identification, from identification.json."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -27,6 +27,7 @@ from pantocheck.conformance.results.identification_format import (
 )
 from pantocheck.conformance.results.identified_modes import Mode
 
+# Fit: residual, model order and spectra.
 UNITS = {"acceleration": "m/s²", "velocity": "m/s", "displacement": "m"}
 
 
@@ -70,7 +71,7 @@ def _order_figure(search: OrderSearch) -> doc.Figure:
     )
 
 
-# Section on the modes of an identification: half-power bands, shapes at the sensors, table.
+# Modes: half-power bands, shapes at the sensors, table.
 MODES_TEXT = (
     "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, "
     "widened where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, "
@@ -134,7 +135,7 @@ def _mode_table(modes: Sequence[Mode]) -> doc.Table:
     return doc.make_grid("Modes by frequency", modes, cells)
 
 
-# Section on the records of an identification: places of sensors and masses, part of each record in the fit.
+# Records: places of sensors and masses, part of each record in the fit.
 def list_record_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
     """Schematic and table of the records of one line of identification.json."""
     sensors, masses = _list_sensors(line.records), _list_masses(line.records)
@@ -205,7 +206,7 @@ def _record_table(records: Sequence[IdentifiedRecord]) -> doc.Table:
     return doc.make_grid("Records and the part of each that was used", records, cells)
 
 
-# Figures of the frequency responses of an identification.
+# Frequency responses.
 ZOOMED_GROUPS = 2
 """Number of groups of span modes in the zoom: these are narrow and lie far from each other."""
 
@@ -232,7 +233,7 @@ def list_response_figures(line: IdentifiedLine) -> Iterator[doc.Figure]:
         )
 
 
-# Report on an identification, from identification.json.
+# The whole report.
 def build_identification_document(lines: Sequence[IdentifiedLine]) -> doc.Document:
     """The report on the lines of an identification."""
     lines = [clean_tree(line.rounded()) for line in lines]
@@ -240,13 +241,11 @@ def build_identification_document(lines: Sequence[IdentifiedLine]) -> doc.Docume
     certain = sum(mode.certain and not mode.lateral for mode in modes)
     headline = f"{certain} modes identified with a damping ratio known to better than 5 %"
     headline += f"; {len(modes) - certain} more are uncertain or lateral." if len(modes) > certain else "."
-    header = doc.PlainHeader("Identification of mass drops", headline)
-    warnings = collect_warnings(lines)
-    blocks: list[doc.Block] = [doc.WarningBox(warnings)] if warnings else []
+    blocks: list[doc.Block] = [*doc.warn(collect_warnings(lines))]
     for line in lines:
         names = ", ".join(record.name for record in line.records)
         blocks += _list_sections(line, f" ({names})" if len(lines) > 1 else "")
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Identification of mass drops", headline, blocks)
 
 
 def collect_warnings(lines: Sequence[IdentifiedLine]) -> tuple[str, ...]:

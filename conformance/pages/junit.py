@@ -1,4 +1,4 @@
-"""Criteria, records and steps of a run as named tests with one verdict each, for formats that CI servers read."""
+"""Criteria, records and steps of a run as named tests with one verdict each, and these tests as JUnit XML."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence

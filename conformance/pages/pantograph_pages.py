@@ -1,4 +1,4 @@
-"""Figure of a frequency response at a pantograph head: measurement, model, and their deviation by band."""
+"""Pages on a pantograph: measured responses beside its model, and the fit of a chain to them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -19,7 +19,7 @@ from pantocheck.conformance.core.figure_style import (
     render_svg,
 )
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_parts import PageKind, clean_model, format_range, select_facts
+from pantocheck.conformance.pages.comparison_parts import PageKind, clean_model, format_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
@@ -135,7 +135,7 @@ def _build_closing(comparison: ResponseComparison) -> tuple[doc.Block, ...]:
         "Digest of the pantograph": comparison.model.digest,
         "Digest of the suite": comparison.suite.digest,
     }
-    return (select_facts(facts),)
+    return (doc.select_facts(facts),)
 
 
 def _build_section(response: ComparedResponse, criteria: tuple[ComparisonCriterion, ...]) -> doc.Section:
@@ -159,7 +159,7 @@ def _build_section(response: ComparedResponse, criteria: tuple[ComparisonCriteri
     height = "" if response.height_m is None else f", {format_plain(response.height_m)} m"
     informative = "" if response.is_graded else " (informative)"
     heading = f"{response.name}: {format_plain(response.static_force_N)} N{height}{informative}"
-    return doc.Section(heading, (doc.Figures((figure,)), _build_band_table(response.bands), select_facts(facts)))
+    return doc.Section(heading, (doc.Figures((figure,)), _build_band_table(response.bands), doc.select_facts(facts)))
 
 
 def _build_band_table(bands: tuple[BandDeviation, ...]) -> doc.Table:
@@ -237,15 +237,14 @@ def build_pantograph_fit_document(results: PantographFit) -> doc.Document:
         f"{results.title}: chain of {results.masses} masses, RMS deviation {format_value(deviation, 3)} % from "
         f"{format_value(results.band_Hz[0], 3)} to {format_value(results.band_Hz[1], 3)} Hz."
     )
-    header = doc.PlainHeader("Pantograph from measured responses", headline)
-    blocks: list[doc.Block] = [doc.WarningBox(tuple(results.warnings))] if results.warnings else []
-    blocks += [
+    blocks: list[doc.Block] = [
+        *doc.warn(results.warnings),
         doc.Paragraph(FIT_SCOPE),
         doc.Section("Parameters", (_build_parameter_table(results.parameters), *_build_correlations(results))),
         doc.Section("Number of masses", (_build_candidate_table(results), doc.Facts(_list_facts(results)))),
         *build_response_sections(results.comparison),
     ]
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Pantograph from measured responses", headline, blocks)
 
 
 def _build_parameter_table(parameters: tuple[ChainParameter, ...]) -> doc.Table:

@@ -1,4 +1,4 @@
-"""Report on a population of tests, from population.json."""
+"""Report on a population of tests, from population.json, with its figures."""
 
 from collections.abc import Callable, Sequence
 
@@ -40,8 +40,7 @@ def build_population_document(population: PopulationFile) -> doc.Document:
     """The report on population.json."""
     population = clean_tree(population.rounded())
     records, groups = population.records, population.groups
-    header = doc.PlainHeader("Damping ratios over tests", _write_headline(records, groups))
-    blocks: list[doc.Block] = [doc.WarningBox(tuple(population.warnings))] if population.warnings else []
+    blocks: list[doc.Block] = [*doc.warn(population.warnings)]
     if groups:
         blocks += [
             doc.Section(
@@ -53,7 +52,7 @@ def build_population_document(population: PopulationFile) -> doc.Document:
     blocks.append(doc.Section("Tests", (_record_table(records),)))
     if population.levels:
         blocks.append(doc.Section("Medians by mass, place, sensors and tensions", (_level_table(population.levels),)))
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Damping ratios over tests", _write_headline(records, groups), blocks)
 
 
 def _write_headline(records: Sequence[PooledRecord], groups: Sequence[PooledGroup]) -> str:

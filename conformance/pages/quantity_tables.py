@@ -1,4 +1,4 @@
-"""Tables of quantities: one row per quantity, one column per pantograph."""
+"""Tables of quantities: values of a case, uncertainties by component, and the list of all quantities as CSV."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Figures of a drop comparison: motion of record and models laid over each other, and residual energy against time."""
+"""Figures of the records of mass drops: places of sensors and masses, motion, spectrogram."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -37,8 +37,7 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
     for case in results.cases:
         owners = [_build_owner(owner, names) for owner in case.owners if owner.quantities]
-        notes: list[doc.Block] = [doc.WarningBox(tuple(case.notes))] if case.notes else []
-        blocks.append(doc.Section(case.id or "Records", (*notes, *owners)))
+        blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
     return doc.Document(header.headline, header, tuple(blocks))
 
 

@@ -1,4 +1,4 @@
-"""Results on a site: the content of results.json, its contradictions and the place of its certificate."""
+"""Pages of a site: all systems, cases and runs; and the history of each case."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -91,8 +91,7 @@ def build_site_index(title: str, published: Sequence[PublishedResults], pages: M
         for run in published
         if run.discrepancies
     )
-    if warnings:
-        blocks.append(doc.WarningBox(warnings))
+    blocks += doc.warn(warnings)
     blocks.append(doc.Section("Systems and cases", (_build_matrix(systems, published, pages),)))
     blocks.append(doc.Section("Runs", (_build_run_table(published),)))
     return doc.Document(title, doc.PlainHeader(clean_text(title), headline), tuple(blocks))
@@ -169,8 +168,6 @@ Run = tuple[PublishedResults, CaseResult]
 def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.Document:
     """Page of a case."""
     runs = [(run, case) for run in published for case in run.results.cases if case.id == case_id]
-    titles = clean_text(runs[-1][1].title)
-    header = doc.PlainHeader(clean_text(case_id), titles)
     blocks: list[doc.Block] = [doc.Paragraph((doc.PageLink("All systems and cases", "../index.html"),))]
     blocks.append(doc.Section("Verdicts", (_build_verdict_table(runs),)))
     # One run per system has no history: the table shows its values.
@@ -181,7 +178,7 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
             table = _build_value_table(runs, owner, names)
             figures = doc.Figures(tuple(_draw_history(runs, owner, name) for name in names))
             blocks.append(doc.Section(name_pantograph(owner).capitalize(), (table, figures) if repeated else (table,)))
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document(clean_text(case_id), clean_text(runs[-1][1].title), blocks)
 
 
 def _read(case: CaseResult, owner: str, name: str) -> float | None:

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LIMIT_FILL, PALE, add_legend, render_svg
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_parts import PageKind, select_facts
+from pantocheck.conformance.pages.comparison_parts import PageKind
 from pantocheck.conformance.pages.words import format_plain, format_signed, format_value
 from pantocheck.conformance.results.comparison_format import ComparedValues, SpanDifferences, StaticComparison
 
@@ -99,7 +99,7 @@ def _build_opening(comparison: StaticComparison) -> tuple[doc.Block, ...]:
         "Digest of the suite": comparison.suite.digest,
         "Note": comparison.note,
     }
-    return (select_facts(facts),)
+    return (doc.select_facts(facts),)
 
 
 def _build_section(values: ComparedValues, comparison: StaticComparison) -> doc.Section:

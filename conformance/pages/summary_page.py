@@ -30,11 +30,10 @@ def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Doc
     """
     results = prepare_results(results)
     header = build_header(results)
-    warnings = list_identity_warnings(results)
     scope = (*_build_scope(results), *build_findings_section(results))
     facts = (*(list_administration(results.administration) if results.administration else ()), *list_sources(results))
     stated = (doc.Facts(facts),) if facts else ()
-    first = (*_link_certificates(certificates), *stated, *((doc.WarningBox(warnings),) if warnings else ()))
+    first = (*_link_certificates(certificates), *stated, *doc.warn(list_identity_warnings(results)))
     return doc.Document(
         header.heading, header, (*first, *scope, *list_reasons(results), *map(_case_section, results.cases))
     )
@@ -59,8 +58,7 @@ def _case_section(case: CaseResult) -> doc.Section:
     blocks: list[doc.Block] = [doc.Paragraph(f"Case {case.id}{': ' + case.reason if case.reason else ''}")]
     if record := describe_record(case):
         blocks.append(doc.Paragraph(record))
-    if case.warnings:
-        blocks.append(doc.WarningBox(tuple(case.warnings)))
+    blocks += doc.warn(case.warnings)
     if criteria := list_criteria(case, "criteria"):
         blocks += [_criteria(criteria, case.uncertainty_basis), *note_incomplete(criteria, case.uncertainty_basis)]
     if (verification := case.verification) is not None:

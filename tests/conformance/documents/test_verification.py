@@ -153,7 +153,7 @@ def test_tampering_is_reported(results: dict[str, Any], name: str) -> None:
 def test_certificate_made_from_changed_results(results: dict[str, Any], tmp_path: Path) -> None:
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
-    (tmp_path / "a.pdf").write_bytes(pdf.print_certificate(results))
+    (tmp_path / "a.pdf").write_bytes(print_certificate(results))
     found = verify_document(tmp_path / "a.pdf")
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
@@ -164,7 +164,7 @@ def test_pages_that_contradict_the_embedded_results(
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
     encode_attachment = pdf.encode_attachment
     monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(Results.model_validate(passing)))
-    (tmp_path / "a.pdf").write_bytes(pdf.print_certificate(results))
+    (tmp_path / "a.pdf").write_bytes(print_certificate(results))
     found = verify_document(tmp_path / "a.pdf")
     assert found.verdict == "pass"
     assert len(found.discrepancies) == 2
@@ -281,7 +281,7 @@ def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_pat
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (1, "consistent in part")
     row(results, 1, 1)["margin"] = 0.5
-    (tmp_path / "bad.pdf").write_bytes(pdf.print_certificate(results))
+    (tmp_path / "bad.pdf").write_bytes(print_certificate(results))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
     assert bad.exit_code == 1
     assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in " ".join(bad.stdout.split())
