@@ -14,6 +14,7 @@ from pypdf.errors import DependencyError, LimitReachedError
 from pypdf.generic import NameObject, StreamObject
 from typer.testing import CliRunner
 
+from helpers.shown_page import print_certificate
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.input_error import InputError
