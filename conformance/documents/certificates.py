@@ -30,10 +30,6 @@ OTHER_PURPOSES = frozenset({"server_auth", "code_signing", "time_stamping", "ocs
 def read_certificates(path: Path, where: str) -> list[Any]:
     """Read all certificates of a PEM file, or the certificate of a DER file.
 
-    Args:
-        path: The file.
-        where: Name of the file in messages.
-
     Returns:
         At least one certificate, in the order of the file (asn1crypto.x509.Certificate).
 

@@ -108,11 +108,7 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
 
 
 def join_signatures(parts: Iterable[Any]) -> bytes:
-    """One signature file in DER from several signatures of the same content.
-
-    Args:
-        parts: The signatures (asn1crypto.cms.SignedData).
-    """
+    """One signature file in DER from several signatures of the same content."""
     from asn1crypto import cms
 
     parts = list(parts)

@@ -25,11 +25,7 @@ REVISION_END = re.compile(rb"startxref\s+\d+\s+%%EOF(\r\n|\n|\r)?")
 
 
 def list_revision_ends(content: bytes) -> tuple[int, ...]:
-    """Ends of the revisions of a PDF [bytes], the first one being the document as it was written.
-
-    Args:
-        content: Content of the file.
-    """
+    """Ends of the revisions of a PDF [bytes], the first one being the document as it was written."""
     return tuple(match.end() for match in REVISION_END.finditer(content))
 
 
@@ -144,10 +140,6 @@ class HtmlCertificate:
 def parse_html_certificate(content: bytes, name: str) -> HtmlCertificate:
     """Read a certificate as HTML page.
 
-    Args:
-        content: Content of the file.
-        name: Name of the file in messages.
-
     Raises:
         InputError: Not UTF-8, or without one block of valid results.
     """
@@ -195,9 +187,6 @@ Certificate = PdfCertificate | HtmlCertificate | ResultsFile
 
 def read_certificate(path: Path) -> Certificate:
     """Read a certificate or a results.json.
-
-    Args:
-        path: PDF, HTML page or results.json.
 
     Raises:
         InputError: It cannot be read, is too large, or is none of them.

@@ -153,13 +153,6 @@ def compare_profile(profile: Profile, result: CaseResult) -> Iterator[str]:
     """Differences of an assessment from the profile of the library.
 
     The bounds of most rules depend on the record, so that only `--record` recomputes them.
-
-    Args:
-        profile: Installed profile.
-        result: Result of an assessment by a profile of this name.
-
-    Yields:
-        One sentence per difference.
     """
     if result.stated_limits_digest != json_digest([rules_digest(profile), limits_digest(())]):
         yield "digest of the rules: another one in the library"
@@ -236,13 +229,6 @@ def compare_limits(case: Case, result: CaseResult) -> Iterator[str]:
     """Differences of the limits of a result from those of the installed case.
 
     Limits of a user may replace those of the case. The result must then state each limit that they weaken.
-
-    Args:
-        case: Installed case with the limits of its file.
-        result: Result of a case with this id.
-
-    Yields:
-        One sentence per difference.
     """
     rows = _by_target(row for row in result.criteria if not row.is_drift)
     limits = {limit.target: limit for limit in case.limits}

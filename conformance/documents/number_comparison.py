@@ -116,15 +116,7 @@ CHARACTERS_BEFORE = 30
 
 
 def compare_lines(stated: Sequence[str], expected: Sequence[str]) -> Iterator[str]:
-    """First line of a text that differs from the expected text.
-
-    Args:
-        stated: Lines of the document.
-        expected: Lines that the results give.
-
-    Yields:
-        One sentence, if the texts differ.
-    """
+    """First line of a text that differs from the expected text."""
     for line, other in zip_longest(stated, expected):
         if line != other:
             printed, follows = quote_difference(line, other)

@@ -4,29 +4,188 @@ The pages follow from the results, the versions of the software and the date. Wh
 is a contradiction. Where they do not, the texts are compared, and the check stays incomplete.
 """
 
+import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import UTC, datetime
+from html import unescape
+from html.parser import HTMLParser
+from itertools import zip_longest
 from typing import assert_never
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
-from pantocheck.conformance.documents.document_reading import Certificate, HtmlCertificate, PdfCertificate, ResultsFile
-from pantocheck.conformance.documents.html_check import (
-    compare_html,
-    compare_html_texts,
-    list_active_parts,
-    list_foreign_elements,
-    read_html_date,
-    read_title,
+from pantocheck.conformance.documents.document_reading import (
+    DATA_BLOCK,
+    Certificate,
+    HtmlCertificate,
+    PdfCertificate,
+    ResultsFile,
 )
-from pantocheck.conformance.documents.number_comparison import quote
+from pantocheck.conformance.documents.number_comparison import compare_lines, quote, quote_difference
 from pantocheck.conformance.documents.version_differences import list_version_differences
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
+
+# Parts of an HTML page that could run, fetch or hide something.
+ACTIVE_ELEMENTS = frozenset(
+    ("script", "style", "link", "iframe", "frame", "object", "embed", "base", "form", "applet", "template", "meta")
+)
+"""Elements that run, fetch, replace or hide content."""
+
+FOREIGN_ELEMENTS = frozenset(("link", "iframe", "frame", "object", "embed", "base", "form", "applet", "template"))
+"""Elements that no version of Pantocheck writes."""
+
+POLICY = "default-src 'none'"
+"""Beginning of the content security policy of every version: nothing is fetched."""
+
+ADDRESSES = frozenset(("href", "src", "srcset", "action", "formaction", "data", "poster", "background", "xlink:href"))
+"""Attributes with an address."""
 
 
+class _Page(HTMLParser):
+    """Tags with their attributes, texts and comments of a page in their order, and its active parts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.tokens: list[tuple[str, str]] = []
+        self.texts: list[str] = []
+        self.parts: Counter[tuple[str, str]] = Counter()
+        self.foreign: list[str] = []
+        self.policies: list[str] = []
+        self.open = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Note elements, events, styles and addresses that can change or load a part of the page."""
+        self.open = tag
+        self.tokens.append(("tag", " ".join([tag, *(f'{name}="{value}"' for name, value in attrs)])))
+        if tag in ACTIVE_ELEMENTS:
+            text = " ".join(f"{name}={value}" for name, value in attrs)
+            self.parts[f"an element <{tag}>", text] += 1
+        if tag in FOREIGN_ELEMENTS:
+            self.foreign.append(f"an element <{tag}>")
+        if tag == "meta" and (dict(attrs).get("http-equiv") or "").lower() == "content-security-policy":
+            self.policies.append(dict(attrs).get("content") or "")
+        for name, value in attrs:
+            if name.startswith("on"):
+                self.foreign.append(f"an event handler {name} of <{tag}>")
+                self.parts[f"an event handler {name} of <{tag}>", value or ""] += 1
+            elif name == "style":
+                self.parts[f"a style of <{tag}>", value or ""] += 1
+            elif name in ADDRESSES and not (value or "").startswith(("#", "data:image/svg+xml;base64,")):
+                self.foreign.append(f"an address outside the page in {name} of <{tag}>")
+                self.parts[f"an address in {name} of <{tag}>", value or ""] += 1
+
+    def handle_endtag(self, tag: str) -> None:
+        self.open = ""
+        self.tokens.append(("end of", tag))
+
+    def handle_data(self, data: str) -> None:
+        line = " ".join(data.split())
+        if not line:
+            return
+        self.tokens.append(("text", line))
+        if self.open == "style":
+            self.parts["a style sheet", data] += 1
+        elif self.open != "script":
+            self.texts.append(line)
+        elif not data.startswith("{"):
+            self.parts["a script", data] += 1
+
+    def handle_comment(self, data: str) -> None:
+        self.tokens.append(("comment", data))
+
+    def handle_decl(self, decl: str) -> None:
+        self.tokens.append(("declaration", decl))
+
+
+def list_active_parts(stated: str, expected: str) -> Iterator[str]:
+    """Active parts of a page that the page of its results does not have, or lacks."""
+    parts, others = _Page(stated).parts, _Page(expected).parts
+    for (name, text), number in (parts - others).items():
+        yield f"the page has {name} that the results do not give{_quote(text)}{_count(number)}"
+    for (name, text), number in (others - parts).items():
+        yield f"the page lacks {name}{_quote(text)}{_count(number)}"
+
+
+def list_foreign_elements(stated: str) -> Iterator[str]:
+    """Parts of a page that no version of Pantocheck writes; parameter and sentences as in `list_active_parts`."""
+    page = _Page(stated)
+    yield from (f"the page has {part}" for part in dict.fromkeys(page.foreign))
+    if len(page.policies) != 1 or not page.policies[0].startswith(POLICY):
+        yield "the page lacks the content security policy that fetches nothing"
+
+
+def _quote(text: str) -> str:
+    short = " ".join(text.split())[:80]
+    return f": {short}" if short else ""
+
+
+def _count(number: int) -> str:
+    return f" ({number} times)" if number > 1 else ""
+
+
+# Comparison of an HTML page with the one that its results give: tags, attributes and texts in their order.
+TITLE = re.compile("<title>([^<]*)</title>")
+
+DATE = re.compile('<meta name="dcterms.created" content="([0-9: -]+UTC)">')
+
+
+def compare_html(stated: str, expected: str) -> Iterator[str]:
+    """Differences of a page from the expected one; at least one.
+
+    Yields:
+        The first different tag or text; if there is none, the kind of the difference.
+    """
+    page, other = _Page(_cut_data(stated)), _Page(_cut_data(expected))
+    for token, wanted in zip_longest(page.tokens, other.tokens):
+        if token != wanted:
+            texts = (None if pair is None else f"{pair[0]} {pair[1]}" for pair in (token, wanted))
+            found, follows = quote_difference(*texts)
+            yield f"{found} stands where {follows} follows from the results"
+            return
+    if _blocks(stated) != _blocks(expected):
+        yield "the embedded results are not as Pantocheck writes them: keys, their order, digits or spaces differ"
+    else:
+        yield "spaces, line breaks or the spelling of tags differ; texts and tags agree"
+
+
+def compare_html_texts(stated: str, expected: str) -> Iterator[str]:
+    """First difference of the texts of two pages; parameters as in `compare_html`."""
+    yield from compare_lines(_Page(_cut_data(stated)).texts, _Page(_cut_data(expected)).texts)
+
+
+def read_html_date(page: str) -> int:
+    """Date in the metadata of a page [s since 1970]; 0 if there is none."""
+    found = DATE.search(page)
+    if found is None:
+        return 0
+    try:
+        return int(datetime.strptime(found.group(1), "%Y-%m-%d %H:%M:%S UTC").replace(tzinfo=UTC).timestamp())
+    except ValueError:
+        return 0
+
+
+def read_title(page: str) -> str:
+    """Title of a page; empty if there is none."""
+    found = TITLE.search(page)
+    return unescape(found.group(1)).strip() if found else ""
+
+
+def _cut_data(page: str) -> str:
+    return DATA_BLOCK.sub("", page)
+
+
+def _blocks(page: str) -> list[str]:
+    return DATA_BLOCK.findall(page)
+
+
+# Verdict of the check, for every kind of document.
 @dataclass(frozen=True)
 class PageDifferences:
     """Differences of a document from the one that its results give."""
@@ -43,9 +202,6 @@ class PageDifferences:
 
 def check_pages(document: Certificate) -> DocumentCheck:
     """Check the pages of a document against its results.
-
-    Args:
-        document: Document with its results.
 
     Raises:
         InputError: The date of a PDF cannot be read.
@@ -67,12 +223,10 @@ def check_pages(document: Certificate) -> DocumentCheck:
     if isinstance(document, ResultsFile):
         return DocumentCheck("incomplete", "The layout of the file was not compared.")
     if found.texts:
-        return DocumentCheck(
-            "incomplete", "The texts are not those of the installed version.", shorten_details(found.texts)
-        )
-    return DocumentCheck(
-        "incomplete", "All texts are those of the installed version. Figures and layout were not compared."
-    )
+        statement = "The texts are not those of the installed version."
+    else:
+        statement = "All texts are those of the installed version. Figures and layout were not compared."
+    return DocumentCheck("incomplete", statement, shorten_details(found.texts))
 
 
 def _compare(document: Certificate) -> PageDifferences:
@@ -98,24 +252,20 @@ def _compare(document: Certificate) -> PageDifferences:
 
 
 def _compare_pdf(document: PdfCertificate) -> PageDifferences:
-    from pantocheck.conformance.documents.pdf_check import compare_pdfs, compare_texts, list_foreign_parts, read_date
+    from pantocheck.conformance.documents.pdf_check import compare_pdfs, list_foreign_parts, read_date
 
     date = read_date(document.reader, document.name)
     page = render_pdf(build_dated_certificate(document.results, date))
     if document.original == page:
         return PageDifferences(True)
     foreign = tuple(list_foreign_parts(document.reader, document.original))
-    return PageDifferences(
-        False,
-        (*foreign, *compare_pdfs(document.reader, page)),
-        tuple(compare_texts(document.reader, page)),
-        foreign,
-    )
+    found, texts = compare_pdfs(document.reader, page)
+    return PageDifferences(False, (*foreign, *found), tuple(texts), foreign)
 
 
 def _find_other_verdict(document: Certificate) -> Iterator[str]:
     """Title and heading of every version name the verdict."""
-    word = str(read_words()["verdict"][document.results.verdict]["word"])
+    word = name_verdict(document.results.verdict)
     match document:
         case ResultsFile():
             return

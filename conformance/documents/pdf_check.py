@@ -50,15 +50,7 @@ DEEPEST_SEARCHED = 100
 
 
 def list_foreign_parts(reader: PdfReader, content: bytes) -> Iterator[str]:
-    """Parts that Pantocheck never writes.
-
-    Args:
-        reader: Document.
-        content: Content of the document.
-
-    Yields:
-        One sentence per kind of part.
-    """
+    """Parts that Pantocheck never writes."""
     if not content.startswith(b"%PDF-"):
         yield "bytes stand before the header of the PDF"
     try:
@@ -111,10 +103,6 @@ DEEPEST_COMPARED = 60
 def read_date(reader: PdfReader, name: str) -> int:
     """Date in the metadata of a PDF [s since 1970]; 0 if there is none.
 
-    Args:
-        reader: Document.
-        name: Name of the file in messages.
-
     Raises:
         InputError: The date cannot be read.
     """
@@ -135,25 +123,21 @@ def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]
     return title, next((line for line in lines if line.startswith(beginning)), "")
 
 
-def compare_pdfs(stated: PdfReader, expected: bytes) -> list[str]:
-    """Differences of a PDF from the expected one; at least one.
-
-    Args:
-        stated: Document, whose bytes differ.
-        expected: Document that the results give.
-    """
+def compare_pdfs(stated: PdfReader, expected: bytes) -> tuple[list[str], list[str]]:
+    """Differences of a PDF from the expected one, at least one; and those of the text of every page alone."""
     other = PdfReader(BytesIO(expected))
+    texts = _compare_texts(stated, other)
     try:
-        found = [*_compare_metadata(stated, other), *compare_texts(stated, expected), *_compare_drawings(stated, other)]
+        found = [*_compare_metadata(stated, other), *texts, *_compare_drawings(stated, other)]
         found += _compare_attachments(stated, other)
     except Exception as error:  # the parser has no common base of its exceptions
         found = [f"an object of the file cannot be read ({type(error).__name__})"]
-    return found or ["the file was written again by another program; pages and attachment are equal, its bytes are not"]
+    rewritten = "the file was written again by another program; pages and attachment are equal, its bytes are not"
+    return found or [rewritten], texts
 
 
-def compare_texts(stated: PdfReader, expected: bytes) -> list[str]:
-    """First difference of the text of every page; parameters as in `compare_pdfs`."""
-    other = PdfReader(BytesIO(expected))
+def _compare_texts(stated: PdfReader, other: PdfReader) -> list[str]:
+    """First difference of the text of every page."""
     pages, others = len(stated.pages), len(other.pages)
     found = [] if pages == others else [f"the document has {pages} pages, {others} follow from the results"]
     for number in range(min(pages, others)):

@@ -1,15 +1,146 @@
-"""Signatures of a PDF of unknown origin."""
+"""Changes of a PDF after it was written: every revision after the first must add one signature and nothing else.
+
+A PDF grows by revisions, which redefine objects and add new ones. A revision that only signs redefines the catalog (its
+form is new), the page of the signature (its annotation is new) and the form (its field is new). Every other change is
+reported: pages, metadata, attachments, actions. The rule is stricter than that of viewers, which accept further changes
+of metadata and forms.
+"""
 
 from collections.abc import Iterator
 from io import BytesIO
 from typing import Any
 
 from pantocheck.conformance.documents.certificates import describe_failure
-from pantocheck.conformance.documents.cms_check import check_cms
+from pantocheck.conformance.documents.cms_check import SignatureFacts, check_cms
 from pantocheck.conformance.documents.key_files import MOST_SIGNATURES
-from pantocheck.conformance.documents.pdf_revisions import find_changes
-from pantocheck.conformance.documents.signature_facts import SignatureFacts
+from pantocheck.conformance.documents.pdf_signing import find_place
 
+FIELD_KEYS = frozenset({"/Type", "/Subtype", "/FT", "/T", "/TU", "/V", "/F", "/Ff", "/Rect", "/P", "/AP"})
+"""Keys of a field that signs and does nothing else: no actions, scripts, parents or locks."""
+
+FORM_KEYS = frozenset({"/Fields", "/SigFlags"})
+"""Keys of a form that contains signatures only."""
+
+CHANGED_KEYS = {
+    "catalog": frozenset({"/AcroForm", "/Extensions", "/Version"}),
+    "page": frozenset({"/Annots"}),
+    "form": FORM_KEYS,
+}
+"""Keys of a redefined object that may change, by the kind of the object."""
+
+
+def find_changes(reader: Any) -> Iterator[str]:
+    """Changes other than signatures, one line each.
+
+    Args:
+        reader: The PDF (pyhanko.pdf_utils.reader.PdfFileReader).
+    """
+    for number in range(1, reader.xrefs.total_revisions):
+        old, new = (reader.get_historical_resolver(revision) for revision in (number - 1, number))
+        for problem in _find_problems(old, new):
+            yield f"revision {number} of the document is more than a signature: {problem}"
+
+
+def _find_problems(old: Any, new: Any) -> Iterator[str]:
+    if new.refs_freed_in_revision():
+        yield "objects are deleted"
+    for key, name in (("/Root", "catalog"), ("/Info", "table of metadata")):
+        if _freeze_entry(old.trailer_view, key) != _freeze_entry(new.trailer_view, key):
+            yield f"the {name} is replaced"
+    listed = sorted(new.explicit_refs_in_revision(), key=lambda reference: reference.idnum)
+    redefined = [reference for reference in listed if not old.is_ref_unassignable(reference)]
+    # The parser refuses references to objects that do not exist: a later revision could define them.
+    old.collect_dependencies(old.trailer_view)
+    form = _look_up(new.root, "/AcroForm", {})
+    before, after = _list_items(_look_up(old.root, "/AcroForm", {}), "/Fields"), _list_items(form, "/Fields")
+    if len(after) != len(before) + 1 or after[:-1] != before:
+        yield "it does not add exactly one signature field"
+        return
+    if form.keys() - FORM_KEYS:
+        yield f"the form has {_join(form.keys() - FORM_KEYS)}"
+    yield from _check_field(form["/Fields"][-1].get_object())
+    metadata = (_freeze_entry(old.trailer_view, "/Info"), _freeze_entry(old.root, "/Metadata"))
+    for reference in redefined:
+        if ("reference", reference.idnum, reference.generation) in metadata:
+            yield "the metadata are changed"
+        else:
+            yield from _check_redefinition(old(reference), new(reference), after[-1])
+
+
+def _check_field(field: Any) -> Iterator[str]:
+    """A field must sign, and its box must not cover content of a page."""
+    if field.get("/FT") != "/Sig" or field.keys() - FIELD_KEYS:
+        yield f"the field has {_join(field.keys() - FIELD_KEYS) or 'another type'}"
+    if not find_place(field):
+        yield "the box of the signature is not at a place that reports leave free"
+
+
+def _check_redefinition(old: Any, new: Any, field: Any) -> Iterator[str]:
+    """A redefined object must be the catalog, a page, the form or one of its lists, and grow by the field only."""
+    if isinstance(old, list) and isinstance(new, list):
+        if _freeze(new) != (*_freeze(old), field):
+            yield "a list of the document is changed"
+        return
+    kind = _name_kind(old)
+    if kind not in CHANGED_KEYS or not isinstance(new, dict):
+        yield "an object of the document is replaced"
+        return
+    changed = {key for key in old.keys() | new.keys() if _freeze_entry(old, key) != _freeze_entry(new, key)}
+    if changed - CHANGED_KEYS[kind]:
+        yield f"{_join(changed - CHANGED_KEYS[kind])} of the {kind} changed"
+    for key in changed & {"/Annots", "/Fields"}:
+        if _list_items(new, key) != [*_list_items(old, key), field]:
+            yield f"{key} of the {kind} has more than the signature"
+
+
+def _name_kind(entries: Any) -> str:
+    """Kind of a dictionary that a signature redefines; `other` for any other object."""
+    from pyhanko.pdf_utils.generic import StreamObject
+
+    if not isinstance(entries, dict) or isinstance(entries, StreamObject):
+        return "other"
+    if "/Fields" in entries:
+        return "form"
+    return {"/Catalog": "catalog", "/Page": "page"}.get(entries.get("/Type", ""), "other")
+
+
+def _list_items(entries: Any, key: str) -> list[Any]:
+    """Items of a list in a dictionary, comparable; empty without the key."""
+    return list(_freeze(_look_up(entries, key, [])))
+
+
+def _look_up(entries: Any, key: str, default: Any) -> Any:
+    """Object under a key, references resolved; the method `get` of a dictionary would not resolve them."""
+    try:
+        return entries[key]
+    except KeyError:
+        return default
+
+
+def _freeze_entry(entries: Any, key: str) -> Any:
+    return _freeze(entries.raw_get(key)) if key in entries else None
+
+
+def _freeze(value: Any) -> Any:
+    """Object of a PDF as a value that can be compared across revisions: references by number, not by content."""
+    from pyhanko.pdf_utils.generic import IndirectObject, StreamObject
+
+    if isinstance(value, IndirectObject):
+        return ("reference", value.idnum, value.generation)
+    if isinstance(value, StreamObject):
+        return ("stream", value.encoded_data, *((key, _freeze_entry(value, key)) for key in sorted(value)))
+    if isinstance(value, dict):
+        return ("dictionary", *((key, _freeze_entry(value, key)) for key in sorted(value)))
+    if isinstance(value, list):
+        return tuple(_freeze(item) for item in list.__iter__(value))
+    return (type(value).__name__, getattr(value, "original_bytes", str(value)))
+
+
+def _join(keys: Any) -> str:
+    return ", ".join(sorted(keys))
+
+
+# Signatures of a PDF of unknown origin.
 SIGNATURE_KEY = b"/ByteRange"
 """Key that every signed PDF contains in plain text, because the signature is written into the finished file."""
 

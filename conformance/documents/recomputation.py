@@ -24,14 +24,7 @@ from pantocheck.model.statics.wave_factors import amplification_coefficient, dop
 
 
 def find_discrepancies(results: Results) -> list[str]:
-    """Find contradictions between the numbers and verdicts of results.
-
-    Args:
-        results: Results of a document.
-
-    Returns:
-        One line per contradiction.
-    """
+    """Find contradictions between the numbers and verdicts of results."""
     discrepancies = [text for case in results.cases for text in _check_case(case, results.trust)]
     decided = read_participation(results).decide_run(results)
     pairs: list[tuple[str, Verdict | None, Verdict | None]] = [
@@ -184,16 +177,7 @@ def _check_order(quantities: Mapping[str, float]) -> Iterator[str]:
 def check_components(
     row: Criterion, components: UncertaintyComponents, names: Collection[ComponentName]
 ) -> Iterator[str]:
-    """The components of a criterion must be those of its quantity; a drift and a missing limit have none.
-
-    Args:
-        row: Criterion.
-        components: Components of all quantities of the case.
-        names: Components that count for the criterion.
-
-    Yields:
-        One line if they differ.
-    """
+    """The components of a criterion must be those of its quantity; a drift and a missing limit have none."""
     if row.is_drift or (row.lower is None and row.upper is None):
         return
     reported = components.get(str(row.pantograph), {}).get(row.quantity, {})
@@ -221,11 +205,7 @@ def list_graded(case: CaseResult) -> list[Criterion]:
 
 
 def check_baseline(case: CaseResult) -> Iterator[str]:
-    """Find contradictions between a comparison with a baseline and the criteria of drift.
-
-    Yields:
-        One line per contradiction.
-    """
+    """Find contradictions between a comparison with a baseline and the criteria of drift."""
     comparison = case.baseline
     rows = [row for row in case.criteria if row.is_drift]
     if comparison is None:
@@ -262,9 +242,6 @@ def check_procedure(
         stated, decided: Procedure of the results, and the same with the verdicts that follow.
         cases: Cases of the results.
         check_grade: Check of the verdict and margin of one criterion.
-
-    Yields:
-        One line per contradiction.
     """
     if stated is None or decided is None:
         return

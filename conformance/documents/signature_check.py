@@ -6,9 +6,9 @@ from typing import Any
 from pantocheck.conformance.core.extras import MissingPackage
 from pantocheck.conformance.core.files import read_bytes
 from pantocheck.conformance.documents.certificates import read_certificates, use_signature_package
+from pantocheck.conformance.documents.cms_check import SignatureFacts, SignatureReport
 from pantocheck.conformance.documents.document_reading import MAX_DOCUMENT_BYTES
 from pantocheck.conformance.documents.key_files import MAX_SIGNATURE_BYTES, find_signature_file, parse_signatures
-from pantocheck.conformance.documents.signature_facts import SignatureFacts, SignatureReport
 
 
 def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:

@@ -21,15 +21,7 @@ UPLIFT = "max_uplift_at_support_mm"
 
 
 def check_trace(quantities: Mapping[str, float], trace: Traces) -> Iterator[str]:
-    """Contradictions between the curves of a pantograph and its quantities.
-
-    Args:
-        quantities: Quantities of the pantograph.
-        trace: Curves of the pantograph.
-
-    Yields:
-        One sentence per contradiction.
-    """
+    """Contradictions between the curves of a pantograph and its quantities."""
     for drawn, name in ((trace.mean_N, "mean_force_N"), (trace.std_N, "std_force_N")):
         if name in quantities and drawn is not None and not same_number(drawn, quantities[name], ROUNDED):
             yield f"{name} {format_exact(quantities[name])} stated, {format_exact(drawn)} drawn"

@@ -8,6 +8,7 @@ from typing import Literal
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
+from pantocheck.conformance.documents.cms_check import SignatureReport, describe_signatures
 from pantocheck.conformance.documents.document_reading import (
     Certificate,
     PdfCertificate,
@@ -18,7 +19,6 @@ from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.signature_check import is_signed_pdf
-from pantocheck.conformance.documents.signature_facts import SignatureReport, describe_signatures
 from pantocheck.conformance.documents.version_differences import (
     find_false_version,
     list_suite_differences,
@@ -150,9 +150,6 @@ def check_origin(report: SignatureReport) -> list[DocumentCheck]:
     """Checks of a verification that follow from the signatures of a document.
 
     A signature that could not be checked leaves the verification incomplete, because it may cover changed pages.
-
-    Args:
-        report: Signatures of the document.
     """
     lines = tuple(describe_signatures(report))
     checks = []
@@ -175,11 +172,7 @@ REASONS = ("not known", "does not apply")
 
 
 def find_gaps(results: Results) -> list[str]:
-    """Missing parts of results, as sentences.
-
-    Args:
-        results: Results of a document.
-    """
+    """Missing parts of results, as sentences."""
     only_verified = bool(results.cases) and all(case.id in results.verification_only for case in results.cases)
     gaps = [] if results.scope else ["scope is missing"]
     if results.criteria_verdict is None and not only_verified:
@@ -252,11 +245,7 @@ def _find_uncertainty_gaps(case: CaseResult) -> Iterator[str]:
 # A signature is such an update, and its check accepts no other one. An unsigned document has none: an update could
 # change every page.
 def check_updates(document: PdfCertificate) -> list[DocumentCheck]:
-    """Check the part of a file behind its first revision; no check if there is none, or if the document is signed.
-
-    Args:
-        document: Certificate.
-    """
+    """Check the part of a file behind its first revision; no check if there is none, or if the document is signed."""
     content = document.content
     ends = list_revision_ends(content)
     if is_signed_pdf(content) or not ends or not content[ends[0] :].strip():

@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import JsonValue
 
-from pantocheck.conformance.pages.graded_tests import GradedTest, list_case_tests, list_step_tests
+from pantocheck.conformance.pages.junit import GradedTest, list_case_tests, list_step_tests
 from pantocheck.conformance.pages.scope_page import prepare_results
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
@@ -43,10 +43,6 @@ class Annotation:
 
 def list_annotations(results: Results, places: ReportPlaces) -> list[Annotation]:
     """Annotations of a run, errors first.
-
-    Args:
-        results: Results of a run.
-        places: Places of the cases and limits in the files of the user.
 
     Returns:
         One per criterion, case, record or step that keeps the run from passing. If there is none, and the run does not
@@ -103,9 +99,6 @@ def render_code_quality(annotations: Sequence[Annotation], fallback: Path) -> by
     Args:
         annotations: Annotations.
         fallback: File that stands for an unknown place, because the service requires one: results.json.
-
-    Returns:
-        JSON in UTF-8.
     """
     issues = [_issue(annotation, annotation.place or FilePlace(fallback)) for annotation in annotations]
     return (json.dumps(issues, indent=1, ensure_ascii=True) + "\n").encode()
@@ -135,9 +128,6 @@ MOST_SHOWN = 10
 
 def render_workflow_commands(annotations: Sequence[Annotation]) -> bytes:
     """Lines of workflow commands; more annotations than the service shows end in a line with their number.
-
-    Args:
-        annotations: Annotations, errors first.
 
     Returns:
         One line per annotation in UTF-8; empty without annotations.

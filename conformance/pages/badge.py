@@ -4,7 +4,7 @@ from collections import Counter
 from xml.sax.saxutils import escape
 
 from pantocheck.conformance.pages.two_verdicts import select_criteria
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.results_format import Results
 
 LABEL = "EN 50318 style"
@@ -25,17 +25,16 @@ def summarise_verdict(results: Results) -> str:
 
     With a procedure, the numbers are those of its required steps.
     """
+    word = name_verdict(results.verdict).lower()
     if results.procedure is not None:
         required = [step.verdict for step in results.procedure.steps if step.required]
-        word = read_words()["verdict"][results.verdict]["word"].lower()
         return f"{word} {required.count('pass')}/{len(required)} steps"
     rows = [row for case in results.cases for row in select_criteria(results, case)]
     verdicts = Counter(row.verdict for row in rows if not row.is_drift)
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
-    word = read_words()["verdict"][results.verdict]["word"].lower()
     text = f"{word} {verdicts['pass']}/{counted}" if counted else word
-    if (baseline := results.baseline_verdict) not in (None, "pass"):
-        text += f", baseline {read_words()['verdict'][baseline]['word'].lower()}"
+    if results.baseline_verdict not in (None, "pass"):
+        text += f", baseline {name_verdict(results.baseline_verdict).lower()}"
     return f"{text}, modified copy" if any(case.library == "modified" for case in results.cases) else text
 
 

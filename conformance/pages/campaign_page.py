@@ -40,8 +40,7 @@ def build_campaign_report(results: CampaignResults) -> doc.Document:
     """The report on the content of campaign.json."""
     results = clean_tree(results)
     counts = f"{results.finished} of {results.total} runs are finished, {results.failed} of them failed."
-    header = doc.PlainHeader(results.title, counts + CAMPAIGN_ENDINGS[results.ending])
-    blocks: list[doc.Block] = [doc.Paragraph(CAMPAIGN_SCOPE), doc.Facts(_list_facts(results))]
+    blocks: list[doc.Block] = [doc.Paragraph(CAMPAIGN_SCOPE), _build_facts(results)]
     blocks += _list_reasons(results.reasons)
     maps = [doc.Figure(draw_map(data), data.alternative, data.caption) for data in results.maps]
     charts = [doc.Figure(_draw(data), data.alternative, data.caption, data.wide) for data in results.charts]
@@ -55,7 +54,7 @@ def build_campaign_report(results: CampaignResults) -> doc.Document:
         blocks.append(doc.Paragraph(f"{results.omitted_maps} further maps are left out; campaign.csv has all values."))
     if maps or charts:
         blocks.append(doc.Section("Figures", (doc.Figures((*maps, *charts)),)))
-    return doc.Document(results.title, header, tuple(blocks))
+    return doc.build_plain_document(results.title, counts + CAMPAIGN_ENDINGS[results.ending], blocks)
 
 
 def _draw(chart: Chart) -> str:
@@ -64,7 +63,7 @@ def _draw(chart: Chart) -> str:
     return draw_tornado(chart) if is_tornado else draw_chart(chart)
 
 
-def _list_facts(results: CampaignResults) -> tuple[tuple[str, str], ...]:
+def _build_facts(results: CampaignResults) -> doc.Facts:
     verdicts = ", ".join(f"{verdict}: {count}" for verdict, count in results.verdicts.items())
     facts = {
         "Cases": ", ".join(results.cases),
@@ -75,7 +74,7 @@ def _list_facts(results: CampaignResults) -> tuple[tuple[str, str], ...]:
         "Suite": f"Pantocheck {results.suite.version}",
         "Digest of the suite": results.suite.digest,
     }
-    return tuple((name, text) for name, text in facts.items() if text)
+    return doc.select_facts(facts)
 
 
 def _join_sources(sources: dict[str, str]) -> dict[str, str]:

@@ -1,6 +1,5 @@
 """Figures of a case with their captions and alternative texts."""
 
-from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -8,8 +7,7 @@ from itertools import groupby
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart, Histogram, Traces, UpliftTrace
 from pantocheck.conformance.core.results_part import Number, select_single
-from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.document import Curves, Figure, SmallPrint
+from pantocheck.conformance.pages.document import Curves, Figure
 from pantocheck.conformance.pages.force_figures import (
     draw_force,
     draw_histogram,
@@ -17,12 +15,10 @@ from pantocheck.conformance.pages.force_figures import (
     draw_uplift,
     select_limited,
 )
-from pantocheck.conformance.pages.line_figure import DrawnChain, draw_chain, draw_line_shape
 from pantocheck.conformance.pages.reference_values import select_reference_force
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.results.case_facts_format import StoredValue, StoredValues
 from pantocheck.conformance.results.results_format import CaseResult
 
 LISTED_SUPPORTS = 3
@@ -115,98 +111,3 @@ def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> Figure:
     caption = f"Pantograph {key}: histogram of the 20 Hz force."
     alternative = f"{caption} From {format_value(edges[0])} N to {format_value(edges[-1])} N."
     return Figure(draw_histogram(trace, histogram), alternative, caption, wide=False)
-
-
-# Drawing of the line of a case; a drawing that an earlier case has is named only.
-def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Figure, ...]:
-    """Drawing of the line at rest; none without its shape, or if an earlier case has the same drawing.
-
-    Args:
-        case: The case.
-        earlier: Cases that stand before it in the report.
-    """
-    shape = case.line_shape
-    if shape is None or _find_equal(case, earlier) is not None:
-        return ()
-    views = "side view" if shape.plan is None else "side view and plan view"
-    masses = sum(point.symbol == "mass" for point in shape.side.points)
-    parts = f" {count_noun(masses, 'point mass', 'point masses')}." if masses else ""
-    section = case.run.evaluated_m
-    ground = "" if section is None else " Grey ground: analysis section."
-    caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}{ground}"
-    return (Figure(draw_line_shape(shape, section), caption, caption),)
-
-
-def line_reference(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[SmallPrint, ...]:
-    """Name of the earlier case that has the drawing of this one; parameters as in `line_figures`."""
-    other = _find_equal(case, earlier)
-    return () if other is None else (SmallPrint(f"Line: as drawn in {other}."),)
-
-
-def _find_equal(case: CaseResult, earlier: tuple[CaseResult, ...]) -> str | None:
-    """Id of the first earlier case with the same line and analysis section."""
-    if case.line_shape is None:
-        return None
-    drawn = (case.line_shape, case.run.evaluated_m)
-    return next((other.id for other in earlier if (other.line_shape, other.run.evaluated_m) == drawn), None)
-
-
-# Schemes of the pantographs of a case that are chains; equal chains are drawn once in a document.
-DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
-"""Keys of the values of a chain, base to head."""
-
-
-def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[Figure, ...]:
-    """Scheme of every chain of a case that no earlier case has.
-
-    Args:
-        case: The case. Older results have no values of inputs, and no scheme.
-        earlier: Cases that stand before it in the report.
-    """
-    known = {chain for other in earlier for chain in _read_chains(other)}
-    return tuple(_describe(chain, names) for chain, names in _read_chains(case).items() if chain not in known)
-
-
-def _read_chains(case: CaseResult) -> dict[DrawnChain, list[str]]:
-    """Chains of a case with the names of their pantographs."""
-    values = {group.group: group.values for group in case.inputs}
-    chains: dict[DrawnChain, list[str]] = defaultdict(list)
-    for group, content in values.items():
-        name = group.removesuffix(".chain")
-        chain = _read_chain(content, values.get(f"{name}.contact", {})) if name != group else None
-        if chain is not None:
-            chains[chain].append(name)
-    return chains
-
-
-def _read_chain(values: StoredValues, contact: StoredValues) -> DrawnChain | None:
-    """Chain of a group of inputs; None where values are missing, or are stored as a range."""
-    masses, stiffness, damping = (_list_numbers(values.get(key)) for key in DRAWN_KEYS)
-    contact_stiffness = _list_numbers(contact.get("stiffness_N_m"))
-    if not masses or len({len(masses), len(stiffness), len(damping)}) > 1 or len(contact_stiffness) != 1:
-        return None
-    names = _list_names(values.get("names"), len(masses))
-    # The uplift force acts on the lowest mass unless the file names another one (key uplift_force_on).
-    point = values.get("uplift_force_on", 1.0)
-    lifted = names.index(point) if point in names else int(point) - 1 if isinstance(point, float) else 0
-    return DrawnChain(masses, stiffness, damping, names, lifted, contact_stiffness[0])
-
-
-def _list_numbers(value: StoredValue | None) -> tuple[float, ...]:
-    """Numbers of a stored value; a single number is a list of one; nothing for other values."""
-    listed = value if isinstance(value, list) else [value]
-    numbers = tuple(number for number in listed if isinstance(number, float))
-    return numbers if len(numbers) == len(listed) else ()
-
-
-def _list_names(value: StoredValue | None, size: int) -> tuple[str, ...]:
-    names = tuple(map(str, value if isinstance(value, list) else [value]))
-    return names if value is not None and len(names) == size else tuple(f"mass {n}" for n in range(1, size + 1))
-
-
-def _describe(chain: DrawnChain, pantographs: list[str]) -> Figure:
-    numbers = [name.removeprefix("pantograph").strip() for name in pantographs]
-    owner = f"Pantograph {numbers[0]}".rstrip() if len(numbers) == 1 else f"Pantographs {' and '.join(numbers)}"
-    caption = f"{owner}: masses, springs and dampers, from base to head."
-    parts = ", ".join(f"{name} {format_plain(mass)} kg" for name, mass in zip(chain.names, chain.masses, strict=True))
-    return Figure(draw_chain(chain), f"{caption} {parts}.", caption, wide=False)

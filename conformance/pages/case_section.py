@@ -9,10 +9,11 @@ from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import draw_case_figures, line_figures, line_reference, scheme_figures
+from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.comparison_section import comparison_blocks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.document_facts import list_case_facts
+from pantocheck.conformance.pages.line_figure import line_figures, line_reference, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (
     build_band_table,
     build_quantity_table,
@@ -65,8 +66,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     ]
     changes = [f"{text}."] if (text := describe_changes(case)) else []
     warnings = (*changes, *(f"Limits file: {change}." for change in case.limit_changes), *case.warnings)
-    if warnings:
-        blocks.append(doc.WarningBox(warnings))
+    blocks += doc.warn(warnings)
     blocks += reference_note(case)
     if criteria := list_criteria(case, "criteria"):
         table = criteria_blocks(criteria, anchor, f"{anchor}-source", case)
@@ -156,24 +156,20 @@ def _build_loss_section(losses: Mapping[str, Sequence[ContactLossFacts]]) -> tup
     if not rows:
         return ()
     longest = sorted(rows, key=lambda row: -row[1].duration_s)[:LISTED_LOSSES]
-    columns = (
-        doc.Column("Pantograph", share=1),
-        *(doc.Column(name, number=True) for name in ("Place [m]", "Time [s]", "Duration [ms]", "Lowest force [N]")),
-    )
-    cells = tuple(
-        (
-            name,
-            f"{loss.position_m:.1f}",
-            f"{loss.time_s:.3f}",
-            f"{1000 * loss.duration_s:.4g}",
-            replace_minus(f"{loss.lowest_force_N:.3g}"),
-        )
-        for name, loss in longest
-    )
     text = (
         f"{len(rows)} contact losses in the unfiltered force, the longest first; a duration is a multiple of a sample."
     )
-    blocks: list[doc.Block] = [doc.Paragraph(text), doc.Table(columns, cells)]
+    table = doc.make_table(
+        longest,
+        {
+            doc.Column("Pantograph", share=1): lambda row: row[0],
+            doc.Column("Place [m]", number=True): lambda row: f"{row[1].position_m:.1f}",
+            doc.Column("Time [s]", number=True): lambda row: f"{row[1].time_s:.3f}",
+            doc.Column("Duration [ms]", number=True): lambda row: f"{1000 * row[1].duration_s:.4g}",
+            doc.Column("Lowest force [N]", number=True): lambda row: replace_minus(f"{row[1].lowest_force_N:.3g}"),
+        },
+    )
+    blocks: list[doc.Block] = [doc.Paragraph(text), table]
     if len(rows) > len(longest):
         blocks.append(doc.Paragraph("results.json lists up to 200 losses of each pantograph."))
     return (doc.Section("Contact losses", tuple(blocks)),)
@@ -183,31 +179,21 @@ def _build_place_section(events: Sequence[EventFacts]) -> tuple[doc.Block, ...]:
     """Table of the places of the line."""
     if not events:
         return ()
-    columns = (
-        doc.Column("Place", share=1),
-        doc.Column("From [m]", number=True),
-        doc.Column("To [m]", number=True),
-        doc.Column("Evaluation", share=2),
+    table = doc.make_table(
+        events,
+        {
+            doc.Column("Place", share=1): lambda event: f"{event.kind.replace('_', ' ')} {event.name or ''}".strip(),
+            doc.Column("From [m]", number=True): lambda event: f"{event.start_m:.1f}",
+            doc.Column("To [m]", number=True): lambda event: f"{event.end_m:.1f}",
+            doc.Column("Evaluation", share=2): lambda event: (
+                f"left out: {event.remark}" if event.excluded else event.remark or "evaluated"
+            ),
+        },
     )
-    rows = tuple(
-        (
-            " ".join(filter(None, (event.kind.replace("_", " "), event.name))),
-            f"{event.start_m:.1f}",
-            f"{event.end_m:.1f}",
-            f"left out: {event.remark}" if event.excluded else event.remark or "evaluated",
-        )
-        for event in events
-    )
-    return (doc.Section("Events of the line", (doc.Table(columns, rows),)),)
+    return (doc.Section("Events of the line", (table,)),)
 
 
 # Table of the values that the suite derives from the inputs of a case.
-DERIVED_COLUMNS = (
-    doc.Column("Value", share=3),
-    doc.Column("Result", number=True),
-    doc.Column("Unit"),
-    doc.Column("Follows from", share=4),
-)
 SHOWN_DIGITS = 5
 """Significant digits of a derived value: an uplift force to 0.01 N."""
 
@@ -216,11 +202,17 @@ def derived_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
     """Table of derived values, and by whom they were computed; nothing if there are none."""
     if not case.derived:
         return ()
-    rows = tuple(
-        (fact.name, format_value(fact.value, SHOWN_DIGITS), fact.unit or "–", fact.basis) for fact in case.derived
+    table = doc.make_table(
+        case.derived,
+        {
+            doc.Column("Value", share=3): lambda fact: fact.name,
+            doc.Column("Result", number=True): lambda fact: format_value(fact.value, SHOWN_DIGITS),
+            doc.Column("Unit"): lambda fact: fact.unit or "–",
+            doc.Column("Follows from", share=4): lambda fact: fact.basis,
+        },
     )
     text = "Computed by the suite from the inputs of the case. A tuned uplift force is a result of the run."
-    return doc.Table(DERIVED_COLUMNS, rows), doc.SmallPrint(text)
+    return table, doc.SmallPrint(text)
 
 
 # Inputs of a case: values of every group with their trust and source; groups of an earlier case are named only.

@@ -24,7 +24,7 @@ from pantocheck.conformance.pages.scope_page import (
 from pantocheck.conformance.pages.step_sections import build_step_section
 from pantocheck.conformance.pages.two_verdicts import build_verdict_section, case_verdict
 from pantocheck.conformance.pages.verdict_reasons import build_headline, count_incomplete, list_reasons, summarise_case
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict, read_words
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 HEADING = "Conformance report"
@@ -47,15 +47,14 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
     cases = prepared.cases
     shown = list_shown_cases(cases)
     anchors = {one.case.id: one.anchor for one in shown}
-    warnings = list_identity_warnings(prepared)
     steps = () if prepared.procedure is None else list_step_reasons(prepared.procedure)
     reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
     return doc.Document(
-        title=f"{read_words()['verdict'][header.verdict]['word']} – {HEADING} – {name_system(prepared)}",
+        title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",
         header=header,
         blocks=(
-            *((doc.WarningBox(warnings),) if warnings else ()),
+            *doc.warn(list_identity_warnings(prepared)),
             build_document_section(prepared, digest_results(results), date),
             *_build_scope(prepared, anchors),
             *build_findings_section(prepared),

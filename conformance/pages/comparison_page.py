@@ -5,7 +5,7 @@ from typing import Any
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import PageKind, build_criteria_sections, clean_model, list_remarks
 from pantocheck.conformance.pages.drop_sections import DROP_PAGE
-from pantocheck.conformance.pages.response_sections import RESPONSE_PAGE
+from pantocheck.conformance.pages.pantograph_pages import RESPONSE_PAGE
 from pantocheck.conformance.pages.static_sections import STATIC_PAGE
 from pantocheck.conformance.results.comparison_format import ModelComparison, ResponseComparison, StaticComparison
 from pantocheck.conformance.results.drop_comparison_format import DropComparison
@@ -24,14 +24,7 @@ def find_headline(comparison: ModelComparison) -> str:
 
 
 def build_comparison(comparison: ModelComparison) -> doc.Document:
-    """Compose the page of a comparison.
-
-    Args:
-        comparison: Content of its JSON file.
-
-    Returns:
-        The page.
-    """
+    """Compose the page of a comparison."""
     kind, comparison = PAGES[type(comparison)], clean_model(comparison)
     suite = f"Pantocheck {comparison.suite.version}"
     header = doc.VerdictHeader(
@@ -42,8 +35,9 @@ def build_comparison(comparison: ModelComparison) -> doc.Document:
         f"{kind.describe(comparison)} {suite}.",
         f"{suite} · {kind.label(comparison)}",
     )
-    remarks = tuple(list_remarks(comparison))
-    blocks: list[doc.Block] = [doc.WarningBox(remarks)] if remarks else []
-    blocks += [doc.Paragraph(kind.scope), *kind.opening(comparison), *build_criteria_sections(comparison.criteria)]
-    blocks += [*kind.sections(comparison), *kind.closing(comparison)]
-    return doc.Document(header.heading, header, tuple(blocks))
+    blocks: tuple[doc.Block, ...] = (
+        *doc.warn(list_remarks(comparison)),
+        *(doc.Paragraph(kind.scope), *kind.opening(comparison), *build_criteria_sections(comparison.criteria)),
+        *(*kind.sections(comparison), *kind.closing(comparison)),
+    )
+    return doc.Document(header.heading, header, blocks)

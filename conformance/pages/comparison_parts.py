@@ -72,11 +72,6 @@ def format_range(pair: tuple[float, float]) -> str:
     return " to ".join(map(format_plain, pair))
 
 
-def select_facts(facts: Mapping[str, str | None]) -> doc.Facts:
-    """Facts that have a text."""
-    return doc.Facts(tuple((name, text) for name, text in facts.items() if text))
-
-
 def build_criteria_sections(criteria: tuple[ComparisonCriterion, ...]) -> tuple[doc.Section, ...]:
     """Section with the table of the criteria; none without criteria.
 

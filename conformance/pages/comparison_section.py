@@ -14,11 +14,11 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import Basis
 from pantocheck.conformance.pages.words import (
     format_plain,
+    format_signed,
     format_value,
     name_pantograph,
     quantity_label,
     quantity_unit,
-    replace_minus,
 )
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.measured_run_format import (
@@ -81,7 +81,7 @@ def _build_value_table(case: CaseResult, comparison: MeasuredRun) -> doc.Table:
                     _format_width(select_single(widths.get(name)), case.uncertainty_basis),
                     format_value(value),
                     format_value(select_single(comparison.uncertainty.get(key, {}).get(name)), 2),
-                    replace_minus(f"{other - value:+.3g}"),
+                    format_signed(other - value),
                     quantity_unit(name),
                 )
             )

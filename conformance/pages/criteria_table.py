@@ -59,12 +59,7 @@ class CriterionTexts:
 
 
 def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> CriterionTexts:
-    """Texts of a criterion of results.json.
-
-    Args:
-        criterion: Criterion of results.json.
-        basis: `uncertainty_basis` of its case.
-    """
+    """Texts of a criterion of results.json."""
     value, lower, upper = criterion.value, criterion.lower, criterion.upper
     error, margin = criterion.error, criterion.margin
     missing = list_missing(basis, criterion.uncertainty, criterion.trust)

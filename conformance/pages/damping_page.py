@@ -1,14 +1,26 @@
-"""Report on a damping fit, from damping.json."""
+"""Report on a damping fit, from damping.json, with its figures."""
 
 from collections.abc import Callable, Iterator, Sequence
 
+import numpy as np
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    SHADES,
+    add_legend,
+    label_decades,
+    render_svg,
+)
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.damping_figures import draw_comparison, draw_observability
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_paired_rows
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
+    FittedModels,
     Matching,
     Observability,
     PairedMode,
@@ -38,13 +50,12 @@ def build_damping_document(results: DampingResults, block: str) -> doc.Document:
         f"{sum(row.determined for row in results.coefficients)} of {len(results.coefficients)} coefficients "
         f"are determined. {LINE_STATES[results.line.state]}"
     )
-    header = doc.PlainHeader("Damping model from mass drops", headline)
     warnings = list(results.warnings)
     if results.unpaired:
         frequencies = ", ".join(format_value(frequency) for frequency in results.unpaired)
         warnings.append(f"measured modes without a counterpart in the model: {frequencies} Hz")
-    blocks: list[doc.Block] = [doc.WarningBox(tuple(warnings))] if warnings else []
-    blocks.append(doc.Paragraph(describe_matching(results.matching, results.thresholds)))
+    matching = describe_matching(results.matching, results.thresholds)
+    blocks: list[doc.Block] = [*doc.warn(warnings), doc.Paragraph(matching)]
     comparison = doc.Figure(
         draw_comparison(results.comparison),
         "Damping ratio over frequency, measured and of the models; the pairs are in the table.",
@@ -68,7 +79,7 @@ def build_damping_document(results: DampingResults, block: str) -> doc.Document:
         "Pairs of modes": (_pair_table(results.pairs),),
     }
     blocks += (doc.Section(heading, parts) for heading, parts in sections.items() if parts)
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Damping model from mass drops", headline, blocks)
 
 
 def describe_observability(thresholds: Thresholds) -> str:
@@ -154,3 +165,49 @@ def _pair_table(pairs: Sequence[PairedMode]) -> doc.Table:
         "Used": lambda pair: "yes" if pair.used else _explain_omission(pair),
     }
     return doc.make_grid("Measured modes and their computed counterparts", pairs, cells)
+
+
+@render_svg
+def draw_observability(rows: Sequence[Observability], thresholds: Thresholds) -> Figure:
+    """Largest share of each coefficient in the damping of a mode, and its plausible value over its uncertainty."""
+    names = [f"{row.kind.replace('_', ' ')}, {row.matrix}" for row in rows]
+    places = np.arange(len(rows))
+    figure = Figure(figsize=(FULL, 0.9 + 0.24 * len(rows)))
+    left, right = figure.subplots(1, 2, sharey=True)
+    fills = [SHADES[1] if row.observable else "white" for row in rows]
+    left.barh(places, [100 * row.largest_share for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
+    left.axvline(100 * thresholds.largest_share, color=INK, linestyle="--", linewidth=0.9)
+    left.set_xlabel("largest share of a mode's damping [%]")
+    left.set_yticks(places, names)
+    left.invert_yaxis()
+    right.barh(places, [row.plausible_over_std for row in rows], color=fills, edgecolor=INK, linewidth=0.7)
+    right.axvline(thresholds.plausible_over_std, color=INK, linestyle="--", linewidth=0.9)
+    right.set_xscale("symlog", linthresh=0.1)
+    label_decades(right.xaxis)
+    right.set_xlim(left=0)
+    right.set_xlabel("plausible value / standard deviation [-]")
+    return figure
+
+
+@render_svg
+def draw_comparison(data: FittedModels) -> Figure:
+    """Measured damping ratios and those of the models at the computed modes."""
+    figure = Figure(figsize=(FULL, 3.2))
+    axes = figure.subplots()
+    measured = data.measured
+    axes.errorbar(
+        measured.frequency_Hz,
+        [100 * value for value in measured.damping_ratio],
+        yerr=[196 * value for value in measured.std],
+        fmt="o",
+        color=INK,
+        markersize=3.5,
+        elinewidth=0.8,
+        label="measured",
+    )
+    for (name, ratios), style, shade in zip(data.models.items(), ("--", "-", ":"), (GREY, INK, INK), strict=False):
+        axes.plot(data.frequency_Hz, [100 * value for value in ratios], style, color=shade, linewidth=1.1, label=name)
+    top = 1.5 * max(100 * value for value in measured.damping_ratio)
+    axes.set(ylim=(0, top), xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+    add_legend(axes)
+    return figure

@@ -243,9 +243,35 @@ def to_plain(value: Any) -> Any:
     return value
 
 
+def make_table(
+    records: Iterable[Row],
+    cells: Mapping[Column, Callable[[Row], RichText]],
+    caption: str = "",
+    layout: Literal["text", "grid", "cards"] = "text",
+) -> Table:
+    """A table with one row per record, and the content of each column."""
+    rows = tuple(tuple(cell(record) for cell in cells.values()) for record in records)
+    return Table(tuple(cells), rows, caption, layout)
+
+
 def make_grid(caption: str, records: Iterable[Row], cells: Mapping[str, Callable[[Row], str]]) -> Table:
     """A dense table of values: one row per record, one column per heading; the last takes the remaining width."""
-    *headings, last = cells
-    columns = (*map(Column, headings), Column(last, share=1))
-    rows = tuple(tuple(cell(record) for cell in cells.values()) for record in records)
-    return Table(columns, rows, caption, layout="grid")
+    last = len(cells) - 1
+    columns = {Column(heading, share=int(n == last)): cell for n, (heading, cell) in enumerate(cells.items())}
+    return make_table(records, columns, caption, "grid")
+
+
+def warn(sentences: Iterable[str]) -> tuple[WarningBox, ...]:
+    """Box of caveats; nothing without sentences."""
+    listed = tuple(sentences)
+    return (WarningBox(listed),) if listed else ()
+
+
+def select_facts(facts: Mapping[str, str | None]) -> Facts:
+    """Facts that have a text."""
+    return Facts(tuple((name, text) for name, text in facts.items() if text))
+
+
+def build_plain_document(heading: str, headline: str, blocks: Iterable[Block]) -> Document:
+    """Report that judges nothing, with its heading as the title of the file."""
+    return Document(heading, PlainHeader(heading, headline), tuple(blocks))

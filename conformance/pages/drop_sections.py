@@ -1,14 +1,22 @@
 """Page of a drop comparison: motion, residual energy and a table of all bands for each place."""
 
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LINES, SHADES, add_legend, render_svg, use_decades
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_parts import PageKind, format_range, select_facts
-from pantocheck.conformance.pages.drop_figures import draw_drop_motion, draw_residual_energy
+from pantocheck.conformance.pages.comparison_parts import PageKind, format_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.drop_comparison_format import (
     ComparedModel,
     ComparedPlace,
     DropComparison,
+    EnergyCurve,
     ModelAgreement,
+    MotionCurve,
     WindowStatistics,
 )
 
@@ -29,17 +37,19 @@ def _build_opening(comparison: DropComparison) -> tuple[doc.Block, ...]:
         "Digest of the record": comparison.record.digest,
         "Digest of the suite": comparison.suite.digest,
     }
-    return (select_facts(facts), _build_model_table(comparison.models))
+    return (doc.select_facts(facts), _build_model_table(comparison.models))
 
 
 def _build_model_table(models: tuple[ComparedModel, ...]) -> doc.Table:
-    columns = (
-        doc.Column("Model"),
-        doc.Column("Source", share=1),
-        doc.Column("Last slack dropper [s]", number=True),
+    return doc.make_table(
+        models,
+        {
+            doc.Column("Model"): lambda model: model.name,
+            doc.Column("Source", share=1): lambda model: model.source,
+            doc.Column("Last slack dropper [s]", number=True): lambda model: format_value(model.last_slack_s, 3),
+        },
+        "Damping models",
     )
-    rows = tuple((model.name, model.source, format_value(model.last_slack_s, 3)) for model in models)
-    return doc.Table(columns, rows, "Damping models")
 
 
 def _build_sections(comparison: DropComparison) -> tuple[doc.Section, ...]:
@@ -111,3 +121,48 @@ DROP_PAGE: PageKind[DropComparison] = PageKind(
     opening=_build_opening,
     sections=_build_sections,
 )
+
+
+RECORD_WIDTH = 2.2
+"""Width of the pale line of the record [pt]; the lines of the models lie on it."""
+
+
+@render_svg
+def draw_drop_motion(curves: Sequence[MotionCurve]) -> Figure:
+    """Velocity and acceleration of one place in every window."""
+    figure = Figure(figsize=(FULL, 0.6 + 1.7 * len(curves)))
+    panels = np.atleast_1d(figure.subplots(len(curves), 1))
+    for axes, curve in zip(panels, curves, strict=True):
+        if curve.record is not None:
+            axes.plot(curve.time_s, curve.record, color=SHADES[3], linewidth=RECORD_WIDTH, label="record")
+        _plot_models(axes, curve.time_s, curve.models)
+        unit = "m/s" if curve.motion == "velocity" else "m/s²"
+        axes.set_ylabel(f"{curve.motion} [{unit}]")
+        axes.margins(x=0)
+    panels[-1].set_xlabel("time after the release [s]")
+    add_legend(panels[0])
+    return figure
+
+
+@render_svg
+def draw_residual_energy(energy: EnergyCurve, graded: str) -> Figure:
+    """Mean square of the velocity against time, and of the difference of the graded model."""
+    figure = Figure(figsize=(FULL, 2.4))
+    axes = figure.subplots()
+    if energy.record is not None:
+        axes.plot(energy.time_s, energy.record, color=SHADES[3], linewidth=RECORD_WIDTH, label="record")
+    _plot_models(axes, energy.time_s, energy.models)
+    if graded in energy.differences:
+        label = f"{graded} − record"
+        axes.plot(energy.time_s, energy.differences[graded], ":", color=GREY, linewidth=1.0, label=label)
+    use_decades(axes)
+    axes.margins(x=0)
+    axes.set(xlabel="time after the release [s]", ylabel="mean square [m²/s²]")
+    add_legend(axes)
+    return figure
+
+
+def _plot_models(axes: Axes, time: Sequence[float], models: Mapping[str, Sequence[float]]) -> None:
+    for number, (name, values) in enumerate(models.items()):
+        style, shade = LINES[number % len(LINES)], (INK, *SHADES[1:3])[number % 3]
+        axes.plot(time, values, style, color=shade, linewidth=0.8, label=name)

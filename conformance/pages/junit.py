@@ -1,14 +1,120 @@
-"""JUnit XML: one test suite per case or step, one test case per criterion, so that any CI server shows the verdicts."""
+"""Criteria, records and steps of a run as named tests with one verdict each, and these tests as JUnit XML."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages.document_facts import name_system
-from pantocheck.conformance.pages.graded_tests import GradedTest, list_case_tests, list_step_tests
 from pantocheck.conformance.pages.scope_page import describe_origin, prepare_results
+from pantocheck.conformance.pages.two_verdicts import NAMES, list_criteria, select_criteria
+from pantocheck.conformance.pages.words import name_owner
+from pantocheck.conformance.quantities.limit_text import format_graded, is_relative_margin
+from pantocheck.conformance.results.procedure_format import ValidityClaim
+from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
+TEST_ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
+"""Name of each verdict in JUnit; a test without such an element has passed."""
+
+
+@dataclass(frozen=True)
+class GradedTest:
+    """Test with its verdict."""
+
+    group: str
+    """Id of the case, or `step/` with the name of a step of the procedure."""
+    name: str
+    """Name of the test in its group."""
+    verdict: str
+    """Verdict; `info` if the test has no influence."""
+    text: str
+    """Value, limits and reason."""
+    criterion: Criterion | None = None
+    """Graded criterion; None: a case, a record, a step or a claim."""
+
+    @property
+    def element(self) -> str:
+        """Element of JUnit that states the verdict."""
+        return TEST_ELEMENTS.get(self.verdict, "system-out")
+
+    @property
+    def message(self) -> str:
+        """Text of this element."""
+        return self.text if self.verdict in TEST_ELEMENTS else f"{self.verdict}: {self.text}"
+
+
+def list_case_tests(case: CaseResult, results: Results) -> list[GradedTest]:
+    """Tests of a case: its criteria and its record.
+
+    Returns:
+        At least one test, so that a count of tests includes a case without criteria.
+    """
+    graded = [test for name in NAMES for test in _list_criterion_tests(case, results, name)]
+    tests = graded or [GradedTest(case.id, "case", case.verdict, case.reason or "no criteria")]
+    if graded and case.record:
+        tests.append(_test_record(case.id, case.record, results))
+    return _show_unpassed(tests) if case.id in results.information else tests
+
+
+def list_step_tests(results: Results) -> Iterator[list[GradedTest]]:
+    """Tests of each step of the procedure of a dossier: its own criteria and claims, and the step as a whole."""
+    if (procedure := results.procedure) is None:
+        return
+    for step in procedure.steps:
+        name = f"step/{step.step}"
+        tests = [_test_criterion(name, row) for row in step.criteria]
+        if step.step == "limits_of_validity":
+            tests += [_test_claim(name, claim) for claim in procedure.claims]
+        reason = step.reason or step.unverified or step.closest or "no criterion of its own"
+        tests.append(GradedTest(name, "step", step.verdict, f"{step.state}: {reason}"))
+        yield tests if step.required else _show_unpassed(tests)
+
+
+def _list_criterion_tests(case: CaseResult, results: Results, name: str) -> Iterator[GradedTest]:
+    """Tests of one of the verdicts of a case; for information if this verdict does not decide."""
+    decisive = list(select_criteria(results, case))
+    for row in list_criteria(case, name):
+        test = _test_criterion(case.id, row)
+        yield test if row in decisive else _show_only(test)
+
+
+def _test_criterion(group: str, row: Criterion) -> GradedTest:
+    kind = "verification: " if row.trust == "computed" else "" if row.baseline is None else "drift of "
+    number, bounds = format_graded(row.value, row.lower, row.upper)
+    value = "no value" if row.value is None else f"{number} {row.unit}".rstrip()
+    relative = is_relative_margin(row.lower, row.upper)
+    margin = "" if row.margin is None else f", margin {row.margin:.4g} {'' if relative else row.unit}".rstrip()
+    reason = f" ({row.reason})" if row.reason else ""
+    name = f"{kind}{row.quantity} of {name_owner(row)}"
+    basis = row.trust or "bounds of the baseline"
+    return GradedTest(group, name, row.verdict, f"{value}, limits {bounds}{margin}, {basis}{reason}", row)
+
+
+def _test_claim(group: str, claim: ValidityClaim) -> GradedTest:
+    name = f"claim on {' '.join(filter(None, (claim.kind, claim.name)))}"
+    return GradedTest(group, name, claim.verdict, claim.reason or f"verified by {', '.join(claim.evidence)}")
+
+
+def _test_record(case_id: str, record: RecordFacts, results: Results) -> GradedTest:
+    """Test of the state of the record; for information if the profile or the user accepts an unverified one."""
+    excused = results.system.name in results.accepted_unverified or not record.demanded
+    verdict = "pass" if record.state == "verified" else "info" if excused else "unverified"
+    return GradedTest(case_id, "record", verdict, f"{record.state}: {record.reason}")
+
+
+def _show_unpassed(tests: list[GradedTest]) -> list[GradedTest]:
+    """Tests of a part that is shown for information: passed ones remain, all others have no influence."""
+    return [test if test.element == "system-out" else _show_only(test) for test in tests]
+
+
+def _show_only(test: GradedTest) -> GradedTest:
+    """The same test without influence on a pipeline."""
+    return replace(test, verdict="info", text=f"for information: {test.element}: {test.message}")
+
+
+# JUnit XML: one test suite per case or step, one test case per criterion, so that any CI server shows the verdicts.
 COUNTERS = ("tests", "failures", "errors", "skipped")
 """Attributes that count the tests of a suite."""
 
@@ -19,9 +125,6 @@ def render_junit(results: Results, certificates: Sequence[str] = ()) -> bytes:
     Args:
         results: Results of a run.
         certificates: Names of the certificates in the same folder, which the properties of each case name.
-
-    Returns:
-        Content of junit.xml.
     """
     results = prepare_results(results)
     cases = (_case_suite(case, results, certificates) for case in results.cases)

@@ -1,5 +1,6 @@
-"""Line at rest around the analysis section: side view and, of a line with stagger, plan view."""
+"""Drawings of the inputs of a case: its line at rest, in side and plan view, and the schemes of its pantographs."""
 
+from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +10,12 @@ from matplotlib.lines import Line2D
 
 from pantocheck.conformance.core.figure_data import DrawnView, LineShape
 from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, PlotStyle, render_svg
+from pantocheck.conformance.core.texts import count_noun
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.words import format_plain
+from pantocheck.conformance.results.case_facts_format import StoredValue, StoredValues
+from pantocheck.conformance.results.results_format import CaseResult
 
 WIRE_WIDTHS = {"contact_wire": 1.4, "messenger_wire": 0.9, "stitch_wire": 0.6}
 POINT_SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "mass": "v"}
@@ -166,3 +171,93 @@ def _write(axes: Axes, x: float, y: float, text: str, side: str) -> None:
 
 def _shorten(name: str) -> str:
     return name if len(name) <= LONGEST_MASS_NAME else f"{name[: LONGEST_MASS_NAME - 1]}…"
+
+
+# Drawing of the line of a case; a drawing that an earlier case has is named only.
+def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.Figure, ...]:
+    """Drawing of the line at rest; none without its shape, or if an earlier case has the same drawing.
+
+    Args:
+        case: The case.
+        earlier: Cases that stand before it in the report.
+    """
+    shape = case.line_shape
+    if shape is None or _find_equal(case, earlier) is not None:
+        return ()
+    views = "side view" if shape.plan is None else "side view and plan view"
+    masses = sum(point.symbol == "mass" for point in shape.side.points)
+    parts = f" {count_noun(masses, 'point mass', 'point masses')}." if masses else ""
+    section = case.run.evaluated_m
+    ground = "" if section is None else " Grey ground: analysis section."
+    caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}{ground}"
+    return (doc.Figure(draw_line_shape(shape, section), caption, caption),)
+
+
+def line_reference(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.SmallPrint, ...]:
+    """Name of the earlier case that has the drawing of this one; parameters as in `line_figures`."""
+    other = _find_equal(case, earlier)
+    return () if other is None else (doc.SmallPrint(f"Line: as drawn in {other}."),)
+
+
+def _find_equal(case: CaseResult, earlier: tuple[CaseResult, ...]) -> str | None:
+    """Id of the first earlier case with the same line and analysis section."""
+    if case.line_shape is None:
+        return None
+    drawn = (case.line_shape, case.run.evaluated_m)
+    return next((other.id for other in earlier if (other.line_shape, other.run.evaluated_m) == drawn), None)
+
+
+# Schemes of the pantographs of a case that are chains; equal chains are drawn once in a document.
+DRAWN_KEYS = ("masses_kg", "stiffness_N_m", "damping_N_s_m")
+"""Keys of the values of a chain, base to head."""
+
+
+def scheme_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.Figure, ...]:
+    """Scheme of every chain of a case that no earlier case has; parameters as in `line_figures`."""
+    known = {chain for other in earlier for chain in _read_chains(other)}
+    return tuple(_describe_chain(chain, names) for chain, names in _read_chains(case).items() if chain not in known)
+
+
+def _read_chains(case: CaseResult) -> dict[DrawnChain, list[str]]:
+    """Chains of a case with the names of their pantographs."""
+    values = {group.group: group.values for group in case.inputs}
+    chains: dict[DrawnChain, list[str]] = defaultdict(list)
+    for group, content in values.items():
+        name = group.removesuffix(".chain")
+        chain = _read_chain(content, values.get(f"{name}.contact", {})) if name != group else None
+        if chain is not None:
+            chains[chain].append(name)
+    return chains
+
+
+def _read_chain(values: StoredValues, contact: StoredValues) -> DrawnChain | None:
+    """Chain of a group of inputs; None where values are missing, or are stored as a range."""
+    masses, stiffness, damping = (_list_numbers(values.get(key)) for key in DRAWN_KEYS)
+    contact_stiffness = _list_numbers(contact.get("stiffness_N_m"))
+    if not masses or len({len(masses), len(stiffness), len(damping)}) > 1 or len(contact_stiffness) != 1:
+        return None
+    names = _list_names(values.get("names"), len(masses))
+    # The uplift force acts on the lowest mass unless the file names another one (key uplift_force_on).
+    point = values.get("uplift_force_on", 1.0)
+    lifted = names.index(point) if point in names else int(point) - 1 if isinstance(point, float) else 0
+    return DrawnChain(masses, stiffness, damping, names, lifted, contact_stiffness[0])
+
+
+def _list_numbers(value: StoredValue | None) -> tuple[float, ...]:
+    """Numbers of a stored value; a single number is a list of one; nothing for other values."""
+    listed = value if isinstance(value, list) else [value]
+    numbers = tuple(number for number in listed if isinstance(number, float))
+    return numbers if len(numbers) == len(listed) else ()
+
+
+def _list_names(value: StoredValue | None, size: int) -> tuple[str, ...]:
+    names = tuple(map(str, value if isinstance(value, list) else [value]))
+    return names if value is not None and len(names) == size else tuple(f"mass {n}" for n in range(1, size + 1))
+
+
+def _describe_chain(chain: DrawnChain, pantographs: list[str]) -> doc.Figure:
+    numbers = [name.removeprefix("pantograph").strip() for name in pantographs]
+    owner = f"Pantograph {numbers[0]}".rstrip() if len(numbers) == 1 else f"Pantographs {' and '.join(numbers)}"
+    caption = f"{owner}: masses, springs and dampers, from base to head."
+    parts = ", ".join(f"{name} {format_plain(mass)} kg" for name, mass in zip(chain.names, chain.masses, strict=True))
+    return doc.Figure(draw_chain(chain), f"{caption} {parts}.", caption, wide=False)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
 
 # Everything with a meaning in the Markdown of GitHub or GitLab, mentions (@) and references (#, !) included.
 SPECIAL = re.compile(r"([\\`*_{}\[\]()#+!|~$@])")
@@ -15,7 +15,7 @@ def render_markdown(document: doc.Document) -> str:
     header = document.header
     if isinstance(header, doc.VerdictHeader):
         parts = [
-            f"# {_word(header.verdict)}: {escape_markdown(header.headline)}",
+            f"# {name_verdict(header.verdict)}: {escape_markdown(header.headline)}",
             escape_markdown(f"{header.subject} This is a {header.statement}."),
         ]
     else:
@@ -82,14 +82,10 @@ def _inline(element: doc.Inline) -> str:
         case doc.PageLink():
             return f"[{escape_markdown(element.text)}]({element.address})"
         case doc.VerdictMark():
-            return _word(element.verdict)
+            return name_verdict(element.verdict)
         case doc.TrustMark():
             return escape_markdown(element.trust or "–")
         case doc.Drawing():
             return escape_markdown(element.alternative)
         case _:
             return escape_markdown(element.text)
-
-
-def _word(verdict: str) -> str:
-    return str(read_words()["verdict"][verdict]["word"])

@@ -34,14 +34,12 @@ def render_pdf(document: Document) -> bytes:
         "trusts": words["trust"],
     }
     files = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
-    options: dict[str, Any] = {}
     if document.results is not None:
         data["attachment"] = NAME
         files[NAME] = encode_attachment(document.results)
-        options = {"pdf_standards": "a-3a", "timestamp": document.date}
     files["main.typ"] = files.pop("page.typ")
     files["page.json"] = json.dumps(change_texts(data, replace_missing_glyphs)).encode("ascii")
-    return typeset(files, **options)
+    return typeset(files) if document.results is None else typeset(files, pdf_standards="a-3a", timestamp=document.date)
 
 
 def typeset(files: dict[str, bytes], **options: Any) -> bytes:

@@ -1,10 +1,21 @@
-"""Report on a population of tests, from population.json."""
+"""Report on a population of tests, from population.json, with its figures."""
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    INK,
+    SHADES,
+    add_box,
+    add_legend,
+    render_svg,
+)
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.damping_figures import draw_test_boxes, draw_test_ratios
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
 from pantocheck.conformance.results.population_format import (
     PooledGroup,
@@ -29,8 +40,7 @@ def build_population_document(population: PopulationFile) -> doc.Document:
     """The report on population.json."""
     population = clean_tree(population.rounded())
     records, groups = population.records, population.groups
-    header = doc.PlainHeader("Damping ratios over tests", _write_headline(records, groups))
-    blocks: list[doc.Block] = [doc.WarningBox(tuple(population.warnings))] if population.warnings else []
+    blocks: list[doc.Block] = [*doc.warn(population.warnings)]
     if groups:
         blocks += [
             doc.Section(
@@ -42,7 +52,7 @@ def build_population_document(population: PopulationFile) -> doc.Document:
     blocks.append(doc.Section("Tests", (_record_table(records),)))
     if population.levels:
         blocks.append(doc.Section("Medians by mass, place, sensors and tensions", (_level_table(population.levels),)))
-    return doc.Document(header.heading, header, tuple(blocks))
+    return doc.build_plain_document("Damping ratios over tests", _write_headline(records, groups), blocks)
 
 
 def _write_headline(records: Sequence[PooledRecord], groups: Sequence[PooledGroup]) -> str:
@@ -152,3 +162,52 @@ def _level_table(levels: Sequence[PooledLevel]) -> doc.Table:
         "Median damping ratio by group [%]": medians,
     }
     return doc.make_grid("Medians of the tests with one mass, place, set of sensors or tension", levels, cells)
+
+
+# Figures of a population of tests: damping ratios of all tests over frequency, and box plots over tests.
+TEST_MARKERS = "os^vDP*X<>"
+"""Markers of the tests; from the eleventh test on they repeat in another shade."""
+
+
+@render_svg
+def draw_test_ratios(records: Sequence[PooledRecord]) -> Figure:
+    """Damping ratio of every certain mode of every test over frequency; one marker per test, with its number."""
+    figure = Figure(figsize=(FULL, 3.2))
+    axes = figure.subplots()
+    for t, record in enumerate(records):
+        shade = SHADES[t // len(TEST_MARKERS) % len(SHADES)]
+        axes.plot(
+            [value.frequency_Hz for value in record.values],
+            [100 * value.damping_ratio for value in record.values],
+            TEST_MARKERS[t % len(TEST_MARKERS)],
+            color=shade,
+            markerfacecolor="white",
+            label=str(t + 1),
+        )
+    axes.set_ylim(bottom=0)
+    axes.margins(x=0.02)
+    axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
+    add_legend(axes, columns=8)
+    return figure
+
+
+@render_svg
+def draw_test_boxes(groups: Sequence[PooledGroup], records: Sequence[PooledRecord]) -> Figure:
+    """Damping ratios of all tests per group: quartiles and median; outliers as dots; joint median as a grey line."""
+    figure = Figure(figsize=(FULL, 3.2))
+    axes = figure.subplots()
+    for group in groups:
+        number = group.group
+        values = [value for record in records for value in record.values if value.group == number]
+        add_box(axes, np.array([100 * value.damping_ratio for value in values]), number)
+        outliers = [100 * value.damping_ratio for value in values if value.outlier]
+        axes.plot([number] * len(outliers), outliers, "o", color=INK, markersize=3)
+        if group.joint_median is not None:
+            axes.plot([number - 0.4, number + 0.4], [100 * group.joint_median] * 2, "--", color=GREY, linewidth=1.0)
+    numbers = [group.group for group in groups]
+    axes.set_xlim(0.4, max(numbers, default=1) + 0.6)
+    axes.set_xticks(numbers, [str(number) for number in numbers])
+    axes.set_ylim(bottom=0)
+    label = "group of span modes (dots: outliers; dashed: median of the joint identification)"
+    axes.set(xlabel=label, ylabel="damping ratio [%]")
+    return figure

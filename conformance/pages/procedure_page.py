@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import criterion_title
-from pantocheck.conformance.pages.words import format_value, read_words, replace_minus
+from pantocheck.conformance.pages.words import format_value, name_verdict, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_margin
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.procedure_format import Procedure, ProcedureStep
@@ -22,7 +22,7 @@ PROCEDURE_KEY = (
 
 def name_step(step: ProcedureStep) -> str:
     """Step of the procedure in words."""
-    return str(read_words()["procedure"][step.step])
+    return read_words()["procedure"][step.step]
 
 
 def name_state(step: ProcedureStep) -> str:
@@ -41,13 +41,12 @@ def build_procedure_headline(results: Results, procedure: Procedure) -> str:
     others = [step for step in procedure.steps if not step.required]
     passed = sum(step.verdict == "pass" for step in required)
     sentences = [f"{passed} of {len(required)} required steps pass."]
-    words = read_words()["verdict"]
     for step in required:
         if step.verdict != "pass":
-            state = "not done" if step.state == "not done" else words[step.verdict]["word"]
+            state = "not done" if step.state == "not done" else name_verdict(step.verdict)
             sentences.append(f"{name_step(step)}: {state}.")
     if others:
-        names = ", ".join(f"{name_step(step)} ({words[step.verdict]['word']})" for step in others)
+        names = ", ".join(f"{name_step(step)} ({name_verdict(step.verdict)})" for step in others)
         sentences.append(f"Not required, for information: {names}.")
     if results.system.name in results.accepted_unverified:
         sentences.append(f"Accepted by the user: unverified records of {results.system.name}.")

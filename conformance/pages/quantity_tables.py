@@ -1,19 +1,27 @@
-"""Tables of quantities: one row per quantity, one column per pantograph."""
+"""Tables of quantities: values of a case, uncertainties by component, and the list of all quantities as CSV."""
 
+import csv
+import io
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from typing import Any
 
-from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
 from pantocheck.conformance.core.results_part import select_single
-from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.document import Code, Column, Drawing, RichText, Table
+from pantocheck.conformance.pages.document import Block, BulletList, Code, Column, Drawing, RichText, SmallPrint, Table
 from pantocheck.conformance.pages.reference_values import has_reference
 from pantocheck.conformance.pages.two_verdicts import list_criteria
-from pantocheck.conformance.pages.words import format_value, name_pantograph, quantity_label, quantity_unit, read_words
+from pantocheck.conformance.pages.words import (
+    format_value,
+    name_pantograph,
+    name_verdict,
+    quantity_label,
+    quantity_unit,
+)
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.reference_format import ReferenceValues
-from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 BAND_CAPTION = (
     "Standard deviation, coefficient of variation and RMS by band. Each value has its verdict by the EN 50318 "
@@ -50,22 +58,20 @@ def build_band_table(case: CaseResult) -> Table:
 
 def _list_verdicts(case: CaseResult, quantity: str, key: str) -> Iterator[str]:
     """Verdict of a quantity by the criteria, or the reason why it has none, and its verdict by verification."""
-    words = {verdict: entry["word"] for verdict, entry in read_words()["verdict"].items()}
     criteria, verification = (
         [row.verdict for row in list_criteria(case, name)
          if (row.quantity, str(row.pantograph), row.baseline) == (quantity, key, None)]
         for name in ("criteria", "verification")
     )  # fmt: skip
-    yield (words | {"none": "no published limit", "info": "limit does not count"})[criteria[0] if criteria else "none"]
-    yield from (f"verification {words[verdict]}" for verdict in verification)
+    found = criteria[0] if criteria else None
+    yield "no published limit" if found is None else "limit does not count" if found == "info" else name_verdict(found)
+    yield from (f"verification {name_verdict(verdict)}" for verdict in verification)
 
 
 def build_quantity_table(case: CaseResult) -> Table:
     """Every quantity of a case, beside that of the reference; a quantity that a pantograph does not have is a dash."""
     keys = list_owners(case)
-    order = list(QUANTITIES)
     names = {name for key in keys for name in (*case.quantities.get(key, {}), *case.skipped.get(key, {}))}
-    ordered = sorted(names, key=lambda name: (order.index(name) if name in order else len(order), name))
 
     def cell(quantity: str, key: str, values: CaseResult | ReferenceValues) -> RichText:
         value = values.quantities.get(key, {}).get(quantity)
@@ -87,7 +93,7 @@ def build_quantity_table(case: CaseResult) -> Table:
         cells[name.capitalize()] = partial(cell, key=key, values=case)
         if case.reference is not None and has_reference(case):
             cells[f"Reference, {name}"] = partial(cell, key=key, values=case.reference)
-    return _table(ordered, cells)
+    return _table(_sort_quantities(names), cells)
 
 
 def _format_list(values: list[float]) -> RichText:
@@ -121,11 +127,10 @@ def _table(quantities: Iterable[str], cells: Mapping[str, Callable[[str], RichTe
     """One row per quantity; one column per heading, with the function of its values."""
     share = 1 if len(cells) > 1 else 2
     columns = (Column(heading, share=share, number=True) for heading in cells)
-    rows: list[tuple[RichText, ...]] = []
-    for name in quantities:
-        label = (f"{quantity_label(name)} ", Code(name))
-        rows.append((label, quantity_unit(name) or "–", *(cell(name) for cell in cells.values())))
-    return Table((Column("Quantity", share=2.4), Column("Unit"), *columns), tuple(rows), caption)
+    rows = tuple(
+        (_label(name), quantity_unit(name) or "–", *(cell(name) for cell in cells.values())) for name in quantities
+    )
+    return Table((Column("Quantity", share=2.4), Column("Unit"), *columns), rows, caption)
 
 
 # Table of the uncertainty of every quantity by component.
@@ -137,43 +142,48 @@ UNCERTAINTY_KEY = (
 """Meaning of the uncertainties by component of all cases."""
 
 
-def uncertainty_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
+def uncertainty_blocks(case: CaseResult) -> tuple[Block, ...]:
     """Basis of each component, model uncertainty, and the half-widths of all quantities of a case."""
     names = list(case.uncertainty_basis)
     basis = tuple(f"{name.capitalize()}: {text}." for name, text in case.uncertainty_basis.items())
     basis += tuple(f"Model, not part of the combined width: {sentence}" for sentence in case.model_uncertainty)
-    rows = tuple(_row(case, key, name, names) for key in list_owners(case) for name in _quantities(case, key))
+    components = case.uncertainty_components
+    rows = tuple(
+        _row(case, key, name, names) for key in list_owners(case) for name in _sort_quantities(components.get(key, ()))
+    )
     if not rows:
-        return (doc.SmallPrint(" ".join(basis)),)
+        return (SmallPrint(" ".join(basis)),)
     numbers = ("Combined", *(name.capitalize() for name in names))
     columns = (
-        doc.Column("Quantity", share=1),
-        doc.Column("Of"),
-        doc.Column("Unit"),
-        *(doc.Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, "")) for heading in numbers),
+        Column("Quantity", share=1),
+        Column("Of"),
+        Column("Unit"),
+        *(Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, "")) for heading in numbers),
     )
-    return (doc.BulletList(basis), doc.Table(columns, rows))
+    return (BulletList(basis), Table(columns, rows))
 
 
 SHORT_COMPONENTS = {"Discretisation": "Discr."}
 """Headings of components on paper."""
 
 
-def _quantities(case: CaseResult, key: str) -> list[str]:
-    """Quantities of an owner with a known component, in the order of the registry."""
-    order = list(QUANTITIES)
-    known = case.uncertainty_components.get(key, {})
-    return sorted(known, key=lambda name: (order.index(name) if name in order else len(order), name))
+def _sort_quantities(names: Iterable[str]) -> list[str]:
+    """Names in the order of the registry, then unknown ones."""
+    order = {name: place for place, name in enumerate(QUANTITIES)}
+    return sorted(names, key=lambda name: (order.get(name, len(order)), name))
 
 
-def _row(case: CaseResult, key: str, quantity: str, names: list[ComponentName]) -> tuple[doc.RichText, ...]:
+def _label(quantity: str) -> RichText:
+    return f"{quantity_label(quantity)} ", Code(quantity)
+
+
+def _row(case: CaseResult, key: str, quantity: str, names: list[ComponentName]) -> tuple[RichText, ...]:
     components = case.uncertainty_components[key][quantity]
     widths = [_format_largest(components.get(name)) for name in names]
     combined = case.uncertainty[key][quantity]
     largest = max(combined, default=0.0) if isinstance(combined, list) else combined
     marked = mark_half_width(largest, _format_largest(combined), list_unknown(case.uncertainty_basis))
-    label = (f"{quantity_label(quantity)} ", doc.Code(quantity))
-    return (label, name_pantograph(key), quantity_unit(quantity) or "–", marked, *widths)
+    return (_label(quantity), name_pantograph(key), quantity_unit(quantity) or "–", marked, *widths)
 
 
 def _format_largest(width: float | list[float] | None) -> str:
@@ -197,3 +207,51 @@ def draw_spark_line(values: Sequence[float]) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" '
         f'height="{HEIGHT:g}"><polyline points="{points}" fill="none" stroke="#1a1d21" stroke-width="1.2"/></svg>'
     )
+
+
+# List of all quantities as comma-separated values: value, uncertainty by component, limits, verdict, input changes.
+COLUMNS = (
+    *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
+    *COMPONENT_NAMES,
+    *("lower", "upper", "verdict", "changes"),
+)
+NOT_KNOWN = "NA"
+"""Cell of a value that is not known: it is not zero."""
+
+
+def render_quantity_list(results: Results) -> str:
+    """Table of all quantities of a run; numbers have all their digits."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(row for case in results.cases for row in _list_rows(case))
+    return text.getvalue()
+
+
+def _list_rows(case: CaseResult) -> Iterator[list[Any]]:
+    """One row per quantity, or per item of a quantity with several values."""
+    rows = [row for row in case.criteria if not row.is_drift]
+    graded = {(str(row.pantograph), row.quantity, row.item): row for row in rows}
+    for key, quantities in case.quantities.items():
+        for name, value in quantities.items():
+            for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):
+                components = case.uncertainty_components.get(key, {}).get(name, {})
+                widths = (case.uncertainty.get(key, {}).get(name), *map(components.get, COMPONENT_NAMES))
+                criterion = graded.get((key, name, item))
+                yield [
+                    *(case.id, key, name, "" if item is None else item, number, quantity_unit(name)),
+                    *(_select_item(width, item) for width in widths),
+                    *map(_blank, (criterion and criterion.lower, criterion and criterion.upper)),
+                    "" if criterion is None else criterion.verdict,
+                    "; ".join(case.changes),
+                ]
+
+
+def _select_item(width: float | list[float] | None, item: int | None) -> float | str:
+    if isinstance(width, list):
+        return width[item - 1] if item is not None and item <= len(width) else NOT_KNOWN
+    return NOT_KNOWN if width is None else width
+
+
+def _blank(value: object) -> object:
+    return "" if value is None else value

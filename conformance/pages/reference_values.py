@@ -25,13 +25,7 @@ def reference_note(case: CaseResult) -> tuple[doc.Block, ...]:
 
 
 def insert_reference(case: CaseResult, table: doc.Table, criteria: Sequence[Criterion]) -> doc.Table:
-    """Table of criteria with a column of the values of the reference, if the case has them.
-
-    Args:
-        case: The case.
-        table: Table of criteria.
-        criteria: Criterion of each row.
-    """
+    """Table of criteria with a column of the values of the reference, if the case has them."""
     if not has_reference(case):
         return table
     column = doc.Column("Reference", number=True, short="Refer-\nence")

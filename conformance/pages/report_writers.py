@@ -54,13 +54,6 @@ def remark_missing_formats(stated: Sequence[str] | None = None) -> tuple[str, ..
 def write_document(document: Document, stem: Path) -> list[Path]:
     """Write a document as HTML and PDF; without the extra `pdf` as HTML alone (`remark_missing_formats` says so).
 
-    Args:
-        document: Content of the pages.
-        stem: Path of the files without their suffix.
-
-    Returns:
-        The written files.
-
     Raises:
         InputError: A file cannot be written.
     """
@@ -79,9 +72,6 @@ def write_all(results: "Results", folder: Path, formats: Sequence[str], places: 
         folder: Folder of the files.
         formats: Names of formats, keys of `FILES`.
         places: Places of cases and limits in the files of the user, for annotations.
-
-    Returns:
-        The written files.
 
     Raises:
         InputError: A file cannot be written.
@@ -117,7 +107,7 @@ def write_pages(results: Results, folder: Path, formats: Sequence[str], places: 
 
         write_atomically(folder / FILES["junit"], render_junit(results, certificates))
     if "csv" in formats:
-        from pantocheck.conformance.pages.quantity_list import render_quantity_list
+        from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 
         write_atomically(folder / FILES["csv"], render_quantity_list(results).encode("utf-8"))
     if "badge" in formats:

@@ -5,11 +5,11 @@ from pantocheck.conformance.pages.comparison_parts import clean_model
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
+    format_signed,
     format_value,
     name_pantograph,
     quantity_label,
     quantity_unit,
-    replace_minus,
 )
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
@@ -37,8 +37,7 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
     for case in results.cases:
         owners = [_build_owner(owner, names) for owner in case.owners if owner.quantities]
-        notes: list[doc.Block] = [doc.WarningBox(tuple(case.notes))] if case.notes else []
-        blocks.append(doc.Section(case.id or "Records", (*notes, *owners)))
+        blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
     return doc.Document(header.headline, header, tuple(blocks))
 
 
@@ -91,10 +90,6 @@ def _name_quantity(name: str) -> str:
 def format_compared(quantity: ComparedQuantity, index: int) -> str:
     """Value of a subject with its uncertainty and its difference from the first subject.
 
-    Args:
-        quantity: Values of a quantity.
-        index: Place of the subject in the list of subjects.
-
     Returns:
         Text such as `28.12 ± 0.4 (+1.2 *)`; for several numbers their count and the largest difference.
     """
@@ -109,4 +104,4 @@ def format_compared(quantity: ComparedQuantity, index: int) -> str:
     if index == 0 or difference is None:
         return text
     mark = " *" if quantity.beyond_uncertainty[index] else ""
-    return f"{text} ({replace_minus(f'{difference:+.3g}')}{mark})"
+    return f"{text} ({format_signed(difference)}{mark})"

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from pantocheck.conformance.core.figure_style import FULL, GREY, INK, LIMIT_FILL, PALE, add_legend, render_svg
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_parts import PageKind, select_facts
-from pantocheck.conformance.pages.words import format_plain, format_value, replace_minus
+from pantocheck.conformance.pages.comparison_parts import PageKind
+from pantocheck.conformance.pages.words import format_plain, format_signed, format_value
 from pantocheck.conformance.results.comparison_format import ComparedValues, SpanDifferences, StaticComparison
 
 
@@ -99,7 +99,7 @@ def _build_opening(comparison: StaticComparison) -> tuple[doc.Block, ...]:
         "Digest of the suite": comparison.suite.digest,
         "Note": comparison.note,
     }
-    return (select_facts(facts),)
+    return (doc.select_facts(facts),)
 
 
 def _build_section(values: ComparedValues, comparison: StaticComparison) -> doc.Section:
@@ -128,7 +128,7 @@ def _build_span_table(values: ComparedValues) -> doc.Table:
         return "–" if pair is None else f"{format_value(pair[0])} to {format_value(pair[1])}"
 
     def signed(value: float | None) -> str:
-        return "–" if value is None else replace_minus(f"{value:+.3g}")
+        return "–" if value is None else format_signed(value)
 
     cells = {
         "Span": lambda span: str(span.number),

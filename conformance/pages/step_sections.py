@@ -6,18 +6,18 @@ from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.pantograph_pages import build_response_sections
 from pantocheck.conformance.pages.procedure_page import anchor_step, name_step
-from pantocheck.conformance.pages.response_sections import build_response_sections
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
+    format_signed,
     format_value,
     name_pantograph,
     quantity_label,
     quantity_unit,
     read_words,
-    replace_minus,
 )
 from pantocheck.conformance.quantities.limit_text import is_relative_margin
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
@@ -39,8 +39,6 @@ MOST_NUMBERED = 12
 
 SPREAD_QUANTITY = "std_force_N"
 """Quantity of the figure that joins the line tests."""
-
-ClaimTexts = tuple[doc.RichText, ...]
 
 
 def build_step_section(
@@ -72,37 +70,31 @@ def build_step_section(
 
 def _pantograph_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
     return tuple(
-        doc.Section(response.model.name, (*_warn(list_remarks(response)), *build_response_sections(response)))
+        doc.Section(response.model.name, (*doc.warn(list_remarks(response)), *build_response_sections(response)))
         for response in procedure.responses
     )
 
 
 def _static_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
     return tuple(
-        doc.Section(statics.model.name, (*_warn(list_remarks(statics)), *build_static_sections(statics)))
+        doc.Section(statics.model.name, (*doc.warn(list_remarks(statics)), *build_static_sections(statics)))
         for statics in procedure.statics
     )
 
 
-def _warn(sentences: list[str]) -> tuple[doc.Block, ...]:
-    return (doc.WarningBox(tuple(sentences)),) if sentences else ()
-
-
 def _parameter_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
-    parameters = procedure.parameters
-    if not parameters:
+    if not procedure.parameters:
         return ()
-    columns = (doc.Column("Parameter", 2), doc.Column("Declared", 3), doc.Column("Runs", 3), doc.Column("Confirmed"))
-    rows = tuple(
-        (
-            quantity_label(parameter.name),
-            parameter.declared,
-            parameter.runs,
-            "yes" if parameter.confirmed else "no",
-        )
-        for parameter in parameters
+    table = doc.make_table(
+        procedure.parameters,
+        {
+            doc.Column("Parameter", 2): lambda parameter: quantity_label(parameter.name),
+            doc.Column("Declared", 3): lambda parameter: parameter.declared,
+            doc.Column("Runs", 3): lambda parameter: parameter.runs,
+            doc.Column("Confirmed"): lambda parameter: "yes" if parameter.confirmed else "no",
+        },
     )
-    return (doc.Section("Declared parameters and those of the runs", (doc.Table(columns, rows),)),)
+    return (doc.Section("Declared parameters and those of the runs", (table,)),)
 
 
 def _reference_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
@@ -180,57 +172,41 @@ def _chart(
 
 
 def _build_joined_table(joined: Sequence[JoinedQuantity]) -> doc.Table:
-    numbers = ("Pairs", "Mean difference", "±", "Spread", "Largest")
-    columns = (
-        doc.Column("Quantity", share=2),
-        doc.Column("Owner"),
-        *(doc.Column(heading, number=True) for heading in numbers),
-        doc.Column("Unit"),
-        doc.Column("Largest in", share=1),
+    return doc.make_table(
+        joined,
+        {
+            doc.Column("Quantity", share=2): lambda item: quantity_label(item.quantity),
+            doc.Column("Owner"): lambda item: name_pantograph(item.pantograph),
+            doc.Column("Pairs", number=True): lambda item: str(item.runs),
+            doc.Column("Mean difference", number=True): lambda item: format_signed(item.mean_difference),
+            doc.Column("±", number=True): lambda item: format_value(item.uncertainty, 2),
+            doc.Column("Spread", number=True): lambda item: format_value(item.spread, 2),
+            doc.Column("Largest", number=True): lambda item: format_signed(item.largest_difference),
+            doc.Column("Unit"): lambda item: quantity_unit(item.quantity),
+            doc.Column("Largest in", share=1): lambda item: item.largest_in.removeprefix("pair/"),
+        },
+        "Simulated minus measured value, all pairs",
     )
-    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
-        (
-            quantity_label(item.quantity),
-            name_pantograph(item.pantograph),
-            str(item.runs),
-            replace_minus(f"{item.mean_difference:+.3g}"),
-            format_value(item.uncertainty, 2),
-            format_value(item.spread, 2),
-            replace_minus(f"{item.largest_difference:+.3g}"),
-            quantity_unit(item.quantity),
-            item.largest_in.removeprefix("pair/"),
-        )
-        for item in joined
-    )
-    return doc.Table(columns, rows, "Simulated minus measured value, all pairs")
 
 
 def _validity_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
     claims, evidence = procedure.claims, procedure.evidence
     if not claims:
         return ()
-    columns = (
-        doc.Column("Claim", 2),
-        doc.Column("Claimed", 2),
-        doc.Column("Verified", 2),
-        doc.Column("Verdict"),
-        doc.Column("Runs or reason", 4),
+    table = doc.make_table(
+        claims,
+        {
+            doc.Column("Claim", 2): lambda claim: f"{read_words()['claim'][claim.kind]} {claim.name}".strip(),
+            doc.Column("Claimed", 2): lambda claim: _format_range(claim.claimed, claim.unit),
+            doc.Column("Verified", 2): lambda claim: _format_range(claim.verified, claim.unit),
+            doc.Column("Verdict"): lambda claim: doc.VerdictMark(claim.verdict),
+            doc.Column("Runs or reason", 4): lambda claim: claim.reason or ", ".join(claim.evidence),
+        },
     )
-    blocks: list[doc.Block] = [doc.Table(columns, tuple(map(_describe_claim, claims)))]
+    blocks: list[doc.Block] = [table]
     if evidence:
         blocks += [doc.Figures((_draw_evidence(claims, evidence),)), _build_evidence_table(evidence)]
     return tuple(blocks)
-
-
-def _describe_claim(claim: ValidityClaim) -> ClaimTexts:
-    subject = read_words()["claim"][claim.kind]
-    return (
-        f"{subject} {claim.name}".strip(),
-        _format_range(claim.claimed, claim.unit),
-        _format_range(claim.verified, claim.unit),
-        doc.VerdictMark(claim.verdict),
-        claim.reason or ", ".join(claim.evidence),
-    )
 
 
 def _format_range(limits: tuple[float, float] | None, unit: str) -> str:
@@ -272,30 +248,22 @@ def _label_run(item: Evidence, lines: set[str]) -> str:
 
 
 def _build_evidence_table(evidence: Sequence[Evidence]) -> doc.Table:
-    columns = (
-        doc.Column("No.", number=True),
-        doc.Column("Run", 2),
-        doc.Column("Passed"),
-        doc.Column("Speed [km/h]", number=True),
-        doc.Column("Spacing [m]", number=True),
-        doc.Column("Line", 2),
-        doc.Column("Pantographs", 2),
-        doc.Column("Inputs", 2),
+    return doc.make_table(
+        enumerate(evidence, 1),
+        {
+            doc.Column("No.", number=True): lambda row: str(row[0]),
+            doc.Column("Run", 2): lambda row: row[1].id,
+            doc.Column("Passed"): lambda row: "yes" if row[1].passed else "no",
+            doc.Column("Speed [km/h]", number=True): lambda row: format_plain(row[1].speed_km_h),
+            doc.Column("Spacing [m]", number=True): lambda row: ", ".join(map(format_plain, row[1].spacing_m)) or "–",
+            doc.Column("Line", 2): lambda row: row[1].line,
+            doc.Column("Pantographs", 2): lambda row: ", ".join(row[1].pantographs),
+            doc.Column("Inputs", 2): lambda row: (
+                ", ".join(f"{key}: {format_plain(value)}" for key, value in row[1].inputs.items()) or "–"
+            ),
+        },
+        "Conditions of the runs",
     )
-    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
-        (
-            str(number),
-            item.id,
-            "yes" if item.passed else "no",
-            format_plain(item.speed_km_h),
-            ", ".join(map(format_plain, item.spacing_m)) or "–",
-            item.line,
-            ", ".join(item.pantographs),
-            ", ".join(f"{key}: {format_plain(value)}" for key, value in item.inputs.items()) or "–",
-        )
-        for number, item in enumerate(evidence, 1)
-    )
-    return doc.Table(columns, rows, "Conditions of the runs")
 
 
 def _find_step(procedure: Procedure, name: str) -> ProcedureStep:

@@ -17,7 +17,7 @@ from pantocheck.conformance.pages.scope_page import (
 )
 from pantocheck.conformance.pages.two_verdicts import NAMES, build_verdict_section, describe_comparison, list_criteria
 from pantocheck.conformance.pages.verdict_reasons import describe_record, list_reasons
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
@@ -27,17 +27,13 @@ def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Doc
     Args:
         results: Results of a run.
         certificates: Names of the certificates in the same folder, which the page links.
-
-    Returns:
-        The page.
     """
     results = prepare_results(results)
     header = build_header(results)
-    warnings = list_identity_warnings(results)
     scope = (*_build_scope(results), *build_findings_section(results))
     facts = (*(list_administration(results.administration) if results.administration else ()), *list_sources(results))
     stated = (doc.Facts(facts),) if facts else ()
-    first = (*_link_certificates(certificates), *stated, *((doc.WarningBox(warnings),) if warnings else ()))
+    first = (*_link_certificates(certificates), *stated, *doc.warn(list_identity_warnings(results)))
     return doc.Document(
         header.heading, header, (*first, *scope, *list_reasons(results), *map(_case_section, results.cases))
     )
@@ -62,8 +58,7 @@ def _case_section(case: CaseResult) -> doc.Section:
     blocks: list[doc.Block] = [doc.Paragraph(f"Case {case.id}{': ' + case.reason if case.reason else ''}")]
     if record := describe_record(case):
         blocks.append(doc.Paragraph(record))
-    if case.warnings:
-        blocks.append(doc.WarningBox(tuple(case.warnings)))
+    blocks += doc.warn(case.warnings)
     if criteria := list_criteria(case, "criteria"):
         blocks += [_criteria(criteria, case.uncertainty_basis), *note_incomplete(criteria, case.uncertainty_basis)]
     if (verification := case.verification) is not None:
@@ -75,8 +70,7 @@ def _case_section(case: CaseResult) -> doc.Section:
         blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
         if drifts := list_criteria(case, "baseline"):
             blocks.append(_criteria(drifts, case.uncertainty_basis))
-    word = read_words()["verdict"][case.verdict]["word"]
-    return doc.Section(f"{word}: {case.title}", tuple(blocks))
+    return doc.Section(f"{name_verdict(case.verdict)}: {case.title}", tuple(blocks))
 
 
 def _criteria(criteria: Sequence[Criterion], basis: Basis = NO_BASIS) -> doc.Table:

@@ -8,7 +8,7 @@ from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
-from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -125,11 +125,10 @@ def verdict_sentences(results: Results) -> list[str]:
     names = _list_names(results)
     if len(names) == 1:
         return []
-    words = read_words()["verdict"]
     parts = []
     for name in names:
         note = "" if name == "baseline" or name in results.requested else " (for information)"
-        parts.append(f"{SHORT_TITLES[name]}: {words[_run_verdict(results, name)]['word']}{note}")
+        parts.append(f"{SHORT_TITLES[name]}: {name_verdict(_run_verdict(results, name))}{note}")
     return [f"{'; '.join(parts)}."]
 
 

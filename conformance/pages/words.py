@@ -4,7 +4,7 @@ import re
 import tomllib
 from collections.abc import Callable
 from functools import cache
-from typing import Any, TypeVar, cast
+from typing import Any, TypedDict, TypeVar, cast
 
 from pydantic import BaseModel
 
@@ -63,6 +63,11 @@ def format_plain(value: float | None) -> str:
     return "–" if value is None else replace_minus(format_stated(value))
 
 
+def format_signed(value: float) -> str:
+    """A difference with its sign and three significant digits."""
+    return replace_minus(f"{value:+.3g}")
+
+
 def replace_minus(text: str) -> str:
     """Replace ASCII hyphens by minus signs."""
     return text.replace("-", "−")
@@ -89,20 +94,12 @@ UNBOUND_KEYS = frozenset({"kind", "title", "anchor", "address", "svg", "code", "
 
 
 def bind_units(text: str) -> str:
-    """Text with a no-break space between each number and its unit.
-
-    Args:
-        text: Text of a page.
-    """
+    """Text with a no-break space between each number and its unit."""
     return NUMBER_AND_UNIT.sub("\N{NO-BREAK SPACE}", text)
 
 
 def bind_page_units(page: Any) -> Any:
-    """Parts of a page, as `to_plain` gives them, with `bind_units` in every text but names in typewriter letters.
-
-    Args:
-        page: Part of a page.
-    """
+    """Parts of a page, as `to_plain` gives them, with `bind_units` in every text but names in typewriter letters."""
     if isinstance(page, str):
         return bind_units(page)
     if isinstance(page, list):
@@ -113,10 +110,42 @@ def bind_page_units(page: Any) -> Any:
 
 
 # Words of the pages, read from the templates' `words.toml`.
+class VerdictWords(TypedDict):
+    """Word, symbol and meaning of a verdict."""
+
+    word: str
+    symbol: str
+    meaning: str
+
+
+class TrustWords(TypedDict):
+    """Mark and meaning of a level of trust."""
+
+    mark: str
+    meaning: str
+
+
+class PageWords(TypedDict):
+    """Content of `words.toml`, by the names that the results use."""
+
+    verdict: dict[str, VerdictWords]
+    trust: dict[str, TrustWords]
+    step: dict[str, str]
+    procedure: dict[str, str]
+    claim: dict[str, str]
+    label: dict[str, str]
+    state: dict[str, str]
+
+
 @cache
-def read_words() -> dict[str, Any]:
-    """All of `words.toml`."""
-    return tomllib.loads((TEMPLATES / "words.toml").read_text("utf-8"))
+def read_words() -> PageWords:
+    """All words of the pages."""
+    return cast(PageWords, tomllib.loads((TEMPLATES / "words.toml").read_text("utf-8")))
+
+
+def name_verdict(verdict: str) -> str:
+    """Word of a verdict: `PASS`."""
+    return read_words()["verdict"][verdict]["word"]
 
 
 def quantity_label(quantity: str) -> str:

@@ -19,7 +19,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, Figure, Figures, PlainHeader, Section, make_grid
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_page import build_identification_document
-from pantocheck.conformance.pages.site_index import build_site_index, publish_results
+from pantocheck.conformance.pages.site_pages import build_site_index, publish_results
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 

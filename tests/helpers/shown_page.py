@@ -4,11 +4,35 @@ from dataclasses import replace
 from typing import Any
 
 from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.results_format import Results
 
 
 def shown_certificate(results: dict[str, Any]) -> str:
     """HTML of a certificate without its data block, with ordinary spaces between numbers and units."""
-    page = render_html(replace(build_certificate(Results.model_validate(results)), results=None))
+    page = render_html(replace(certify(results), results=None))
     return page.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def certify(results: dict[str, Any]) -> Document:
+    """Certificate of results."""
+    return build_certificate(Results.model_validate(results))
+
+
+def show_certificate(results: dict[str, Any]) -> str:
+    """HTML of a certificate with its data block."""
+    return render_html(certify(results))
+
+
+def print_certificate(results: dict[str, Any]) -> bytes:
+    """PDF of a certificate."""
+    return render_pdf(certify(results))
+
+
+def summarise(results: dict[str, Any]) -> str:
+    """Markdown summary of results."""
+    return render_markdown(build_summary(Results.model_validate(results)))

@@ -101,7 +101,7 @@ class FittedPantograph:
         Raises:
             InputError: The name does not end in .toml, or a file cannot be written.
         """
-        from pantocheck.conformance.pages.pantograph_fit_page import build_pantograph_fit_document
+        from pantocheck.conformance.pages.pantograph_pages import build_pantograph_fit_document
         from pantocheck.conformance.pages.report_writers import write_document
 
         out = Path(path)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from helpers.page_blocks import find_blocks
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_page import build_comparison
-from pantocheck.conformance.pages.response_sections import RESPONSE_PAGE, draw_response, select_drawn_rows
+from pantocheck.conformance.pages.pantograph_pages import RESPONSE_PAGE, draw_response, select_drawn_rows
 from pantocheck.conformance.results.comparison_format import (
     RESPONSE_QUANTITIES,
     ComparedResponse,

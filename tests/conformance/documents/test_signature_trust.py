@@ -8,8 +8,8 @@ import pytest
 from helpers.signed_files import sign
 from helpers.signer_fixtures import Signers
 from pantocheck.conformance.documents import key_files
+from pantocheck.conformance.documents.cms_check import describe_signatures
 from pantocheck.conformance.documents.signature_check import check_signatures
-from pantocheck.conformance.documents.signature_facts import describe_signatures
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from pypdf.errors import DependencyError, LimitReachedError
 from pypdf.generic import NameObject, StreamObject
 from typer.testing import CliRunner
 
+from helpers.shown_page import print_certificate
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.input_error import InputError
@@ -22,7 +23,6 @@ from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.pages import pdf
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.results import results_reading as results_file
 from pantocheck.conformance.results.results_format import Results
 
@@ -154,7 +154,7 @@ def test_tampering_is_reported(results: dict[str, Any], name: str) -> None:
 def test_certificate_made_from_changed_results(results: dict[str, Any], tmp_path: Path) -> None:
     row(results, 1, 1)["verdict"] = "pass"
     results["cases"][1]["verdict"] = "pass"
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
+    (tmp_path / "a.pdf").write_bytes(print_certificate(results))
     found = verify_document(tmp_path / "a.pdf")
     assert len(found.discrepancies) == 3  # the row, its case, the suite
 
@@ -165,7 +165,7 @@ def test_pages_that_contradict_the_embedded_results(
     """Pages of a failing run with the results of a passing one: consistent in themselves, but not with each other."""
     encode_attachment = pdf.encode_attachment
     monkeypatch.setattr(pdf, "encode_attachment", lambda _: encode_attachment(Results.model_validate(passing)))
-    (tmp_path / "a.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
+    (tmp_path / "a.pdf").write_bytes(print_certificate(results))
     found = verify_document(tmp_path / "a.pdf")
     assert found.verdict == "pass"
     assert len(found.discrepancies) == 2
@@ -282,7 +282,7 @@ def test_verify_command(certificate_file: Path, results: dict[str, Any], tmp_pat
     good = runner.invoke(app, ["verify", str(certificate_file)])
     assert (good.exit_code, good.stdout.split(":")[0]) == (1, "consistent in part")
     row(results, 1, 1)["margin"] = 0.5
-    (tmp_path / "bad.pdf").write_bytes(pdf.render_pdf(build_certificate(Results.model_validate(results))))
+    (tmp_path / "bad.pdf").write_bytes(print_certificate(results))
     bad = runner.invoke(app, ["verify", str(tmp_path / "bad.pdf")])
     assert bad.exit_code == 1
     assert "en50318-2002/300, std_force_N of pantograph 1: margin 0.5 stated, -0.32" in " ".join(bad.stdout.split())

@@ -6,17 +6,16 @@ from xml.etree import ElementTree
 
 import pytest
 
+from helpers.shown_page import certify, summarise
 from helpers.toml_edit import change_keys
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import step_sections
 from pantocheck.conformance.pages.badge import render_badge
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.procedure_page import build_procedure_headline, list_step_reasons
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.results_format import Results
 
@@ -55,7 +54,7 @@ def count_figures(section: doc.Section) -> int:
 
 def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     """Each step has its section in order, the sections of its cases behind it, and a figure or a drawing."""
-    document = build_certificate(Results.model_validate(content))
+    document = certify(content)
     headings = [block.heading for block in document.blocks if isinstance(block, doc.Section)]
     assert [heading for heading in headings if heading in STEPS] == STEPS
     assert headings.index("EN 50318:2002 reference model, 250 km/h") == headings.index(STEPS[3]) + 1
@@ -128,7 +127,7 @@ def test_junit_has_a_suite_for_every_step_and_case(content: dict[str, Any]) -> N
 
 def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
     assert "pass 6/6 steps" in render_badge(Results.model_validate(content))
-    text = render_markdown(build_summary(Results.model_validate(content)))
+    text = summarise(content)
     assert text.startswith("# PASS: 6 of 6 required steps pass")
     assert "| 5 Line tests | done | PASS |" in text.replace("&#8203;", "")
 
@@ -165,7 +164,7 @@ def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
     charts: list[Chart] = []
     monkeypatch.setattr(step_sections, "draw_chart", lambda chart: charts.append(chart) or "<svg/>")
     changed["procedure"]["evidence"] = [own[0] | {"line": "a line without a claim", "speed_km_h": 999.0}, *own]
-    build_certificate(Results.model_validate(changed))
+    certify(changed)
     points = {series.label: series.y for series in charts[-1].series}
     assert points.pop("another line") == [999.0]
     assert sorted(speed for speeds in points.values() for speed in speeds) == sorted(item["speed_km_h"] for item in own)

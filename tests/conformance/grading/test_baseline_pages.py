@@ -19,7 +19,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
-from pantocheck.conformance.pages.quantity_list import render_quantity_list
+from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.results_format import Results

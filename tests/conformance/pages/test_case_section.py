@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from helpers.shown_page import certify
 from pantocheck.conformance.pages.case_section import build_case_section, input_blocks, list_shown_cases
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import BulletList, Section, SmallPrint, Table
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -27,7 +27,7 @@ def test_case_without_any_value_has_no_section(results: dict[str, Any]) -> None:
         "en50318-2002/250",
         "en50318-2002/300",
     ]
-    document = build_certificate(Results.model_validate(results))
+    document = certify(results)
     headings = [block.heading for block in document.blocks if isinstance(block, Section)]
     assert skipped["title"] not in headings
     [index] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == "cases"]
@@ -36,11 +36,7 @@ def test_case_without_any_value_has_no_section(results: dict[str, Any]) -> None:
 
 def test_cases_skipped_for_one_reason_share_a_sentence(results: dict[str, Any]) -> None:
     results["cases"].append(results["cases"][2] | {"id": "own/other"})
-    [reasons] = [
-        block
-        for block in build_certificate(Results.model_validate(results)).blocks
-        if isinstance(block, Section) and block.anchor == "reasons"
-    ]
+    [reasons] = [block for block in certify(results).blocks if isinstance(block, Section) and block.anchor == "reasons"]
     items = [str(item) for part in reasons.blocks if isinstance(part, Section) for item in part.blocks[0].items]  # type: ignore[union-attr]
     sentence = f"{results['cases'][2]['id']}, own/other: {results['cases'][2]['reason']}"
     assert sentence in items

@@ -4,10 +4,9 @@ import json
 import re
 from typing import Any
 
-from helpers.shown_page import shown_certificate
+from helpers.shown_page import certify, shown_certificate, summarise
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages.case_figures import draw_case_figures
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.criteria_table import criteria_blocks, describe_criterion
 from pantocheck.conformance.pages.document import (
     BulletList,
@@ -24,7 +23,6 @@ from pantocheck.conformance.pages.document import (
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import build_band_table, list_definitions
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.pages.verdict_reasons import list_reasons
 from pantocheck.conformance.pages.words import format_value
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -100,8 +98,8 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
     assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
     for text in (
-        render_markdown(build_summary(Results.model_validate(passing))),
-        render_markdown(build_certificate(Results.model_validate(passing))),
+        summarise(passing),
+        render_markdown(certify(passing)),
     ):
         assert "Uncertainty without section and length, which are not known: it is too small" in text
     for other in passing["cases"]:
@@ -196,7 +194,7 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     case["quantities"]["0"] = {"dropper_length_m": [1.017, 0.896]}
     case["run"] |= dict.fromkeys(("simulated_s", "wall_s", "dt_s", "element_m"))
     Results.model_validate(passing)
-    sections = case_section(build_certificate(Results.model_validate(passing)), 1)
+    sections = case_section(certify(passing), 1)
     [figures] = sections["Figures"].blocks
     assert isinstance(figures, Figures)
     assert [figure.caption.split(":")[0] for figure in figures.figures] == [

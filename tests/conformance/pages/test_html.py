@@ -10,11 +10,10 @@ from typing import Any
 
 import pytest
 
+from helpers.shown_page import show_certificate
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, PlainHeader
 from pantocheck.conformance.pages.html import render_html
-from pantocheck.conformance.results.results_format import Results
 
 VOID = {"meta", "img", "line", "rect", "path", "circle", "link", "br", "use"}
 
@@ -47,7 +46,7 @@ class Outline(HTMLParser):
 
 
 def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
-    assert render_html(build_certificate(Results.model_validate(results))) == page_text
+    assert show_certificate(results) == page_text
 
 
 @pytest.mark.parametrize("name", ["page_text", "hostile_text"])

@@ -1,7 +1,7 @@
 """Report on an identification: its figures and sentences, from identification.json alone."""
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from helpers.example_identification import build_example_line
+from helpers.page_blocks import find_blocks
 from pantocheck.conformance.core.figure_style import format_decade
-from pantocheck.conformance.pages.document import Block, Document, Paragraph, Section
+from pantocheck.conformance.pages.document import Document, Paragraph
 from pantocheck.conformance.pages.document import Figure as PageFigure
 from pantocheck.conformance.pages.document import Figures as PageFigures
-from pantocheck.conformance.pages.drop_figures import DrawnPlace, draw_drop_layout, draw_motion
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_figures import (
     draw_half_power,
@@ -24,8 +24,8 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_spectra,
 )
 from pantocheck.conformance.pages.identification_page import build_identification_document
+from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_measured_shapes, list_paired_rows
-from pantocheck.conformance.pages.spectrogram_figure import draw_spectrogram
 from pantocheck.conformance.results.damping_format import PairedShape
 from pantocheck.conformance.results.identification_format import (
     IdentifiedLine,
@@ -59,20 +59,12 @@ def paint(draw: Callable[..., str], *arguments: Any) -> list[Axes]:
     return painter(*arguments).axes
 
 
-def list_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
-    for block in blocks:
-        yield block
-        if isinstance(block, Section):
-            yield from list_blocks(block.blocks)
-
-
 def list_figures(document: Document) -> list[PageFigure]:
-    blocks = list_blocks(document.blocks)
-    return [figure for block in blocks if isinstance(block, PageFigures) for figure in block.figures]
+    return [figure for block in find_blocks(document.blocks, PageFigures) for figure in block.figures]
 
 
 def list_sentences(document: Document) -> list[str]:
-    return [str(block.text) for block in list_blocks(document.blocks) if isinstance(block, Paragraph)]
+    return [str(block.text) for block in find_blocks(document.blocks, Paragraph)]
 
 
 def test_every_figure_has_a_caption_and_another_alternative_text(document: Document) -> None:

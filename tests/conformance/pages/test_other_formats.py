@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from helpers.shown_page import summarise
 from pantocheck.conformance.pages.badge import render_badge
 from pantocheck.conformance.pages.document import (
     BulletList,
@@ -28,9 +29,8 @@ from pantocheck.conformance.pages.document import (
 )
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.quantity_list import render_quantity_list
+from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.report_writers import write_pages
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
 
@@ -72,29 +72,21 @@ def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", ["results", "hostile"])
 def test_summary_tables_keep_their_columns(name: str, request: pytest.FixtureRequest) -> None:
     results = request.getfixturevalue(name)
-    rows = [
-        line
-        for line in render_markdown(build_summary(Results.model_validate(results))).splitlines()
-        if line.startswith("|")
-    ]
+    rows = [line for line in summarise(results).splitlines() if line.startswith("|")]
     assert len(rows) == 2 * 2 + 22
     assert {len(re.findall(r"(?<!\\)\|", row)) for row in rows} == {9}
 
 
 def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], hostile: dict[str, Any]) -> None:
-    assert render_markdown(build_summary(Results.model_validate(results))).startswith(
+    assert summarise(results).startswith(
         "# FAIL: 1 of 3 cases passes, 1 fails \\(1 of 21 counted criteria outside their limits\\), "
         "1 could not be evaluated completely.\n"
     )
-    text = render_markdown(build_summary(Results.model_validate(hostile)))
+    text = summarise(hostile)
     assert "<script" not in text
     assert "`c`" not in text.replace(r"\`c\`", "")
-    assert "https://" not in render_markdown(
-        build_summary(
-            Results.model_validate(
-                results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}}
-            )
-        )
+    assert "https://" not in summarise(
+        results | {"system": {"name": "see https://example.org", "version": "", "kind": "record"}}
     )
 
 
@@ -150,7 +142,7 @@ def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None
     suite = next(ElementTree.fromstring(render_junit(Results.model_validate(passing))).iter("testsuite"))
     assert suite.get("name") == name
     assert {test.get("classname") for test in suite.iter("testcase")} == {name}
-    assert name in render_markdown(build_summary(Results.model_validate(passing)))
+    assert name in summarise(passing)
 
 
 def test_write_pages_leaves_one_file_per_format(passing: dict[str, Any], tmp_path: Path) -> None:

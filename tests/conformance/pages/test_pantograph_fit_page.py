@@ -2,7 +2,7 @@
 
 from helpers.page_blocks import find_blocks
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.pantograph_fit_page import build_pantograph_fit_document
+from pantocheck.conformance.pages.pantograph_pages import build_pantograph_fit_document
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 

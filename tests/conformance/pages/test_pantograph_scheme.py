@@ -4,8 +4,7 @@ from typing import Any
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.pages.case_figures import scheme_figures
-from pantocheck.conformance.pages.line_figure import DrawnChain, draw_chain
+from pantocheck.conformance.pages.line_figure import DrawnChain, draw_chain, scheme_figures
 from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
 

@@ -13,9 +13,9 @@ from typing import Any, Literal
 import pytest
 from pypdf import PdfReader
 
+from helpers.shown_page import certify, print_certificate
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.criteria_table import describe_criterion
 from pantocheck.conformance.pages.document import Code, Column, Document, Paragraph, PlainHeader, Section, Table
 from pantocheck.conformance.pages.embedded_results import strip_times
@@ -35,10 +35,10 @@ def test_pdf_does_not_depend_on_the_time_of_the_run(
     passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
+    write_report(certify(passing), tmp_path / "a.pdf")
     later = passing | {"started": "2031-01-01T00:00:00Z"}
     later["cases"][0]["run"] |= {"wall_s": 99.0}
-    write_report(build_certificate(Results.model_validate(later)), tmp_path / "b.pdf")
+    write_report(certify(later), tmp_path / "b.pdf")
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
@@ -47,14 +47,14 @@ def test_html_and_pdf_do_not_depend_on_the_process(passing: dict[str, Any], tmp_
     """Another interpreter with another hash seed and time zone writes the same HTML and PDF."""
     source = tmp_path / "results.json"
     source.write_text(json.dumps(passing))
-    document = build_certificate(Results.model_validate(passing))
+    document = certify(passing)
     program = (
         "import hashlib, json, sys;"
         "from pantocheck.conformance.pages.certificate_page import build_certificate;"
         "from pantocheck.conformance.pages.html import render_html;"
         "from pantocheck.conformance.pages.pdf import render_pdf;"
         "from pantocheck.conformance.results.results_format import Results;"
-        "document = build_certificate(Results.model_validate(json.load(open(sys.argv[1]))));"
+        "document = certify(json.load(open(sys.argv[1])));"
         "print(hashlib.sha256(render_html(document).encode() + render_pdf(document)).hexdigest())"
     )
     other = subprocess.run(
@@ -72,7 +72,7 @@ def test_pdf_date_is_the_start_of_the_run(
     passing: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
+    write_report(certify(passing), tmp_path / "a.pdf")
     assert PdfReader(tmp_path / "a.pdf").metadata["/CreationDate"] == "D:20261120235000Z"
 
 
@@ -82,7 +82,7 @@ def test_pdf_refuses_a_wrong_source_date(
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
     with pytest.raises(InputError, match="SOURCE_DATE_EPOCH"):
-        write_report(build_certificate(Results.model_validate(passing)), tmp_path / "a.pdf")
+        write_report(certify(passing), tmp_path / "a.pdf")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -134,7 +134,7 @@ def test_explanations_are_paragraphs(certificate: bytes) -> None:
 
 
 def test_pdf_prints_hostile_text_literally(hostile: dict[str, Any]) -> None:
-    text = squeeze_text(render_pdf(build_certificate(Results.model_validate(hostile))))
+    text = squeeze_text(print_certificate(hostile))
     assert '#import"x.typ":*"])#panic()' in text
     assert "<script>alert(1)</script>" in text
     assert "x" * 300 in text
@@ -153,7 +153,7 @@ def test_pdf_embeds_its_fonts(certificate: bytes) -> None:
 def test_write_report_into_an_unwritable_folder_is_an_input_error(passing: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError):
-        write_report(build_certificate(Results.model_validate(passing)), Path(tmp_path, "file", "a.pdf"))
+        write_report(certify(passing), Path(tmp_path, "file", "a.pdf"))
 
 
 def _page_texts(document: Document) -> list[str]:

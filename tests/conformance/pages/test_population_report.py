@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from pantocheck.conformance.pages.damping_figures import draw_test_boxes, draw_test_ratios
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.population_page import build_population_document
+from pantocheck.conformance.pages.population_page import build_population_document, draw_test_boxes, draw_test_ratios
 from pantocheck.conformance.results.population_format import (
     PooledGroup,
     PooledLevel,

@@ -5,16 +5,14 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
+from helpers.shown_page import print_certificate, show_certificate
 from pantocheck.conformance.core.figure_data import Traces
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.force_figures import draw_force
-from pantocheck.conformance.pages.html import render_html
-from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.quantity_tables import build_quantity_table
 from pantocheck.conformance.pages.reference_values import find_reference, reference_note
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseResult
 
 
 @pytest.fixture
@@ -73,10 +71,10 @@ def test_force_of_the_reference_is_drawn_behind(case: dict[str, Any]) -> None:
 def test_certificate_names_the_reference_and_the_reason_without_values(
     passing: dict[str, Any], case: dict[str, Any]
 ) -> None:
-    page = render_html(build_certificate(Results.model_validate(passing)))
+    page = show_certificate(passing)
     assert "Reference: values of the Reference 3, for information." in page
     assert "Behind: the reference simulator." in page
-    assert render_pdf(build_certificate(Results.model_validate(passing))).startswith(b"%PDF")
+    assert print_certificate(passing).startswith(b"%PDF")
     case["reference"] |= {"reason": "no solution", "quantities": {}, "uncertainty": {}, "force_20_N": {}}
     assert reference_note(CaseResult.model_validate(case)) == (
         doc.Paragraph("Reference 3: no values for comparison, no solution."),
@@ -88,6 +86,6 @@ def test_certificate_names_the_reference_and_the_reason_without_values(
 
 
 def test_certificate_without_a_reference_does_not_name_it(passing: dict[str, Any]) -> None:
-    page = render_html(build_certificate(Results.model_validate(passing)))
+    page = show_certificate(passing)
     assert "Reference:" not in page
     assert "Behind: the reference" not in page

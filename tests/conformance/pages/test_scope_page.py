@@ -7,14 +7,11 @@ from xml.etree import ElementTree
 import pytest
 from pypdf import PdfReader
 
-from helpers.shown_page import shown_certificate
+from helpers.shown_page import certify, print_certificate, shown_certificate, summarise
 from pantocheck.conformance.app.commands.command_output import print_output
 from pantocheck.conformance.app.commands.results_output import build_results_output
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Section, Table, VerdictMark, WarningBox
 from pantocheck.conformance.pages.junit import render_junit
-from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.scope_page import (
     CHANGES_SHOWN,
     build_scope_section,
@@ -22,7 +19,6 @@ from pantocheck.conformance.pages.scope_page import (
     list_identity_warnings,
     summarise_identity,
 )
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.scope import build_scope
@@ -51,7 +47,7 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     print_output(build_results_output(Results.model_validate(copied), [], 0), "run")
     for text in (
         shown_certificate(copied),
-        render_markdown(build_summary(Results.model_validate(copied))),
+        summarise(copied),
         capsys.readouterr().out,
     ):
         assert text.count("en50318-2002/250") == text.count(COPY) > 0
@@ -60,12 +56,7 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
 
 
 def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
-    page = " ".join(
-        PdfReader(BytesIO(render_pdf(build_certificate(Results.model_validate(copied)))))
-        .pages[0]
-        .extract_text()
-        .split()
-    )
+    page = " ".join(PdfReader(BytesIO(print_certificate(copied))).pages[0].extract_text().split())
     assert f"The {COPY} has other inputs, limits or sources than the library case." in page
     assert f"The limits file changes limits of {COPY}." in page
     assert "lowered from secondary to provisional" in page
@@ -87,7 +78,7 @@ def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys
         capsys.readouterr().out,
         render_junit(Results.model_validate(changed)).decode(),
     ]
-    texts.append(render_markdown(build_summary(Results.model_validate(changed))).replace("\\_", "_"))
+    texts.append(summarise(changed).replace("\\_", "_"))
     assert all(CHANGE in " ".join(text.split()) for text in texts)
 
 
@@ -99,7 +90,7 @@ def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, 
 
 
 def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
-    document = build_certificate(Results.model_validate(describe(results)))
+    document = certify(describe(results))
     assert not summarise_identity(Results.model_validate(describe(results)))
     assert not [block for block in document.blocks if isinstance(block, WarningBox)]
 
@@ -131,9 +122,7 @@ def test_origin_of_a_profile_is_named(results: dict[str, Any]) -> None:
 
 def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
     [scope] = [
-        block
-        for block in build_certificate(Results.model_validate(describe(results))).blocks
-        if isinstance(block, Section) and block.anchor == "scope"
+        block for block in certify(describe(results)).blocks if isinstance(block, Section) and block.anchor == "scope"
     ]
     table = scope.blocks[0]
     assert isinstance(table, Table)
@@ -163,11 +152,7 @@ def test_verdict_of_a_case_does_not_stand_beside_an_informative_step(results: di
 
 
 def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
-    page = (
-        PdfReader(BytesIO(render_pdf(build_certificate(Results.model_validate(describe(results))))))
-        .pages[0]
-        .extract_text()
-    )
+    page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
     assert "self-declared conformance report, in the style of EN 50318" in page
     steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
     assert all(step in " ".join(page.split()) for step in steps)

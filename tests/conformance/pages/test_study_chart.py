@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.testing import assert_allclose
 
+from helpers.shown_page import certify
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series, TextTable
 from pantocheck.conformance.pages.case_figures import draw_case_figures
-from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Section
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseResult
 
 LINE = Series(label="computed", style="line", x=[1e-6, 1e-3, 1.0], y=[3.0, 2.0, 1.0])
 
@@ -109,7 +109,7 @@ def test_certificate_shows_tables_and_charts_of_a_study_escaped(results: dict[st
                             series=[LINE]).model_dump()]  # fmt: skip
     table = TextTable(caption="Findings", columns=["Finding", "Verdict"], rows=[["<b>less</b> in front", "reproduced"]])
     case["tables"] = [table.model_dump()]
-    document = build_certificate(Results.model_validate(results))
+    document = certify(results)
     text = render_html(document)
     assert "Figure of a study" in text
     assert "&lt;b&gt;less&lt;/b&gt; in front" in text

@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from helpers.shown_page import shown_certificate
+from helpers.shown_page import certify, shown_certificate, summarise
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.pages.badge import summarise_verdict
@@ -73,7 +73,7 @@ def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str,
     remark = "1 N above the upper limit without the stated start, which is not checked"
     results["cases"][0]["verification"]["criteria"][0]["reason"] = remark
     sections = {section.heading: section for section in list_reasons(Results.model_validate(results))}
-    page = render_markdown(build_certificate(Results.model_validate(results)))
+    page = render_markdown(certify(results))
     assert "Inside the limits only with the stated start" in sections
     assert page.count(remark) == 2  # page 1 and the table of the case
     assert find_discrepancies(Results.model_validate(results)) == []
@@ -107,7 +107,7 @@ def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -
     """A case that only the verification judges has not failed the criteria."""
     results = decide(failing, *BOTH)
     results["criteria_verdict"] = results["cases"][0]["criteria_verdict"] = "info"
-    text = render_markdown(build_summary(Results.model_validate(results)))
+    text = summarise(results)
     assert "| EN 50318 criteria | INFO | decides | No case has a limit that counts." in text
     assert "0 of 1 case passes." in text  # the verification fails
 
@@ -119,10 +119,7 @@ def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
 
 
 def test_reasons_name_the_failed_verification_only_where_it_decides(failing: Results) -> None:
-    shown, decided = (
-        render_markdown(build_summary(Results.model_validate(decide(failing, *names))))
-        for names in (("criteria",), BOTH)
-    )
+    shown, decided = (summarise(decide(failing, *names)) for names in (("criteria",), BOTH))
     assert "## Failed" in decided
     assert ", verification: " in decided
     assert "## Failed" not in shown

@@ -2,12 +2,11 @@
 
 from typing import Any
 
-from helpers.shown_page import shown_certificate
-from pantocheck.conformance.pages.certificate_page import build_certificate
+from helpers.shown_page import certify, shown_certificate
 from pantocheck.conformance.pages.document import BulletList, Code, Section, Table
 from pantocheck.conformance.pages.quantity_tables import build_quantity_table, draw_spark_line, uncertainty_blocks
 from pantocheck.conformance.pages.words import format_value
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseResult
 
 
 def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) -> None:
@@ -69,9 +68,7 @@ def test_long_list_is_drawn_with_its_range(passing: dict[str, Any]) -> None:
 
 
 def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
-    sections = [
-        block for block in build_certificate(Results.model_validate(results)).blocks if isinstance(block, Section)
-    ]
+    sections = [block for block in certify(results).blocks if isinstance(block, Section)]
     found = {
         section.heading: [part.heading for part in section.blocks if isinstance(part, Section)] for section in sections
     }

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.pages.certificate_page import build_certificate
+from helpers.shown_page import certify
 from pantocheck.conformance.pages.document import (
     BulletList,
     Code,
@@ -20,7 +20,6 @@ from pantocheck.conformance.pages.document import (
 )
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.words import bind_page_units, bind_units
-from pantocheck.conformance.results.results_format import Results
 
 GAP = "\N{NO-BREAK SPACE}"
 
@@ -61,7 +60,7 @@ def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
 
 
 def test_page_binds_escaped_text_too(passing: dict[str, Any]) -> None:
-    document = build_certificate(Results.model_validate(passing))
+    document = certify(passing)
     first = Paragraph("<b> 31 N & 32 m")
     page = render_html(replace(document, blocks=(first, *document.blocks)))
     assert f"&lt;b&gt; 31{GAP}N &amp; 32{GAP}m" in page

@@ -11,7 +11,7 @@ from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.line.line_discretisation import discretise_line
 from pantocheck.conformance.line.line_drawing import find_deflection
-from pantocheck.conformance.pages.case_figures import line_figures, line_reference
+from pantocheck.conformance.pages.line_figure import line_figures, line_reference
 from pantocheck.conformance.runs.reference_simulator import THINNING_M, build_line_shape, thin_curve
 
 LARGEST_SHAPE = 15_000

@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.results_building import build_results
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.pages.site_index import name_file, publish_results
+from pantocheck.conformance.pages.site_pages import name_file, publish_results
 from pantocheck.conformance.results.results_format import SystemIdentity
 
 RUNS = (
