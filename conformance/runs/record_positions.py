@@ -11,7 +11,15 @@ from pantocheck.conformance.quantities.pantograph_signals import PantographSigna
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding, worst_finding
+from pantocheck.conformance.runs.check import (
+    TINY,
+    Check,
+    Finding,
+    amplitude_spectrum,
+    report_low_rate,
+    report_not_made,
+    worst_finding,
+)
 
 
 def _check_coverage(_: Case, signals: RecordSignals) -> Finding | None:
@@ -78,19 +86,18 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     if applied is None or not is_same_cutoff(applied, cutoff):
         return None  # delivered unfiltered, or filtered again by the suite
     if not is_observable(STOP_BAND[1] * cutoff, record.rate):
-        return Finding("unchecked", f"the roll-off check was not made: a rate of {record.rate:g} Hz is too low")
+        return report_low_rate("roll-off", record.rate)
     if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
-        return Finding("unchecked", "the roll-off check was not made: the record is too short")
+        return report_not_made("roll-off", "the record is too short")
     frequency = np.asarray(np.fft.rfftfreq(record.time.size, 1 / record.rate), dtype=np.float64)
     below = (frequency > 0) & (frequency <= cutoff)
     above = (frequency > STOP_BAND[0] * cutoff) & (frequency <= STOP_BAND[1] * cutoff)
     gain = low_pass.gain(frequency[above], record.rate)
-    window = np.hanning(record.time.size)
     findings = []
     for number, force in enumerate(record.force, 1):
-        amplitude = np.abs(np.fft.rfft((force - force.mean()) * window))
+        amplitude = amplitude_spectrum(force, record.rate)[1]
         implied = np.sqrt(np.sum((amplitude[above] / gain) ** 2))
-        share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), np.finfo(float).tiny))
+        share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), TINY))
         if share > DOUBT:
             text = (
                 f"pantograph {number}: the stated filter of the force ({applied:g} Hz, order {low_pass.order}) is not "
