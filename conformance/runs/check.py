@@ -86,7 +86,7 @@ def rounding_step(values: RealArray) -> float:
     return float(steps[steps > SMALLEST_STEP].min(initial=np.inf))
 
 
-def amplitude_spectrum(signal: RealArray, rate: float) -> tuple[RealArray, RealArray]:
+def windowed_spectrum(signal: RealArray, rate: float) -> tuple[RealArray, RealArray]:
     """Frequencies [Hz] and amplitudes of a signal about its mean, with a Hann window; amplitudes have no scale."""
     frequency = np.asarray(np.fft.rfftfreq(signal.size, 1 / rate), dtype=np.float64)
     return frequency, np.abs(np.fft.rfft((signal - signal.mean()) * np.hanning(signal.size)))

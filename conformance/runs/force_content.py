@@ -30,9 +30,9 @@ from pantocheck.conformance.runs.check import (
     TINY,
     Check,
     Finding,
-    amplitude_spectrum,
     report_low_rate,
     report_not_made,
+    windowed_spectrum,
     worst_finding,
 )
 
@@ -96,7 +96,7 @@ def force_content(signals: RecordSignals, number: int, upper: float) -> float:
         upper: Upper edge of the upper band [Hz].
     """
     record, force = signals.record, signals.pantographs[number].delivered
-    frequency, amplitude = amplitude_spectrum(force, record.rate)
+    frequency, amplitude = windowed_spectrum(force, record.rate)
     frequency, amplitude = frequency[frequency <= upper], amplitude[frequency <= upper]
     stated = record.filter_applied_Hz
     if stated is not None and stated <= HIGHEST_SHARE_OF_RATE * record.rate:

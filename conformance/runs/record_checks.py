@@ -22,9 +22,9 @@ from pantocheck.conformance.runs.check import (
     Check,
     CheckName,
     Finding,
-    amplitude_spectrum,
     report_low_rate,
     report_not_made,
+    windowed_spectrum,
     worst_finding,
 )
 from pantocheck.conformance.runs.force_content import CONTENT, COPY
@@ -107,7 +107,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     gain = low_pass.gain(frequency[above], record.rate)
     findings = []
     for number, force in enumerate(record.force, 1):
-        amplitude = amplitude_spectrum(force, record.rate)[1]
+        amplitude = windowed_spectrum(force, record.rate)[1]
         implied = np.sqrt(np.sum((amplitude[above] / gain) ** 2))
         share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), TINY))
         if share > DOUBT:
