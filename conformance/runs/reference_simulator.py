@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.start_and_section import list_other_starts
 from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.step_log import ShareCallback, StepSequence, ignore_progress
-from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_starts

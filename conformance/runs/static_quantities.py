@@ -6,9 +6,9 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.conformance.line.geometry import ListedSpans
-from pantocheck.conformance.line.line_discretisation import discretise_line
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.evaluation import Value

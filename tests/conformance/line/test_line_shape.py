@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
-from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_shape import THINNING_M, build_line_shape, find_deflection, thin_curve
 from pantocheck.conformance.pages.case_figures import line_figures, line_reference
 from pantocheck.conformance.results.results_format import CaseResult, RunFacts
