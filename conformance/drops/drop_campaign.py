@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.case_agreement import find_disagreements
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
+from pantocheck.conformance.cases.library import find_disagreements
 from pantocheck.conformance.cases.study_tables import DropTest, WireName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import Axis

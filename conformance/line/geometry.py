@@ -22,6 +22,7 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.elements.element import choose_by_key
 from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS
 from pantocheck.conformance.line.elements.support_table import Encumbrance, Height, SupportTable
 
@@ -296,17 +297,10 @@ class ListedSpans(SpanPositions, SourcedTable):
                 )
 
 
-def _form_of_spans(geometry: object) -> str:
-    """Form of the spans, which pydantic validates and reports alone."""
-    if isinstance(geometry, dict):
-        return "ListedSpans" if "span_list" in geometry else "EqualSpans"
-    return type(geometry).__name__
-
-
 Geometry = EqualSpans | ListedSpans
 GeometryTable = Annotated[
     Annotated[EqualSpans, Tag("EqualSpans")] | Annotated[ListedSpans, Tag("ListedSpans")],
-    Discriminator(_form_of_spans),
+    choose_by_key("span_list", ListedSpans, EqualSpans),
 ]
 
 

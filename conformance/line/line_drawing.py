@@ -2,20 +2,18 @@
 
 import math
 from dataclasses import dataclass
-from typing import get_args
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_style import GREY, INK, PALE, render_pdf_pages, render_svg
-from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark, Symbol
-from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.conformance.line.elements.element import DrawnMark
 from pantocheck.conformance.line.elements.tension_section import SectionPlace
 from pantocheck.conformance.line.geometry import Geometry
-from pantocheck.model import Catenary, DiscretisedLine, Kind, Wire
+from pantocheck.conformance.line.line_shape import LineView, list_element_marks
+from pantocheck.model import Catenary, DiscretisedLine, Kind
 
 # Rows and pages of the drawing of a line: spans that stand side by side, at one scale.
 ROW_LENGTH = 400.0
@@ -100,16 +98,9 @@ class LineDrawing:
         """Inches per metre along the track, the same in all rows."""
         return (SHEET[0] - LEFT - RIGHT) / max(row.end - row.start for row in self.rows)
 
-    def deflection(self, wire: str, field: str, position: float) -> float:
-        """Height (`z`) or lateral position (`y`) of a wire [m]."""
-        return float(find_deflection(self.line, wire, field, position))
-
-    def shape(self, wire: Wire, field: str, row: DrawingRow) -> tuple[RealArray, RealArray]:
-        """Positions and deflections of a wire inside a row [m]."""
-        x = self.line.mesh.position
-        start, end = max(wire.start, row.start), min(wire.end, row.end)
-        inside = (x >= start - 1e-6) & (x <= end + 1e-6)
-        return x[inside], self.line.state.deflection[self.line.mesh.row_of[wire.name, field], inside, 0]
+    def view(self, field: str, row: DrawingRow) -> LineView:
+        """Side view (`z`) or plan view (`y`) of a row."""
+        return LineView(self.line, field, row.start, row.end)
 
     def extent(self, field: str, row: DrawingRow) -> tuple[float, float]:
         """Lowest and highest deflection of a view of a row, with margins; the height is the same in all rows [m]."""
@@ -120,10 +111,10 @@ class LineDrawing:
 
     def arms(self, row: DrawingRow) -> tuple[tuple[float, float, float], ...]:
         """Position, and lateral position of claw and hinge, of every steady arm with a length in a row [m]."""
-        arms = []
+        arms, view = [], self.view("y", row)
         for arm, force in zip(self.line.catenary.steady_arms, self.line.state.arm_force, strict=True):
-            if row.start <= arm.position <= row.end and force[0] != 0.0 and arm.length is not None:
-                claw = self.deflection(arm.wire, "y", arm.position)
+            if view.contains(arm.position) and force[0] != 0.0 and arm.length is not None:
+                claw = view.deflection(arm.wire, arm.position)
                 # An arm that pulls has its hinge on the side of its force; an arm that pushes, on the other side.
                 towards = float(np.sign(force[0])) * (1 if arm.acts == "pull" else -1)
                 arms.append((arm.position, claw, claw + towards * arm.length))
@@ -131,7 +122,7 @@ class LineDrawing:
 
     def _span_wires(self, field: str, row: DrawingRow) -> tuple[float, float]:
         """Lowest and highest deflection of the wires in a row, and of the hinges of its arms [m]."""
-        wires = [self.shape(wire, field, row)[1] for wire in self.line.catenary.wires]
+        wires = [w for _, _, w in self.view(field, row).wires()]
         hinges = [[hinge for _, _, hinge in self.arms(row)]] if field == "y" else []
         values = np.concatenate([*wires, *hinges])
         return float(values.min()), float(values.max())
@@ -209,8 +200,8 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
     """Axes of one view of a row, with wires, droppers and supports; `bottom` is the lower edge [in]."""
     width, height = figure.get_size_inches()
     size = drawing.scale * (row.end - row.start)
-    view = SIDE_VIEW if field == "z" else PLAN_VIEW
-    axes = figure.add_axes((LEFT / width, bottom / height, size / width, FILLED * view / height))
+    room = SIDE_VIEW if field == "z" else PLAN_VIEW
+    axes = figure.add_axes((LEFT / width, bottom / height, size / width, FILLED * room / height))
     axes.set(
         xlim=(row.start, row.end), ylim=drawing.extent(field, row), ylabel="height [m]" if field == "z" else "y [m]"
     )
@@ -218,20 +209,17 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
     axes.set_xticks([x for x in drawing.geometry.span_limits if row.start <= x <= row.end])
     axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
     axes.grid(axis="x", color=PALE)
-    catenary = drawing.line.catenary
-    for wire in catenary.wires:
-        x, w = drawing.shape(wire, field, row)
+    view = drawing.view(field, row)
+    for wire, x, w in view.wires():
         if x.size > 1:
             axes.plot(x, w, color=INK, linewidth=WIDTHS[wire.kind], solid_capstyle="butt")
-    for part in list_connections(catenary):
-        if row.start <= part.position <= row.end:
-            ends = [drawing.deflection(name, field, part.position) for name in (part.lower, part.upper)]
-            axes.plot([part.position] * 2, ends, color=GREY, linewidth=0.7)
-    for mark in list_element_marks(catenary):
-        if row.start <= mark.position <= row.end and not mark.text:
+    for position, lower, upper in view.connections():
+        axes.plot([position] * 2, [lower, upper], color=GREY, linewidth=0.7)
+    for mark, height in view.marks():
+        if not mark.text:
             axes.plot(
-                mark.position, drawing.deflection(mark.wire, field, mark.position), SYMBOLS[mark.symbol], color=INK,
-                markersize=3, clip_on=False, markerfacecolor=_fill_colour(mark.symbol),
+                mark.position, height, SYMBOLS[mark.symbol], color=INK, markersize=3, clip_on=False,
+                markerfacecolor=_fill_colour(mark.symbol),
             )  # fmt: skip
     return axes
 
@@ -258,14 +246,13 @@ def _name_spans(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
 
 def _write_dropper_lengths(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     """Lengths of the droppers [m] beside them, or above short ones, as far as there is room."""
-    last = -np.inf
+    last, view = -np.inf, drawing.view("z", row)
     droppers = zip(drawing.line.catenary.droppers, drawing.line.state.dropper_length, strict=True)
     for dropper, length in sorted(droppers, key=lambda item: item[0].position):
-        inside = row.start <= dropper.position <= row.end
-        if not inside or drawing.scale * (dropper.position - last) < LABEL_SPACE:
+        if not view.contains(dropper.position) or drawing.scale * (dropper.position - last) < LABEL_SPACE:
             continue
         last = dropper.position
-        lower, upper = (drawing.deflection(name, "z", last) for name in (dropper.lower, dropper.upper))
+        lower, upper = (view.deflection(name, last) for name in (dropper.lower, dropper.upper))
         fits = FILLED * SIDE_VIEW * (upper - lower) / np.ptp(axes.get_ylim()) >= LABEL_LENGTH
         axes.annotate(
             f"{length:.3f}", (last, (lower + upper) / 2 if fits else upper), xytext=(-1, 0 if fits else 2),
@@ -276,13 +263,12 @@ def _write_dropper_lengths(axes: Axes, drawing: LineDrawing, row: DrawingRow) ->
 
 def _draw_marks(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     """Sensors and masses; neighbouring texts stand together, below the contact wire or above another wire."""
-    marks = sorted(
-        (mark for mark in drawing.marks if row.start <= mark.position <= row.end),
-        key=lambda mark: (mark.wire, mark.position),
-    )
+    view = drawing.view("z", row)
+    inside = (mark for mark in drawing.marks if view.contains(mark.position))
+    marks = sorted(inside, key=lambda mark: (mark.wire, mark.position))
     labels: list[tuple[DrawnMark, list[str]]] = []
     for mark in marks:
-        height = drawing.deflection(mark.wire, "z", mark.position)
+        height = view.deflection(mark.wire, mark.position)
         axes.plot(mark.position, height, SYMBOLS[mark.symbol], color=INK, markersize=4, clip_on=False, zorder=5)
         last = labels[-1][0] if labels else None
         if last and last.wire == mark.wire and drawing.scale * (mark.position - last.position) < MARK_SPACE:
@@ -293,7 +279,7 @@ def _draw_marks(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     for mark, texts in labels:
         below = mark.wire in contact_wires
         axes.annotate(
-            ", ".join(texts), (mark.position, drawing.deflection(mark.wire, "z", mark.position)),
+            ", ".join(texts), (mark.position, view.deflection(mark.wire, mark.position)),
             xytext=(0, -5 if below else 5), textcoords="offset points", fontsize=5.5, ha="center",
             va="top" if below else "bottom", color=INK, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3},
         )  # fmt: skip
@@ -305,36 +291,6 @@ def _draw_arms(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
         axes.plot([position] * 2, [claw, hinge], color=INK, linewidth=1.0)
 
 
-# Points and shapes of a line at rest, for its drawings.
-def find_deflection(line: DiscretisedLine, wire: str, field: str, position: RealArray | float) -> RealArray:
-    """Height (`z`) or lateral position (`y`) of a wire at rest.
-
-    Args:
-        line: Line at rest.
-        wire: Name of the wire.
-        field: `z` or `y`.
-        position: Positions along the line [m].
-
-    Returns:
-        Deflection at every position [m].
-    """
-    row = line.mesh.row_of[wire, field]
-    return np.asarray(np.interp(np.asarray(position), line.mesh.position, line.state.deflection[row, :, 0]))
-
-
-def list_element_marks(catenary: Catenary) -> list[DrawnMark]:
-    """Points of all elements of a line, by their kinds in the order of `Symbol`."""
-    order = get_args(Symbol)
-    marks = [mark for element in ELEMENTS for mark in element.mark(catenary)]
-    return sorted(marks, key=lambda mark: order.index(mark.symbol))
-
-
-def list_connections(catenary: Catenary) -> list[DrawnConnection]:
-    """Lines between two wires of all elements of a line."""
-    return [connection for element in ELEMENTS for connection in element.connect(catenary)]
-
-
-# Points in the drawing of a line: those of its elements, sensors and dropped masses of a case.
 def list_labelled_marks(catenary: Catenary) -> tuple[DrawnMark, ...]:
     """Points of the elements of a line that have a text."""
     return tuple(mark for mark in list_element_marks(catenary) if mark.text)

@@ -1,22 +1,24 @@
-"""Derived values of a case: its line at rest, and its train at the start; `derived_format` defines them."""
+"""Derived values of a case: the conventions of its equations as numbers, sent to programs beside the inputs.
+
+Lists follow the order of the line: parts of parallel wires follow each other at one position, wire 1 first. Lists of
+droppers have one list per span. Values of arms and supports are one number if they are all equal, and else a list.
+"""
+
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.sourced_table import InputTable
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.derived_line import build_derived_line
-from pantocheck.conformance.line.elements.derived_numbers import round_number, round_numbers, round_positions
+from pantocheck.conformance.line.derived_line import DerivedLine, build_derived_line
+from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_number, round_numbers, round_positions
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.records.sidecar_tables import StartTable
 from pantocheck.conformance.runs.case_run import start_forces
-from pantocheck.conformance.runs.derived_format import (
-    Derived,
-    DerivedEvaluation,
-    DerivedPantograph,
-    DerivedStart,
-    DerivedTrain,
-)
 from pantocheck.conformance.runs.uplift_tuning import (
     TOLERANCE,
     compute_working_height,
@@ -28,6 +30,88 @@ from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.statics.contact_wires import touched_rows
 from pantocheck.model.statics.elasticity import height_under_forces
 
+
+class DerivedPantograph(InputTable):
+    """Pantograph at the start: M z'' + C z' + K z = constant_force - contact force on the head.
+
+    z counts upwards from the zero of all heights; its unknowns are the masses of a chain from base to head, the degrees
+    of freedom of the matrices, or the modes.
+    """
+
+    uplift_force_N: float
+    """Uplift force for which this table holds [N]; with target_mean_force_N: start of the tuning."""
+    working_height_m: float
+    """Static height of the head under the uplift force: mean uplift of the contact wire over
+    working_height_positions_m, plus its nominal height, plus uplift force / contact stiffness [m].
+    """
+    constant_force: Numbers
+    """Constant force on every unknown: uplift force, and force of the springs at z = 0 [N; modes: N kg^-1/2]."""
+    contact_stiffness_N_m: float
+    """Contact force = max(0, stiffness (height of the head - height of the wire)) [N/m]."""
+    contact_force_share: float
+    """Share of every contact wire at the start [-]."""
+    start_m: float
+    """Position at the start [m]."""
+    start_force_N: float
+    """Contact force at the start [N]."""
+    start_wire_height_m: float
+    """Height of the contact wire at the position of the head at the start [m]."""
+    start_displacement: Numbers
+    """z of every unknown at the start [m; modes: m kg^1/2]."""
+
+
+class DerivedStart(StartTable):
+    """Start of the run, and its motion from the time 0 on."""
+
+    speed_m_s: float
+    """Speed of the train from the time 0 on [m/s]."""
+    line_velocity_m_s: float = 0.0
+    """Velocity of every point of line and pantographs [m/s]."""
+    duration_s: float
+    """Simulated time [s]."""
+
+
+class DerivedEvaluation(InputTable):
+    """Conventions of the quantities. Mean, bands and contact loss use the unfiltered force."""
+
+    time_step_s: float
+    """Time step of the reference simulator, and time of its first sample [s]."""
+    section_m: tuple[float, float]
+    """Analysis section [m]: samples at start <= position < end of their own pantograph."""
+    bands_Hz: Annotated[tuple[tuple[float, float], ...], Field(strict=False)]
+    """Bands ]low, high] of the amplitude spectrum of the section, without window [Hz]."""
+    filter_passes: int
+    """Passes of the filter over the whole record, 2: forwards and back."""
+    filter_pass_order: int
+    """Order of the Butterworth filter of a single pass."""
+    filter_pass_cutoff_Hz: float
+    """-3 dB frequency of a single pass at 1 / time_step_s, by the bilinear transform [Hz]."""
+    std_degrees_of_freedom: int = 0
+    """Subtracted from the number of samples in the standard deviation."""
+    tuned_mean_tolerance_N: float
+    """Largest difference of a tuned mean contact force from target_mean_force_N [N]."""
+
+
+class DerivedTrain(InputTable):
+    """Train of the case: pantographs, start and evaluation."""
+
+    pantographs: Annotated[tuple[DerivedPantograph, ...], Field(strict=False)]
+    """Pantographs in running order."""
+    working_height_positions_m: Numbers
+    """Positions of the mean uplift: the first span of the analysis section, without its end [m]."""
+    start: DerivedStart
+    evaluation: DerivedEvaluation
+
+
+class Derived(InputTable):
+    """Values that follow from the inputs of a case by the conventions of docs/systems.md, to six digits."""
+
+    line: DerivedLine
+    train: DerivedTrain | None
+    """null: check of the line at rest."""
+
+
+# Computation of the values.
 ELEMENT_M = 0.125
 """Element length for the derived values [m]; lengths are converged to 0.02 mm, dropper forces to 0.005 N."""
 

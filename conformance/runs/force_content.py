@@ -26,8 +26,15 @@ from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding, worst_finding
-from pantocheck.conformance.runs.force_dynamics import TINY
+from pantocheck.conformance.runs.check import (
+    TINY,
+    Check,
+    Finding,
+    report_low_rate,
+    report_not_made,
+    windowed_spectrum,
+    worst_finding,
+)
 
 LOWER_BAND_HZ = (5.0, 20.0)
 """Edges of the band of reference [Hz]."""
@@ -54,7 +61,7 @@ def _check_content(case: Case, signals: RecordSignals) -> Finding | None:
         return None
     upper = min(UPPER_BAND_HZ[1], HIGHEST_SHARE_OF_RATE * record.rate)
     if upper < LOWEST_EDGE_HZ:
-        return Finding("unchecked", f"the content check was not made: a rate of {record.rate:g} Hz is too low")
+        return report_low_rate("content", record.rate)
     findings = []
     for number in signals.pantographs:
         try:
@@ -89,8 +96,7 @@ def force_content(signals: RecordSignals, number: int, upper: float) -> float:
         upper: Upper edge of the upper band [Hz].
     """
     record, force = signals.record, signals.pantographs[number].delivered
-    frequency = np.asarray(np.fft.rfftfreq(force.size, 1 / record.rate), dtype=np.float64)
-    amplitude = np.abs(np.fft.rfft((force - force.mean()) * np.hanning(force.size)))
+    frequency, amplitude = windowed_spectrum(force, record.rate)
     frequency, amplitude = frequency[frequency <= upper], amplitude[frequency <= upper]
     stated = record.filter_applied_Hz
     if stated is not None and stated <= HIGHEST_SHARE_OF_RATE * record.rate:
@@ -251,9 +257,9 @@ def _judge(number: int, other: int, differences: RealArray) -> Finding | None:
         )
         return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
     if known.size < differences.size:
-        return Finding(
-            "unchecked",
-            f"the copy check was not made: pantographs {number} and {other} have the same force, and the record lacks "
+        return report_not_made(
+            "copy",
+            f"pantographs {number} and {other} have the same force, and the record lacks "
             f"the uplift at {differences.size - known.size} of {differences.size} supports to compare",
         )
     return None

@@ -17,7 +17,14 @@ from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding, worst_finding
+from pantocheck.conformance.runs.check import (
+    TINY,
+    Check,
+    Finding,
+    report_low_rate,
+    report_not_made,
+    worst_finding,
+)
 
 LARGEST_MISFIT = 0.1
 """Largest accepted misfit. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
@@ -36,8 +43,6 @@ LONGEST_S, LONGEST_LAG_S = 300.0, 0.5
 
 CAUSAL_DELAY_PERIODS = 0.75
 """Largest delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
-
-TINY = float(np.finfo(float).tiny)
 
 SAMPLES_PER_PERIOD = 20
 """Samples per period of the cut-off: straight lines between them follow the force within a percent."""
@@ -61,9 +66,9 @@ class ResponseFit:
 def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
     record, low_pass = signals.record, case.file.filter.low_pass
     if record.contact_height is None:
-        return Finding("unchecked", "the dynamics check was not made: the record has no contact height")
+        return report_not_made("dynamics", "the record has no contact height")
     if not is_observable(low_pass.cutoff_Hz, record.rate):
-        return Finding("unchecked", f"the dynamics check was not made: a rate of {record.rate:g} Hz is too low")
+        return report_low_rate("dynamics", record.rate)
     findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
@@ -72,8 +77,7 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
         fit = fit_motion(file, force, height, step / record.rate)
         if fit is None:
-            reason = f"the head of pantograph {number} hardly moves"
-            findings.append(Finding("unchecked", f"the dynamics check was not made: {reason}"))
+            findings.append(report_not_made("dynamics", f"the head of pantograph {number} hardly moves"))
         elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
             findings.append(_diagnose(number, fit, step / record.rate, record.filter_applied_Hz))
     return worst_finding(findings)

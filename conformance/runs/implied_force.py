@@ -25,8 +25,8 @@ from pantocheck.conformance.pantograph.pantograph_model import head_receptance
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import LowPass, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding, worst_finding
-from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, TINY, head_responses, remove_free_motion
+from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
+from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, head_responses, remove_free_motion
 
 LARGEST_ERROR = 0.15
 """Largest error of the force, over its standard deviation.
@@ -166,21 +166,3 @@ IMPLIED_FORCE = Check(
     needs="contact force and contact height, to 0.1 mm",
     run=_check_implied_force,
 )
-
-
-# Step to which the values of a channel are rounded.
-COARSEST_STEP_M = 0.5e-3
-"""Steps of a rounded height or uplift from which they confirm nothing [m]; the error of steps of 0.1 mm is accepted."""
-
-SMALLEST_STEP = 1e-9
-"""Differences that binary numbers make of equal decimal ones [m]."""
-
-
-def rounding_step(values: RealArray) -> float:
-    """Smallest difference between two values [m]: the step to which they are rounded; infinite for a constant.
-
-    Args:
-        values: Samples of a channel, (n,) [m].
-    """
-    steps = np.diff(np.unique(values))
-    return float(steps[steps > SMALLEST_STEP].min(initial=np.inf))

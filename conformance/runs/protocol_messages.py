@@ -12,7 +12,7 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.force_law import PointOfForce
 from pantocheck.conformance.pantograph.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.quantities.filters import Filter
-from pantocheck.conformance.runs.derived_format import Derived
+from pantocheck.conformance.runs.derived_values import Derived
 
 PROTOCOL: Final = "pantocheck.command/1"
 """Version of the protocol."""

@@ -1,17 +1,200 @@
-"""All checks of a record, in the order in which they build on each other."""
+"""All checks of a record, in the order in which they build on each other, and the state of a record.
+
+The checks of positions, roll-off and mean force stand here; the others have a file each.
+"""
 
 from collections.abc import Mapping
 from typing import Literal
 
+import numpy as np
+
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.lift_force import LiftForce
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
+from pantocheck.conformance.quantities.filters import is_observable, is_same_cutoff
+from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
+from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
+from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, CheckName, Finding
+from pantocheck.conformance.runs.check import (
+    TINY,
+    Check,
+    CheckName,
+    Finding,
+    report_low_rate,
+    report_not_made,
+    windowed_spectrum,
+    worst_finding,
+)
 from pantocheck.conformance.runs.force_content import CONTENT, COPY
 from pantocheck.conformance.runs.force_dynamics import DYNAMICS
 from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
-from pantocheck.conformance.runs.record_positions import COVERAGE, MEAN_FORCE, MOTION, ROLL_OFF
 from pantocheck.conformance.runs.support_coincidence import COINCIDENCE
 from pantocheck.conformance.runs.support_passing import SUPPORT_PASSING
+
+
+def _check_coverage(_: Case, signals: RecordSignals) -> Finding | None:
+    for number, pantograph in signals.pantographs.items():
+        try:
+            pantograph.inside  # noqa: B018 - raises where the section is not covered
+        except SectionNotCovered as reason:
+            return Finding("contradiction", f"the record of pantograph {number} is cut short: {reason}")
+    return None
+
+
+def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
+    record = signals.record
+    elapsed = record.time[-1] - record.time[0]
+    for number, position in enumerate(record.position, 1):
+        speed = (position[-1] - position[0]) / elapsed
+        if not abs(speed / record.speed - 1) <= SPEED_TOLERANCE:
+            return Finding(
+                "contradiction",
+                f"pantograph {number} advances at {3.6 * speed:.4g} km/h by position and time, "
+                f"the record states {3.6 * record.speed:.4g} km/h",
+            )
+    return None
+
+
+COVERAGE = Check(
+    name="coverage",
+    must_hold="every pantograph crosses the whole analysis section",
+    why="a record that ends early can have plausible statistics",
+    needs="position",
+    run=_check_coverage,
+)
+
+MOTION = Check(
+    name="motion",
+    must_hold="the positions advance with the speed of the train",
+    why="a wrong sampling rate or unit of position shifts the analysis section",
+    needs="position, time and speed",
+    run=_check_motion,
+)
+
+
+# Roll-off check: above the cut-off, the spectrum of a filtered force must agree with the stated filter.
+STOP_BAND = (2.0, 2.5)
+"""Edges of the compared band, in cut-offs: high enough for orders to differ, low enough to stay above rounding."""
+
+MIN_ROLL_OFF_LINES = 10
+"""Smallest number of spectral lines in the band; with fewer, one peak decides."""
+
+CONTRADICTION, DOUBT = 1.0, 0.5
+"""Thresholds of a ratio: RMS of the implied unfiltered force in the band, divided by its RMS below the cut-off.
+
+The ratio of the reference cases is about 0.14. No contact force reaches a ratio of 1."""
+
+
+def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
+    """Check that the unfiltered force implied by the delivered one is plausible.
+
+    The spectrum is divided by the gain of the filter of the case. A force that was not filtered, or by a filter of
+    too low an order, then has more content above the cut-off than any contact force.
+    """
+    record, low_pass = signals.record, case.file.filter.low_pass
+    applied, cutoff = record.filter_applied_Hz, low_pass.cutoff_Hz
+    if applied is None or not is_same_cutoff(applied, cutoff):
+        return None  # delivered unfiltered, or filtered again by the suite
+    if not is_observable(STOP_BAND[1] * cutoff, record.rate):
+        return report_low_rate("roll-off", record.rate)
+    if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
+        return report_not_made("roll-off", "the record is too short")
+    frequency = np.asarray(np.fft.rfftfreq(record.time.size, 1 / record.rate), dtype=np.float64)
+    below = (frequency > 0) & (frequency <= cutoff)
+    above = (frequency > STOP_BAND[0] * cutoff) & (frequency <= STOP_BAND[1] * cutoff)
+    gain = low_pass.gain(frequency[above], record.rate)
+    findings = []
+    for number, force in enumerate(record.force, 1):
+        amplitude = windowed_spectrum(force, record.rate)[1]
+        implied = np.sqrt(np.sum((amplitude[above] / gain) ** 2))
+        share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), TINY))
+        if share > DOUBT:
+            text = (
+                f"pantograph {number}: the stated filter of the force ({applied:g} Hz, order {low_pass.order}) is not "
+                f"plausible; before this filter, the force would have {share:.2g} times as much content in "
+                f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz; "
+                "deliver the unfiltered force"
+            )
+            findings.append(Finding("contradiction" if share > CONTRADICTION else "doubt", text))
+    return worst_finding(findings)
+
+
+ROLL_OFF = Check(
+    name="roll-off",
+    must_hold="above the cut-off, a filtered force falls off like the stated filter",
+    why="a weaker filter, or none, increases the standard deviation by a few percent",
+    needs="filtered contact force",
+    run=_check_roll_off,
+)
+
+
+# Mean contact force against the uplift force: balance of the pantograph over the analysis section.
+#
+# The sum of the forces on the pantograph is the rate of its momentum. Over a section of duration T,
+#
+# mean(F)  =  F_0  -  K (mean(z) - z_0)  -  [M v + C z] / T,
+#
+# with the uplift force F_0, the stiffness K, damping C and mass M of the pantograph as a rigid body on its base, and
+# the height z_0 at which its base spring is unstretched. Readings of z_0 differ: static height of the head or of the
+# frame, or nominal height of the wire. They lie within twice the lift of the wire, which the largest uplift and the
+# range of the contact height measure. The other checks compare changes of the force; this one bounds its constant part.
+SHARE = 0.03
+"""Accepted relative difference of the mean force: the accepted error of the gain."""
+
+LIFTS = 2.0
+"""Accepted difference between the mean height and the unstretched base spring, over the lift of the wire."""
+
+
+def _check_mean_force(case: Case, signals: RecordSignals) -> Finding | None:
+    try:
+        uplift = signals.line.largest_uplift
+        parts = zip(signals.pantographs.items(), case.pantographs, case.lift_forces, strict=True)
+        return worst_finding(
+            finding
+            for (number, pantograph), file, lift in parts
+            if (finding := _compare(number, pantograph, file, lift, uplift)) is not None
+        )
+    except QuantityUnavailable:
+        return None  # other checks state which channel is missing
+
+
+def _compare(
+    number: int, pantograph: PantographSignals, file: PantographFile, lift: LiftForce, uplift: float
+) -> Finding | None:
+    force, height, rate = pantograph.delivered, pantograph.height, pantograph.force.rate
+    expected = lift.target_mean_force or lift.uplift_force
+    if height.size < 3:
+        return None
+    tolerance = SHARE * expected
+    if lift.target_mean_force is None:
+        model = build_pantograph(file, 0.0, 0.0)
+        rigid = np.ones(model.head.size) if file.chain is not None else model.head / (model.head @ model.head)
+        mass, damping, stiffness = (
+            float(rigid @ part @ rigid) for part in (model.mass, model.damping, model.stiffness)
+        )
+        velocity = np.gradient(height, 1 / rate)
+        impulse = mass * (velocity[-1] - velocity[0]) + damping * (height[-1] - height[0])
+        tolerance += stiffness * LIFTS * max(uplift, float(np.ptp(height))) + abs(float(impulse)) * rate / height.size
+    difference = float(force.mean()) - expected
+    if abs(difference) <= tolerance:
+        return None
+    return Finding(
+        "doubt",
+        f"the mean force of pantograph {number} is {force.mean():.4g} N; the balance of the pantograph with "
+        f"{expected:g} N allows a difference of {tolerance:.2g} N",
+    )
+
+
+MEAN_FORCE = Check(
+    name="mean force",
+    must_hold="the mean contact force balances the uplift force, up to the base spring and the momentum",
+    why="a constant added to the force changes its extremes, but neither its variation nor the motion",
+    needs="contact force, contact height and uplift at supports",
+    run=_check_mean_force,
+)
+
 
 RECORD_CHECKS: tuple[Check, ...] = (
     COVERAGE, MOTION, SUPPORT_PASSING, COINCIDENCE, ROLL_OFF, DYNAMICS, IMPLIED_FORCE, MEAN_FORCE,

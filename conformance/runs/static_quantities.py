@@ -1,12 +1,14 @@
 """Quantities of a line at rest from the reference simulator."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.conformance.line.geometry import ListedSpans
-from pantocheck.conformance.line.line_discretisation import discretise_line
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.evaluation import Value
@@ -42,8 +44,9 @@ def compute_static_quantities(case: Case, line: DiscretisedLine) -> dict[str, Va
     Returns:
         Values by name of quantity.
     """
-    quantities: dict[str, Value] = {"presag_mm": _presag(case.line, line)}
     span = case.line.geometry.span(case.line.middle_span)
+    presags = _presags(case.line, line)[_droppers(line.catenary, *span)]
+    quantities: dict[str, Value] = {"presag_mm": tuple(map(float, presags))}
     quantities |= _dropper_lengths(line, *span) | _elasticity(line, *span) | _waves(case, line.catenary)
     for element in ELEMENTS:
         quantities |= element.measure(case.line, line)
@@ -92,12 +95,19 @@ def _element(line: DiscretisedLine) -> float:
     return float(np.diff(line.mesh.position).max())
 
 
-def _presag(file: LineFile, line: DiscretisedLine) -> tuple[float, ...]:
-    span = file.geometry.span(file.middle_span)
-    droppers = [line.catenary.droppers[i] for i in _droppers(line.catenary, *span)]
-    height = [line.state.deflection[line.mesh.row_of[d.lower, "z"], line.mesh.station(d.position), 0] for d in droppers]
+def _presags(file: LineFile, line: DiscretisedLine) -> RealArray:
+    """Pre-sag at every dropper, below the straight lines between the supports [mm]."""
+    droppers, mesh = line.catenary.droppers, line.mesh
+    rows = [mesh.row_of[dropper.lower, "z"] for dropper in droppers]
+    stations = [mesh.station(dropper.position) for dropper in droppers]
     chord = file.layout.chord_height(np.array([dropper.position for dropper in droppers]))
-    return tuple(float(1e3 * (straight - z)) for straight, z in zip(chord, height, strict=True))
+    return np.asarray(1e3 * (chord - line.state.deflection[rows, stations, 0]))
+
+
+def _list_elasticities(line: DiscretisedLine, positions: RealArray) -> Iterator[tuple[str, RealArray]]:
+    """Begin of the name of each elasticity, and its values at positions (n,) [mm/N]."""
+    for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
+        yield name, np.asarray(1e3 * static_uplift(line, positions, load) / load)
 
 
 @keep_with_line
@@ -118,8 +128,7 @@ def _dropper_lengths(line: DiscretisedLine, start: float, end: float) -> dict[st
 def _elasticity(line: DiscretisedLine, start: float, end: float) -> dict[str, Value]:
     positions = sample_span(start, end)
     quantities: dict[str, Value] = {}
-    for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
-        elasticity = 1e3 * static_uplift(line, positions, load) / load
+    for name, elasticity in _list_elasticities(line, positions):
         quantities[f"{name}_mm_N"] = float(elasticity.max())
         quantities[f"{name}_non_uniformity_pct"] = 100 * non_uniformity(elasticity)
         quantities[f"{name}_along_span_mm_N"] = tuple(map(float, elasticity))
@@ -158,31 +167,20 @@ def compute_quantities_along_line(file: LineFile, line: DiscretisedLine) -> dict
     """
     if not isinstance(file.geometry, ListedSpans):
         return {}
-    return _statics_along_line_elasticity(file, line) | (
-        {} if len(file.section_places) > 1 else _statics_along_line_droppers(file, line)
-    )
+    quantities = _elasticity_of_spans(file, line)
+    if len(file.section_places) == 1:
+        quantities["presag_along_line_mm"] = tuple(map(float, _presags(file, line)))
+        quantities["dropper_length_along_line_m"] = tuple(map(float, line.state.dropper_length))
+    return quantities
 
 
-def _statics_along_line_elasticity(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
+def _elasticity_of_spans(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
     spans = file.geometry.spans
     positions = np.concatenate([sample_span(*file.geometry.span(number)) for number in range(1, spans + 1)])
     quantities: dict[str, Value] = {}
-    for name, load in (("elasticity", SMALL_LOAD), ("elasticity_200_N", LARGE_LOAD)):
-        along = 1e3 * static_uplift(line, positions, load) / load
+    for name, along in _list_elasticities(line, positions):
         by_span = along.reshape(spans, SAMPLES_PER_SPAN)
         quantities[f"{name}_of_spans_mm_N"] = tuple(map(float, by_span.max(axis=1)))
         quantities[f"{name}_non_uniformity_of_spans_pct"] = tuple(100 * non_uniformity(span) for span in by_span)
         quantities[f"{name}_along_line_mm_N"] = tuple(map(float, along))
     return quantities
-
-
-def _statics_along_line_droppers(file: LineFile, line: DiscretisedLine) -> dict[str, Value]:
-    """Pre-sag below the straight lines between the supports, and lengths with bending and stagger."""
-    droppers, mesh = line.catenary.droppers, line.mesh
-    rows = [mesh.row_of[dropper.lower, "z"] for dropper in droppers]
-    stations = [mesh.station(dropper.position) for dropper in droppers]
-    chord = file.layout.chord_height(np.array([dropper.position for dropper in droppers]))
-    return {
-        "presag_along_line_mm": tuple(map(float, 1e3 * (chord - line.state.deflection[rows, stations, 0]))),
-        "dropper_length_along_line_m": tuple(map(float, line.state.dropper_length)),
-    }

@@ -19,9 +19,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding, worst_finding
-from pantocheck.conformance.runs.force_dynamics import TINY
-from pantocheck.conformance.runs.implied_force import COARSEST_STEP_M, rounding_step
+from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
 from pantocheck.conformance.runs.support_passing import rest_heights
 
 LARGEST_DEVIATION_M = 1e-3

@@ -31,8 +31,7 @@ from pantocheck.conformance.line.line_layout import SpanLayout, SupportLayout
 from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import Check, Finding
-from pantocheck.conformance.runs.force_dynamics import TINY
+from pantocheck.conformance.runs.check import TINY, Check, Finding, report_low_rate, report_not_made
 
 PASSING_TOLERANCE_M = 5.0
 """Accepted distance between a support and the pantograph whose kink passes it [m]: the error of a measured position."""
@@ -69,9 +68,9 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
     try:
         passages = _Passages(case, signals)
     except QuantityUnavailable as reason:
-        return Finding("unchecked", f"the support passing check was not made: {reason}")
+        return report_not_made("support passing", str(reason))
     if passages.length > PASSING_TOLERANCE_M or not is_observable(cutoff, record.rate):
-        return Finding("unchecked", f"the support passing check was not made: a rate of {record.rate:g} Hz is too low")
+        return report_low_rate("support passing", record.rate)
     near = np.abs(passages.shifts) <= PASSING_TOLERANCE_M
     unclear = []
     for number in signals.pantographs:
@@ -92,7 +91,7 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
             unclear.append(str(number))
     if unclear:
         text = f"the uplift at the supports shows no clear passage of pantograph {', '.join(unclear)}"
-        return Finding("unchecked", f"the support passing check was not made: {text}")
+        return report_not_made("support passing", text)
     return None
 
 

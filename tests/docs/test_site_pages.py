@@ -16,7 +16,7 @@ from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities import filters
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.runs import record_positions
+from pantocheck.conformance.runs import record_checks
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -55,8 +55,8 @@ def test_every_threshold_has_its_value_and_a_reason(pages: dict[str, str]) -> No
     assert [name for name, _, reason in rows if len(reason) < 10] == []
     values = {name: value for name, value, _ in rows}
     assert values["HIGHEST_SHARE_OF_RATE"] == f"{filters.HIGHEST_SHARE_OF_RATE:g}"
-    assert values["STOP_BAND"] == ", ".join(f"{value:g}" for value in record_positions.STOP_BAND)
-    assert values["CONTRADICTION"] == f"{record_positions.CONTRADICTION:g}"  # one of two numbers of a statement
+    assert values["STOP_BAND"] == ", ".join(f"{value:g}" for value in record_checks.STOP_BAND)
+    assert values["CONTRADICTION"] == f"{record_checks.CONTRADICTION:g}"  # one of two numbers of a statement
 
 
 def test_every_quantity_and_public_name_is_described(pages: dict[str, str]) -> None:

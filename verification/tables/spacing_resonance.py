@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.cases.library import library_folder, list_library, load_case
 from pantocheck.conformance.core.figure_style import FULL, render_svg
-from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model.modal.modes import compute_modes
 

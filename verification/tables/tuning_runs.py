@@ -10,7 +10,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import PassageRun, run_passage
 from pantocheck.conformance.runs.uplift_tuning import estimate_uplift_forces, tune_uplift

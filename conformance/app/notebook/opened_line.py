@@ -14,9 +14,9 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.drawn_axes import label_logarithms, provide_axes
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.line.line_discretisation import discretise_line
-from pantocheck.conformance.line.line_drawing import find_deflection, list_element_marks
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_shape import find_deflection, list_element_marks
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Pantograph, static_uplift

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import GenericAlias
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
-from pydantic import Field
+from pydantic import BaseModel, Discriminator, Field
 from pydantic_core import PydanticCustomError
 
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, is_absent, validation_problem
@@ -126,6 +126,22 @@ class Element(InputTable):
     def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
         """Lines between two wires in a drawing."""
         return iter(())
+
+
+def choose_by_key(key: str, with_key: type[BaseModel], without: type[BaseModel]) -> Discriminator:
+    """Choice between two forms of a table by a key that only one of them has; pydantic reports the chosen form alone.
+
+    Args:
+        key: Key of the one form.
+        with_key, without: Models of both forms; each has its name as tag.
+    """
+
+    def name_form(table: object) -> str:
+        if isinstance(table, dict):
+            return (with_key if key in table else without).__name__
+        return type(table).__name__
+
+    return Discriminator(name_form)
 
 
 def find_position_problems(line: "LineFile", key: str, positions: list[float]) -> Problems:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -18,39 +18,31 @@ from pantocheck.conformance.core.sourced_table import (
 )
 from pantocheck.conformance.line.elements.derived_numbers import BySupport, Numbers, join_equal, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
-from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
+from pantocheck.conformance.line.elements.single_support import create_changes
 from pantocheck.model import Catenary, Kind, MessengerSupport
 
 if TYPE_CHECKING:
     from pantocheck.conformance.line.line_layout import LineLayout
 
-HELD = Feature("messenger_wire_held_along_track")
-SupportStiffness = Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
-SupportDamper = Annotated[NonNegative, Field(description="vertical damper [N s/m]"), Feature("support_dampers")]
-AlongTrack = Annotated[
-    Literal["free", "fixed"],
-    Field(
-        description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
-        "fixed: its tension changes with its elongation between two supports"
-    ),
-    HELD,
-]
-
 
 class MessengerSupportTable(SourcedTable):
     """Support of the messenger wire: a vertical spring and damper."""
 
-    stiffness_N_m: SupportStiffness
-    damping_N_s_m: SupportDamper = 0.0
-    along_track: AlongTrack = "free"
+    stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
+    damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]"), Feature("support_dampers")] = (
+        0.0
+    )
+    along_track: Annotated[
+        Literal["free", "fixed"],
+        Field(
+            description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
+            "fixed: its tension changes with its elongation between two supports"
+        ),
+        Feature("messenger_wire_held_along_track"),
+    ] = "free"
 
 
-class MessengerSupportChanges(InputTable):
-    """Values of the messenger support at one support that differ from the table messenger_support of the line."""
-
-    stiffness_N_m: Annotated[SupportStiffness | None, SINGLE_SUPPORTS] = None
-    damping_N_s_m: Annotated[SupportDamper | None, Feature("support_dampers")] = None
-    along_track: Annotated[AlongTrack | None, HELD] = None
+MessengerSupportChanges: Any = create_changes("MessengerSupportChanges", MessengerSupportTable, "messenger_support")
 
 
 class DerivedMessengerSupports(InputTable):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -26,7 +26,7 @@ from pantocheck.conformance.line.elements.derived_numbers import (
     round_positions,
 )
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
-from pantocheck.conformance.line.elements.single_support import SINGLE_SUPPORTS
+from pantocheck.conformance.line.elements.single_support import create_changes
 from pantocheck.model import Catenary, Kind, SteadyArm
 
 if TYPE_CHECKING:
@@ -34,43 +34,38 @@ if TYPE_CHECKING:
 
 ARMS = Feature("steady_arms")
 ARM_MASS = Feature("steady_arm_mass")
-ARM_DAMPER = Feature("steady_arm_dampers")
-PUSHING = Feature("pushing_steady_arms")
-ArmStiffness = Annotated[
-    float | None,
-    Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
-    ARMS,
-]
-StaticShare = Annotated[
-    Literal["level", "none"],
-    Field(
-        description="weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the "
-        "support; none: no weight"
-    ),
-]
-ArmLength = Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]"), ARMS]
-ArmMass = Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]"), ARM_MASS]
+
 ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg]")]
-ArmDamper = Annotated[
-    NonNegative, Field(le=1e6, description="vertical damper between wire and ground [N s/m]"), ARM_DAMPER
-]
-ArmAction = Annotated[
-    Literal["pull", "push"],
-    Field(description="kind of lateral force of the arm on the contact wire"),
-    PUSHING,
-]
 
 
 class SteadyArmTable(SourcedTable):
     """Steady arm, which holds the contact wire at a support."""
 
-    vertical_stiffness_N_m: ArmStiffness = None
-    static_share: StaticShare
-    length_m: ArmLength = None
-    mass_kg_m: ArmMass = 0.0
+    vertical_stiffness_N_m: Annotated[
+        float | None,
+        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
+        ARMS,
+    ] = None
+    static_share: Annotated[
+        Literal["level", "none"],
+        Field(
+            description="weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the "
+            "support; none: no weight"
+        ),
+    ]
+    length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]"), ARMS] = None
+    mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]"), ARM_MASS] = 0.0
     clamp_kg: Annotated[ClampMass, ARM_MASS] = 0.0
-    vertical_damper_N_s_m: ArmDamper = 0.0
-    acts: ArmAction = "pull"
+    vertical_damper_N_s_m: Annotated[
+        NonNegative,
+        Field(le=1e6, description="vertical damper between wire and ground [N s/m]"),
+        Feature("steady_arm_dampers"),
+    ] = 0.0
+    acts: Annotated[
+        Literal["pull", "push"],
+        Field(description="kind of lateral force of the arm on the contact wire"),
+        Feature("pushing_steady_arms"),
+    ] = "pull"
 
     @cross_check
     def _check_stiffness(self) -> Problems:
@@ -82,16 +77,7 @@ class SteadyArmTable(SourcedTable):
             )
 
 
-class SteadyArmChanges(InputTable):
-    """Values of the steady arm at one support that differ from the table steady_arm of the line."""
-
-    vertical_stiffness_N_m: ArmStiffness = None
-    static_share: Annotated[StaticShare | None, SINGLE_SUPPORTS] = None
-    length_m: ArmLength = None
-    mass_kg_m: Annotated[ArmMass | None, ARM_MASS] = None
-    clamp_kg: Annotated[ClampMass | None, ARM_MASS] = None
-    vertical_damper_N_s_m: Annotated[ArmDamper | None, ARM_DAMPER] = None
-    acts: Annotated[ArmAction | None, PUSHING] = None
+SteadyArmChanges: Any = create_changes("SteadyArmChanges", SteadyArmTable, "steady_arm")
 
 
 class DerivedSteadyArms(InputTable):

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field, Tag
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.features import Feature
@@ -17,7 +17,7 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.elements.element import Element
+from pantocheck.conformance.line.elements.element import Element, choose_by_key
 from pantocheck.model import Catenary, Kind, Wire
 
 if TYPE_CHECKING:
@@ -78,16 +78,10 @@ class RandomLengthChanges(InputTable):
     """Seed of the changes."""
 
 
-def _form_of_changes(table: Any) -> str:
-    if isinstance(table, dict):
-        return "RandomLengthChanges" if "tolerance_m" in table else "ListedLengthChanges"
-    return type(table).__name__
-
-
 DropperVariation = Annotated[
     Annotated[ListedLengthChanges, Tag("ListedLengthChanges")]
     | Annotated[RandomLengthChanges, Tag("RandomLengthChanges")],
-    Discriminator(_form_of_changes),
+    choose_by_key("tolerance_m", RandomLengthChanges, ListedLengthChanges),
 ]
 
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field, Tag
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.features import Feature
@@ -20,7 +20,7 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_numbers, round_positions
-from pantocheck.conformance.line.elements.element import Element
+from pantocheck.conformance.line.elements.element import Element, choose_by_key
 from pantocheck.model import Catenary, Kind, Wire
 from pantocheck.model.description.irregularity import Irregularity, SpectralDensity, realise_irregularity
 
@@ -97,16 +97,10 @@ def _check_pairs(first: str, places: tuple[float, ...], second: str, values: tup
         )
 
 
-def _form_of_irregularity(table: Any) -> str:
-    if isinstance(table, dict):
-        return "SpectralIrregularity" if "density_m3" in table else "MeasuredIrregularity"
-    return type(table).__name__
-
-
 IrregularityTable = Annotated[
     Annotated[MeasuredIrregularity, Tag("MeasuredIrregularity")]
     | Annotated[SpectralIrregularity, Tag("SpectralIrregularity")],
-    Discriminator(_form_of_irregularity),
+    choose_by_key("density_m3", SpectralIrregularity, MeasuredIrregularity),
 ]
 
 

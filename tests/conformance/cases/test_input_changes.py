@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
+from pantocheck.conformance import open_case
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
@@ -209,3 +210,17 @@ def test_number_for_a_key_that_holds_a_list_is_a_list_of_one_item() -> None:
     """A key that also takes a single number keeps it."""
     changes = parse_changes(["spacing_m=85", "speed_km_h=300", "line.droppers.x_m[2]=9.5"])
     assert [change.value for change in changes] == [[85], 300, 9.5]
+
+
+# Changes of the damping of a line that its case replaces.
+@pytest.mark.parametrize("key", ["modal", "contact_wire.stiffness_coefficient_s"])
+def test_a_change_without_effect_is_refused(key: str) -> None:
+    """The case has its own damping of the wires, and modal bands are valid with one fit only."""
+    value = [] if key == "modal" else 1e-3
+    with pytest.raises(InputError, match=f"line.damping.{key}: has no effect.*\n.*key damping of the case"):
+        open_case("vovan2015/mass-drop/printed").with_({f"line.damping.{key}": value})
+
+
+def test_a_damping_that_the_case_keeps_can_be_changed() -> None:
+    case = open_case("vovan2015/mass-drop/printed").with_({"line.damping.stitch_wire.stiffness_coefficient_s": 1e-3})
+    assert case.case.line.damping.stitch_wire.stiffness_coefficient_s == 1e-3

@@ -239,7 +239,10 @@ def test_length_of_a_short_dropper_stands_above_it() -> None:
     written = [text for text in side.texts if text.get_rotation() == 90]
     positions = {text.get_va() for text in written}
     assert positions == {"center", "bottom"}
-    upper = {d.position: drawing.deflection(d.upper, "z", d.position) for d in drawing.line.catenary.droppers}
+    upper = {
+        d.position: drawing.view("z", drawing.rows[0]).deflection(d.upper, d.position)
+        for d in drawing.line.catenary.droppers
+    }
     for text in written:
         if text.get_va() == "bottom":
             assert text.xy[1] == pytest.approx(upper[text.xy[0]])

@@ -13,7 +13,7 @@ from helpers.short_cases import shorten_case
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.csv_table import write_csv_table
-from pantocheck.conformance.line.line_discretisation import discretise_line
+from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_reading import read_record

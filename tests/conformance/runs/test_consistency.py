@@ -15,7 +15,7 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.force_dynamics import fit_motion
-from pantocheck.conformance.runs.record_checks import check_record
+from pantocheck.conformance.runs.record_checks import check_record, record_state
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -142,3 +142,25 @@ def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, 
     bare = grade_case(case_250, Delivered(replace(record, contact_height=None)), "secondary")
     assert bare.criteria
     assert any(note.startswith("the dynamics check was not made") for note in bare.notes)
+
+
+# State of a record by the findings of its checks.
+def test_record_without_findings_is_verified() -> None:
+    assert record_state({}) == ("verified", "every consistency check that applies confirms the record")
+
+
+def test_missing_channels_and_doubts_leave_a_record_unverified() -> None:
+    findings: dict[CheckName, Finding] = {
+        "support passing": Finding("unchecked", "no uplift"),
+        "dynamics": Finding("doubt", "late force"),
+    }
+    assert record_state(findings) == ("unverified", "no uplift; late force")
+
+
+def test_contradiction_outweighs_missing_channels() -> None:
+    """The missing channel is not the reason: the record cannot be graded even if it is delivered."""
+    findings: dict[CheckName, Finding] = {
+        "support passing": Finding("unchecked", "no uplift"),
+        "dynamics": Finding("contradiction", "wrong gain"),
+    }
+    assert record_state(findings) == ("contradicted", "wrong gain")

@@ -16,8 +16,7 @@ from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.case_run import build_passage, start_forces
-from pantocheck.conformance.runs.derived_format import Derived, DerivedTrain
-from pantocheck.conformance.runs.derived_values import build_derived
+from pantocheck.conformance.runs.derived_values import Derived, DerivedTrain, build_derived
 from pantocheck.model import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
 from pantocheck.model.dynamics.simulation import start_motion

@@ -1,8 +1,11 @@
 """Resolution of the reported bands: the criterion on element and time step, against measured errors."""
 
 import math
+import re
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.case import Case
@@ -10,7 +13,16 @@ from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
-from pantocheck.conformance.runs.resolution import longest_element, longest_time_step, period_error, resolution_warnings
+from pantocheck.conformance.runs.resolution import (
+    Effect,
+    list_model_uncertainty,
+    longest_element,
+    longest_time_step,
+    period_error,
+    read_effects,
+    resolution_warnings,
+    smallest_reach,
+)
 
 STD, EXTENDED = "std_force_N", "rms_20_50_N"
 FINE = (0.25, 0.5e-3)
@@ -98,3 +110,78 @@ def test_no_case_of_the_library_is_too_coarse() -> None:
     cases = [case for case in select_cases(["*"]) if not case.is_static]
     assert len(cases) >= 8
     assert [case.id for case in cases if resolution_warnings(case, case.file.discretisation)] == []
+
+
+# Warning of an active window from whose edges waves return: it comes where the contact force changes.
+SMALLEST_M = 180
+"""Half-width for 300 km/h over 360 m (4.32 s), with waves of 1.1 times 122 m/s on the messenger wire [m]."""
+
+
+def limit_window(reach: float | None) -> Case:
+    """Case of EN 50318:2002 at 300 km/h with a limited window, on a coarse mesh."""
+    case = load_case(library_folder() / "en50318-2002" / "300.toml")
+    changes = {"element_m": 1.5, "time_step_s": 0.002, "reach_m": reach}
+    discretisation = case.file.discretisation.model_copy(update=changes)
+    return replace(case, file=case.file.model_copy(update={"discretisation": discretisation}))
+
+
+def run(reach: float | None) -> tuple[np.ndarray, list[str]]:
+    """Contact force [N] and warnings on the window."""
+    delivered = ReferenceSimulator().run_unrefined(limit_window(reach))
+    assert delivered.record is not None
+    return delivered.record.force[0], [text for text in delivered.warnings if text.startswith("active window")]
+
+
+@pytest.mark.parametrize(("speed", "expected"), [(0.0, 500.0), (60.0, 320.0), (100.0, math.inf), (120.0, math.inf)])
+def test_half_width_by_hand(speed: float, expected: float) -> None:
+    """A wave of 100 m/s in 10 s: 500 m to and fro at rest; at 60 m/s 320 m, 8 s ahead and 2 s back."""
+    assert smallest_reach(100.0, speed, 10.0) == pytest.approx(expected, rel=1e-12)
+    if speed == 60.0:
+        assert expected / (100 - speed) + expected / (100 + speed) == pytest.approx(10.0, rel=1e-12)
+
+
+def test_narrow_window_changes_the_force_and_is_named() -> None:
+    """Without a limit, and with the suitable one, the forces agree to rounding (1e-6 N) and nothing is said."""
+    free, silence = run(None)
+    narrow, (warning,) = run(60.0)
+    assert np.abs(narrow - free).max() > 1.0
+    assert "60 m from the train" in warning
+    assert warning.endswith(f"Leave out reach_m, or set it to at least {SMALLEST_M}")
+    suitable, none = run(float(SMALLEST_M))
+    assert np.abs(suitable - free).max() < 1e-6
+    assert (silence, none) == ([], [])
+
+
+def test_window_that_holds_the_whole_line_is_not_named() -> None:
+    """The line is 600 m long."""
+    assert run(600.0)[1] == []
+
+
+# Model uncertainty of the reference simulator: the library holds the table of the page, a case names its effects.
+PAGE = Path(__file__).parents[3] / "docs" / "exact-model.md"
+
+
+def cells(effect: Effect) -> dict[str, str]:
+    """Sizes as the page prints them, by quantity."""
+    units = {"min_force_N": "N"}
+    relative = {name: f"{size:.1f} %" for name, size in effect.relative_pct.items()}
+    return relative | {name: f"{size:.1f} {units[name]}" for name, size in effect.absolute.items()}
+
+
+def test_page_has_the_sizes_of_the_library() -> None:
+    section = PAGE.read_text(encoding="utf-8").split("## Model uncertainty")[1].split("\n## ")[0]
+    rows = [re.split(r" *\| *", line.strip("| ")) for line in section.splitlines() if line.startswith("|")]
+    table = {row[0]: dict(zip(rows[0][1:], row[1:], strict=True)) for row in rows[2:]}
+    assert {effect.along_track: cells(effect) for effect in read_effects()} == table
+
+
+@pytest.mark.parametrize(
+    ("along_track", "start"), [("free", "Messenger wire of constant tension"), ("fixed", "Messenger wire whose")]
+)
+def test_case_names_the_effects_of_its_supports(along_track: str, start: str) -> None:
+    case = select_cases(["en50318-2002/250"])[0]
+    support = case.line.messenger_support.model_copy(update={"along_track": along_track})
+    changed = case.line.model_copy(update={"messenger_support": support})
+    (sentence,) = list_model_uncertainty(replace(case, line=changed))
+    assert sentence.startswith(start)
+    assert sentence.endswith("docs/exact-model.md.")

@@ -13,8 +13,8 @@ from pantocheck.conformance.core.features import list_features
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.derived_line import build_derived_line
 from pantocheck.conformance.line.elements.wire_spring import WireSpringTable
-from pantocheck.conformance.line.line_drawing import list_connections
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_shape import list_connections
 from pantocheck.model import Catenary, discretise, static_uplift
 from pantocheck.model.discretisation.discretised_line import make_droppers_bilateral
 

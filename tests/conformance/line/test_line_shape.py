@@ -8,11 +8,10 @@ from pydantic import ValidationError
 
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
-from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.line.line_discretisation import discretise_line
-from pantocheck.conformance.line.line_drawing import find_deflection
+from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.line.line_shape import THINNING_M, build_line_shape, find_deflection, thin_curve
 from pantocheck.conformance.pages.line_figure import line_figures, line_reference
-from pantocheck.conformance.runs.reference_simulator import THINNING_M, build_line_shape, thin_curve
+from pantocheck.conformance.results.results_format import CaseResult, RunFacts
 
 LARGEST_SHAPE = 15_000
 """Size budget of a shape in results.json [bytes]."""
@@ -21,7 +20,7 @@ LARGEST_SHAPE = 15_000
 @pytest.fixture(scope="module")
 def shape_250() -> LineShape:
     [case] = select_cases(["en50318-2002/250"])
-    return build_line_shape(case, discretise_line(case.line, 0.5))
+    return build_line_shape(case.line, case.analysed_spans, discretise_line(case.line, 0.5))
 
 
 def test_shape_covers_the_section_and_one_span_on_either_side(shape_250: LineShape) -> None:
@@ -48,7 +47,8 @@ def test_thinned_wires_stay_close_to_the_wires(shape_250: LineShape) -> None:
 @pytest.mark.parametrize("name", ["en50318-2018/ac-simple/320-twin", "en50318-2018/ac-stitched/275"])
 def test_shape_of_twelve_spans_with_stagger_stays_small(name: str) -> None:
     *_, case = select_cases([name])
-    shape = build_line_shape(case, discretise_line(case.line, case.file.discretisation.element_m))
+    line = discretise_line(case.line, case.file.discretisation.element_m)
+    shape = build_line_shape(case.line, case.analysed_spans, line)
     assert shape.plan is not None
     assert shape.last_span - shape.first_span == 11
     assert len(json.dumps(shape.model_dump(mode="json"))) < LARGEST_SHAPE
@@ -66,15 +66,15 @@ def test_lists_of_different_length_are_refused() -> None:
 
 
 def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
-    (drawn,) = select_cases(["en50318-2002/250"])
-    case = build_ungraded(drawn, "skip", "not run").model_copy(update={"id": "first", "line_shape": shape_250})
-    case = case.model_copy(update={"run": case.run.model_copy(update={"evaluated_m": (240.0, 360.0)})})
+    def drawn_case(name: str, shape: LineShape | None, section: tuple[float, float] | None) -> CaseResult:
+        return CaseResult.model_construct(id=name, line_shape=shape, run=RunFacts.model_construct(evaluated_m=section))
+
+    case, second = (drawn_case(name, shape_250, (240.0, 360.0)) for name in ("first", "second"))
     [figure] = line_figures(case, ())
     assert figure.caption.startswith("Line at rest, spans 4 to 7: side view, heights enlarged.")
-    second = case.model_copy(update={"id": "second"})
     assert line_figures(second, (case,)) == ()
     [text] = line_reference(second, (case,))
     assert text.text == "Line: as drawn in first."
-    foreign = case.model_copy(update={"id": "third", "line_shape": None})
+    foreign = drawn_case("third", None, None)
     assert line_figures(foreign, (case, foreign)) == ()
     assert line_reference(foreign, (case, foreign)) == ()
