@@ -139,7 +139,7 @@ def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Valu
 
 
 def _band_values(case: Case, record: Record) -> ValuesByOwner:
-    return evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
+    return evaluate_record(record, case.file.filter, case.line.geometry.supports).values
 
 
 def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:

@@ -18,7 +18,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_simulation import ORDER, require_mass_drop, simulate_drop
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.traces import thin_series
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table
@@ -82,7 +82,7 @@ def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
         time: Time after the release, (m,) [s]; the mass still hangs before 0.
     """
     extension = motion[MESSENGER] - motion[CONTACT]
-    low = LowPass(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
+    low = Filter(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
     return np.asarray((extension - low)[time >= 0])
 
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from pantocheck.conformance.grading.results_building import describe_uncertainty
+from pantocheck.conformance.grading.results_building import list_components
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty, combine_half_widths, map_items
 
 BOTH = Uncertainty(
@@ -27,12 +27,12 @@ def test_components_combine_by_the_root_of_the_sum_of_squares() -> None:
 
 
 def test_unknown_component_is_named_and_has_no_number() -> None:
-    parts = describe_uncertainty(BOTH)
-    assert parts["uncertainty_basis"]["start"] == "not known: one start"
-    assert parts["uncertainty_components"]["2"]["std_force_N"] == {"discretisation": 0.3, "length": 0.4}
-    assert parts["uncertainty_components"]["0"] == {"presag_mm": {"discretisation": [3.0, 0.0]}}
-    assert parts["uncertainty"]["0"]["presag_mm"] == [3.0, 0.0]
-    assert "1" not in parts["uncertainty"]
+    assert BOTH.basis["start"] == "not known: one start"
+    parts = list_components(BOTH)
+    assert parts["2"]["std_force_N"] == {"discretisation": 0.3, "length": 0.4}
+    assert parts["0"] == {"presag_mm": {"discretisation": [3.0, 0.0]}}
+    assert BOTH.combined[0]["presag_mm"] == (3.0, 0.0)
+    assert not BOTH.combined[1]
 
 
 def test_one_more_component_never_narrows_the_interval() -> None:
