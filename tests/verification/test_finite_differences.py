@@ -18,10 +18,9 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.difference_arrays import NEVER_SLACK, Model, build_model
-from verification.formulations.difference_data import Heads
-from verification.formulations.difference_line import CaseData, build_line
+from verification.formulations.difference_line import CaseData, Heads, build_line
 from verification.formulations.difference_passage import build_heads, difference_quantities, force_quantities, simulate
-from verification.formulations.difference_statics import HeldStructure, rows
+from verification.formulations.difference_rest import HeldStructure, rows
 from verification.formulations.difference_step import march
 from verification.formulations.difference_strands import Strand, Wire, lay_out
 from verification.formulations.finite_differences import reference_quantities

@@ -8,8 +8,7 @@ import numpy as np
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import Filter
 from verification.formulations.difference_arrays import Model, build_model
-from verification.formulations.difference_data import Heads
-from verification.formulations.difference_line import CaseData, build_line
+from verification.formulations.difference_line import CaseData, Heads, build_line
 from verification.formulations.difference_step import march
 from verification.formulations.difference_strands import Floats
 
