@@ -55,11 +55,7 @@ SHORT_DURATION_S = 2.0
 
 
 def sum_durations(parts: Iterable[str]) -> float:
-    """Estimated duration of parts [s].
-
-    Args:
-        parts: Names of the parts.
-    """
+    """Estimated duration of parts [s]."""
     return sum(DURATIONS_S.get(part, SHORT_DURATION_S) for part in parts)
 
 
