@@ -1,7 +1,7 @@
 """Differences of the contact forces of two runs: by frequency band, by frequency, and along the spans."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -84,7 +84,7 @@ def _filter(signals: PantographSignals, cutoff_Hz: float) -> tuple[RealArray, Re
     # The last samples of the finer series lie behind the last sample of the record.
     force = scipy.signal.resample_poly(delivered, factor, 1, padtype="line")[: (delivered.size - 1) * factor + 1]
     position = np.interp(np.arange(force.size) / factor, np.arange(delivered.size), signals.position)
-    low_pass = replace(signals.force.low_pass, cutoff_Hz=cutoff_Hz)
+    low_pass = signals.force.low_pass.change_cutoff(cutoff_Hz)
     if needs_filter(low_pass, signals.filter_applied_Hz):
         force = low_pass(force, factor * rate)
     return position, force

@@ -14,10 +14,10 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, convert_read_errors, open_file
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import ChannelNames, MeasuredTable, TableColumn
-from pantocheck.conformance.core.text_layout import find_text_layout
 from pantocheck.conformance.core.text_reading import (
     NumberedLine,
     TextLayout,
+    find_text_layout,
     is_number,
     is_thousands,
     number_error,

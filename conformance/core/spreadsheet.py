@@ -54,9 +54,6 @@ def read_spreadsheet(path: Path) -> Spreadsheet:
     The encoding is UTF-8 or UTF-16 with a byte order mark, or else UTF-8 or Windows-1252. Lines before the head line
     that begin with `#` or `sep=` are skipped.
 
-    Args:
-        path: CSV file.
-
     Raises:
         InputError: The file cannot be read, is no text, has no row or too many, or has rows of another width than its
             head line.

@@ -106,7 +106,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         return _assess_summary(path, header, profile, known_line)
     samples, sidecar, table = read_samples(path)
     try:
-        prepared = prepare_record(samples, sidecar, profile.filter.low_pass, profile.speed_tolerance_pct)
+        prepared = prepare_record(samples, sidecar, profile.filter, profile.speed_tolerance_pct)
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)

@@ -159,7 +159,7 @@ class CaseEvaluation:
 
     def _signals(self, record: Record) -> RecordSignals:
         line = self.case.line
-        return RecordSignals(record, self.case.file.filter.low_pass, line.geometry.supports, line.overlaps)
+        return RecordSignals(record, self.case.file.filter, line.geometry.supports, line.overlaps)
 
 
 def _complete(delivered: Delivered, evaluation: Evaluation | None) -> Evaluation:

@@ -3,7 +3,6 @@
 A transfer function in polynomial form overflows at high sampling rates and low cut-offs; sections do not.
 """
 
-from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -44,31 +43,30 @@ def check_observable(frequency: float, rate: float, purpose: str) -> None:
         )
 
 
-@dataclass(frozen=True)
-class LowPass:
-    """Butterworth low-pass, -3 dB at its cut-off.
-
-    `order` is the total order, the slope of the whole filter. A zero-phase filter runs a filter of half the order
-    forwards and backwards. One run of order m has the gain 1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with
-    W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear transform. The cut-off f0 of a single run is therefore
-    raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both runs together have -3 dB at the cut-off.
-    """
+class Filter(InputTable):
+    """Filter of the graded contact force."""
 
     kind: Literal["butterworth"] = "butterworth"
-    """Family of the filter."""
-    order: int = 6
-    """Total order; even for zero phase."""
-    cutoff_Hz: float = 20.0
-    """Frequency at which the whole filter has -3 dB [Hz]."""
+    """Filter type."""
+    order: Annotated[int, Field(ge=1, le=12)] = 6
+    """Total order, over both passes of a zero-phase filter."""
+    cutoff_Hz: Annotated[float, Field(gt=0, le=1000)] = 20.0
+    """Frequency of -3 dB of the whole filter [Hz]."""
     phase: Literal["zero", "causal"] = "zero"
-    """`zero` (forwards and backwards) or `causal` (forwards only, like an instrument)."""
+    """zero: forward and backward pass; causal: forward only."""
 
-    def __post_init__(self) -> None:
-        if self.order < 1 or (self.phase == "zero" and self.order % 2):
-            raise ValueError(
-                f"filter order {self.order} is not possible with phase '{self.phase}': "
-                "it must be positive, and even for zero phase"
+    @cross_check
+    def _exists(self) -> Problems:
+        if self.phase == "zero" and self.order % 2:
+            yield validation_problem(
+                "order",
+                f"{self.order} is odd",
+                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
             )
+
+    def change_cutoff(self, cutoff_Hz: float) -> "Filter":
+        """Same kind of filter with another cut-off [Hz]."""
+        return self.model_copy(update={"cutoff_Hz": cutoff_Hz})
 
     def sections(self, rate: float) -> RealArray:
         """Second-order sections of a single run, for a sampling rate [Hz].
@@ -86,7 +84,13 @@ class LowPass:
         return 2 if self.phase == "zero" else 1
 
     def single_run(self, rate: float) -> tuple[int, float]:
-        """Order and -3 dB frequency [Hz] of a single run, for a sampling rate [Hz]."""
+        """Order and -3 dB frequency [Hz] of a single run, for a sampling rate [Hz].
+
+        A zero-phase filter runs a filter of half the order forwards and backwards. One run of order m has the gain
+        1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear
+        transform. The cut-off f0 of a single run is therefore raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both
+        runs together have -3 dB at the cut-off.
+        """
         if self.phase == "causal":
             return self.order, self.cutoff_Hz
         half = self.order // 2
@@ -121,7 +125,7 @@ def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:
     return abs(stated_Hz / cutoff_Hz - 1) <= CUTOFF_TOLERANCE
 
 
-def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
+def needs_filter(low_pass: Filter, filter_applied_Hz: float | None) -> bool:
     """Whether a delivered force must still be filtered.
 
     A second filter with the same cut-off would attenuate the force by another 3 dB at the cut-off.
@@ -144,30 +148,3 @@ def needs_filter(low_pass: LowPass, filter_applied_Hz: float | None) -> bool:
             f"its content up to {low_pass.cutoff_Hz:g} Hz is not known"
         )
     return False
-
-
-class Filter(InputTable):
-    """Filter of the graded contact force."""
-
-    kind: Literal["butterworth"] = "butterworth"
-    """Filter type."""
-    order: Annotated[int, Field(ge=1, le=12)] = 6
-    """Total order, over both passes of a zero-phase filter."""
-    cutoff_Hz: Annotated[float, Field(gt=0, le=1000)] = 20.0
-    """Frequency of -3 dB of the whole filter [Hz]."""
-    phase: Literal["zero", "causal"] = "zero"
-    """zero: forward and backward pass; causal: forward only."""
-
-    @cross_check
-    def _exists(self) -> Problems:
-        if self.phase == "zero" and self.order % 2:
-            yield validation_problem(
-                "order",
-                f"{self.order} is odd",
-                'Give an even order: a zero-phase filter divides it between two passes. Or set phase = "causal".',
-            )
-
-    @property
-    def low_pass(self) -> LowPass:
-        """Low-pass with these parameters."""
-        return LowPass(self.kind, self.order, self.cutoff_Hz, self.phase)

@@ -1,7 +1,7 @@
 """Contact force of one pantograph, from which quantities are computed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_part, band_rms
-from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, LowPass, needs_filter
+from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, Filter, needs_filter
 from pantocheck.conformance.quantities.unavailable import (
     BandNotObservable,
     ChannelMissing,
@@ -77,7 +77,7 @@ class ForceChannel:
     """Contact force as delivered, (n,) [N]."""
     rate: float
     """Sampling rate [Hz]."""
-    low_pass: LowPass
+    low_pass: Filter
     """Filter of the graded force."""
     filter_applied_Hz: float | None = None
     """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
@@ -90,9 +90,9 @@ class ForceChannel:
     @cached_property
     def extended(self) -> RealArray:
         """Force filtered once by the same kind of filter at 50 Hz [N]."""
-        return self._filter_once(replace(self.low_pass, cutoff_Hz=EXTENDED_CUTOFF_HZ))
+        return self._filter_once(self.low_pass.change_cutoff(EXTENDED_CUTOFF_HZ))
 
-    def _filter_once(self, low_pass: LowPass) -> RealArray:
+    def _filter_once(self, low_pass: Filter) -> RealArray:
         return low_pass(self.delivered, self.rate) if needs_filter(low_pass, self.filter_applied_Hz) else self.delivered
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals, has_gaps
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
@@ -84,13 +84,13 @@ class _Settings:
 
     rate: float
     section: tuple[float, float]
-    low_pass: LowPass
+    low_pass: Filter
     filter_applied_Hz: float | None
     steady: NDArray[np.bool_]
 
 
 def prepare_record(
-    samples: RecordSamples, sidecar: RecordSidecar, low_pass: LowPass, speed_tolerance_pct: float
+    samples: RecordSamples, sidecar: RecordSidecar, low_pass: Filter, speed_tolerance_pct: float
 ) -> PreparedRecord:
     """Select the usable part of a record, evenly sampled in time.
 

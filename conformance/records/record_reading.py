@@ -198,10 +198,6 @@ def _fill_rows(rows: dict[int, RealArray], force: RealArray) -> RealArray | None
 def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[TableColumn, ...]]:
     """Read the table of a record.
 
-    Args:
-        path: The table.
-        sidecar: Sidecar of the record.
-
     Returns:
         rows: Rows of each channel by number from 1.
         unused: Columns that the sidecar does not use.

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import Stretch, evaluate_outside_overlaps
@@ -18,7 +18,7 @@ class RecordSignals:
 
     record: Record
     """Record of a run or a measurement."""
-    low_pass: LowPass
+    low_pass: Filter
     """Filter of the graded force."""
     line_supports: tuple[float, ...] | None = None
     """Positions of all supports of the line [m]; None if they are not known."""
@@ -70,6 +70,6 @@ class RecordSignals:
         )
 
 
-def evaluate_record(record: Record, low_pass: LowPass, line_supports: tuple[float, ...] | None = None) -> Evaluation:
+def evaluate_record(record: Record, low_pass: Filter, line_supports: tuple[float, ...] | None = None) -> Evaluation:
     """Evaluate every quantity of a record over its analysis section; see `RecordSignals`."""
     return RecordSignals(record, low_pass, line_supports).evaluation

@@ -122,10 +122,6 @@ class PlacedSamples:
 def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSamples:
     """Determine time and position of the samples; samples without them are discarded.
 
-    Args:
-        samples: Samples of a record.
-        sidecar: Sidecar of the record.
-
     Returns:
         Remaining samples with time and position.
 

@@ -128,7 +128,7 @@ def build_run_table(discretisation: Discretisation, simulated_s: float, begin: f
 
 def _mean_forces(case: Case, record: Record) -> RealArray:
     """Mean contact force of every pantograph over the analysis section [N]."""
-    signals = RecordSignals(record, case.file.filter.low_pass)
+    signals = RecordSignals(record, case.file.filter)
     return np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
 
 

@@ -180,7 +180,7 @@ def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple
 
 
 def _evaluation(case: Case) -> DerivedEvaluation:
-    step, low_pass = case.file.discretisation.time_step_s, case.file.filter.low_pass
+    step, low_pass = case.file.discretisation.time_step_s, case.file.filter
     order, cutoff = low_pass.single_run(1 / step)
     return DerivedEvaluation(
         time_step_s=step,

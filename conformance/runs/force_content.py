@@ -13,7 +13,7 @@ Bending rounds a kink over the length sqrt(EI / T). The content is compared only
 enough for 50 Hz.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
@@ -100,7 +100,7 @@ def force_content(signals: RecordSignals, number: int, upper: float) -> float:
     frequency, amplitude = frequency[frequency <= upper], amplitude[frequency <= upper]
     stated = record.filter_applied_Hz
     if stated is not None and stated <= HIGHEST_SHARE_OF_RATE * record.rate:
-        amplitude = amplitude / replace(signals.low_pass, cutoff_Hz=stated).gain(frequency, record.rate)
+        amplitude = amplitude / signals.low_pass.change_cutoff(stated).gain(frequency, record.rate)
     return _compare_bands(frequency, amplitude)
 
 

@@ -64,7 +64,7 @@ class ResponseFit:
 
 
 def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
-    record, low_pass = signals.record, case.file.filter.low_pass
+    record, low_pass = signals.record, case.file.filter
     if record.contact_height is None:
         return report_not_made("dynamics", "the record has no contact height")
     if not is_observable(low_pass.cutoff_Hz, record.rate):

@@ -11,8 +11,6 @@ stiffness k). It compares with the graded force itself, at every instant. A cons
 removed first: the check of the dynamics limits them.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
@@ -23,7 +21,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import head_receptance
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
-from pantocheck.conformance.quantities.filters import LowPass, is_observable
+from pantocheck.conformance.quantities.filters import Filter, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
 from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, head_responses, remove_free_motion
@@ -51,12 +49,12 @@ EXTENDED_QUANTITIES = frozenset({"std_force_50_N", "cov_50", EXTENDED_BAND.quant
 
 
 def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
-    record, low_pass = signals.record, case.file.filter.low_pass
+    record, low_pass = signals.record, case.file.filter
     if record.contact_height is None:
         return None  # the check of the dynamics states that the height is missing
     limits = [(low_pass, LARGEST_ERROR)]
     if not EXTENDED_QUANTITIES.isdisjoint(limit.quantity for limit in case.limits):
-        limits.append((replace(low_pass, cutoff_Hz=float(EXTENDED_BAND.high)), LARGEST_EXTENDED_ERROR))
+        limits.append((low_pass.change_cutoff(float(EXTENDED_BAND.high)), LARGEST_EXTENDED_ERROR))
     findings = []
     for band, largest in limits:
         if not is_observable(band.cutoff_Hz, record.rate):
@@ -68,7 +66,7 @@ def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
     return worst_finding(findings)
 
 
-def force_error(file: PantographFile, signals: RecordSignals, number: int, low_pass: LowPass) -> float:
+def force_error(file: PantographFile, signals: RecordSignals, number: int, low_pass: Filter) -> float:
     """Largest error of the filtered force over the analysis section, over the standard deviation of the force.
 
     Args:
@@ -106,12 +104,12 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
     return min(errors)
 
 
-def _stated_filters(low_pass: LowPass, applied_Hz: float | None) -> list[LowPass]:
+def _stated_filters(low_pass: Filter, applied_Hz: float | None) -> list[Filter]:
     """Filters that the force may have passed, but not the height; none if it was delivered unfiltered."""
     if applied_Hz is None:
         return []
-    zero_or_case = replace(low_pass, cutoff_Hz=applied_Hz)
-    return [zero_or_case, replace(zero_or_case, phase="causal")]
+    zero_or_case = low_pass.change_cutoff(applied_Hz)
+    return [zero_or_case, zero_or_case.model_copy(update={"phase": "causal"})]
 
 
 def _multiply_by_dynamic_stiffness(
@@ -139,7 +137,7 @@ def _largest_remainder(error: RealArray, force: RealArray, inside: NDArray[np.bo
     return float(np.abs(remainder).max())
 
 
-def _describe(number: int, error: float, low_pass: LowPass, height: RealArray) -> Finding:
+def _describe(number: int, error: float, low_pass: Filter, height: RealArray) -> Finding:
     band = f"up to {low_pass.cutoff_Hz:g} Hz"
     step = rounding_step(height)
     if np.isinf(step):

@@ -93,7 +93,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     The spectrum is divided by the gain of the filter of the case. A force that was not filtered, or by a filter of
     too low an order, then has more content above the cut-off than any contact force.
     """
-    record, low_pass = signals.record, case.file.filter.low_pass
+    record, low_pass = signals.record, case.file.filter
     applied, cutoff = record.filter_applied_Hz, low_pass.cutoff_Hz
     if applied is None or not is_same_cutoff(applied, cutoff):
         return None  # delivered unfiltered, or filtered again by the suite

@@ -64,7 +64,7 @@ SMALLEST_CONTACT = 0.25
 
 
 def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None:
-    record, cutoff = signals.record, case.file.filter.low_pass.cutoff_Hz
+    record, cutoff = signals.record, case.file.filter.cutoff_Hz
     try:
         passages = _Passages(case, signals)
     except QuantityUnavailable as reason:

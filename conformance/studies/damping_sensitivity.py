@@ -88,7 +88,7 @@ def run_damping_sensitivity(case: Case, system: System) -> Outcome:
         outcome = system.run(case.without_study())
     if not isinstance(outcome, Delivered) or outcome.record is None:
         return outcome
-    low_pass, supports = case.file.filter.low_pass, case.line.geometry.supports
+    low_pass, supports = case.file.filter, case.line.geometry.supports
     values, missing = {CASE_DAMPING: evaluate_record(outcome.record, low_pass, supports).values}, []
     for number, (name, damping) in enumerate(case.dampings.items()):
         with use_part((REFINED_RUN + number) / whole, (REFINED_RUN + number + 1) / whole):

@@ -64,11 +64,6 @@ def motion_at_rest(layout: Layout, deflection: Deflection, distributed: int = 0)
     """Build the state of a line at rest in a static deflection.
 
     The first step determines the distributed forces; zero is a first guess.
-
-    Args:
-        layout: Layout of the rows.
-        deflection: Static deflection.
-        distributed: Number of distributed forces.
     """
     # Far from the loads the deflection decays to denormal numbers, which processors handle a hundred times slower.
     displacement = np.where(np.abs(deflection.displacement) < 1e-30, 0.0, deflection.displacement)

@@ -37,12 +37,7 @@ class ComponentEnergies:
 
 @use_one_thread
 def compute_modes(line: DiscretisedLine, count: int) -> Modes:
-    """Compute the lowest modes of a line.
-
-    Args:
-        line: Discretised line.
-        count: Number of modes.
-    """
+    """Compute the lowest modes of a line."""
     matrices, factored = assemble_matrices(line), factored_stiffness(line)
 
     def solve_free(force: Array) -> Array:
@@ -90,10 +85,6 @@ def deflection_at(line: DiscretisedLine, modes: Modes, row: int, position: float
 
 def component_energies(line: DiscretisedLine, modes: Modes) -> ComponentEnergies:
     """Compute the share of every kind of component in the energies of the modes.
-
-    Args:
-        line: Discretised line.
-        modes: Modes of the line.
 
     Returns:
         Energies. The damping C = sum of a_e K_e + b_e M_e gives mode j the ratio sum (a_e k_ej + b_e m_ej) / (2 w_j).

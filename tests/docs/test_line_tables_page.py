@@ -1,12 +1,13 @@
 """The page on line tables: its commands run, and its tables name every key and column."""
 
-import re
 import shlex
+from functools import partial
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from helpers.docs_pages import list_blocks, read_page
 from helpers.line_table_files import change_cell, export_tables
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.app.commands.command_list import app
@@ -20,13 +21,8 @@ from pantocheck.conformance.line.line_columns import DROPPER_COLUMNS, SUPPORT_CO
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_import import import_line
 
-PAGE = (Path(__file__).parents[2] / "docs" / "line-tables.md").read_text(encoding="utf-8")
-
-
-def blocks(language: str) -> list[str]:
-    """Code blocks of the page in a language."""
-    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
-    return [text for name, text in fenced if name == language]
+PAGE = read_page("line-tables.md")
+blocks = partial(list_blocks, "line-tables.md")
 
 
 def command(name: str) -> list[str]:

@@ -4,22 +4,18 @@ import os
 import re
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from helpers.docs_pages import list_blocks
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.records.record_reading import open_record, read_record
 
-PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text(encoding="utf-8")
-
-
-def blocks(language: str) -> list[str]:
-    """Code blocks of the page in a language."""
-    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
-    return [text for name, text in fenced if name == language]
+blocks = partial(list_blocks, "records.md")
 
 
 @pytest.fixture

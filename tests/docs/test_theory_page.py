@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 from pantocheck.conformance.drops.decay_kernel import decay_kernel
 from pantocheck.conformance.grading.case_evaluation import observed_order
 from pantocheck.conformance.quantities.bands import band_rms
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import exact_stiffness, in_series
 from pantocheck.model.statics.wave_factors import doppler_factor
@@ -91,10 +91,10 @@ def test_period_errors_of_both_methods() -> None:
 
 def test_gain_of_the_filter() -> None:
     rate, frequency = 200.0, np.array([5.0, 20.0, 30.0])
-    cutoff = LowPass().single_run(rate)[1]
+    cutoff = Filter().single_run(rate)[1]
     ratio = np.tan(np.pi * frequency / rate) / np.tan(np.pi * cutoff / rate)
-    np.testing.assert_allclose(LowPass().gain(frequency, rate), 1 / (1 + ratio**6), rtol=1e-9)
-    assert LowPass().gain(np.array([20.0]), rate)[0] == pytest.approx(10 ** (-3.0103 / 20), rel=1e-5)
+    np.testing.assert_allclose(Filter().gain(frequency, rate), 1 / (1 + ratio**6), rtol=1e-9)
+    assert Filter().gain(np.array([20.0]), rate)[0] == pytest.approx(10 ** (-3.0103 / 20), rel=1e-5)
 
 
 def test_bands_partition_the_variance() -> None:

@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.formulations.cable_stiffness import irvine_parameter, linearise_wire
-from verification.formulations.exact_building import build_exact_line
-from verification.formulations.exact_case import build_exact_case
+from verification.formulations.exact_case import build_exact_case, build_exact_line
+from verification.formulations.exact_forces import natural_frequencies, point_elasticity
 from verification.formulations.exact_line import (
     Array,
     ExactLine,
@@ -18,9 +18,8 @@ from verification.formulations.exact_line import (
     no_springs,
     no_strings,
     unstretched_lengths,
+    watched_points,
 )
-from verification.formulations.exact_points import watched_points
-from verification.formulations.exact_tangent import natural_frequencies, point_elasticity
 
 pytestmark = pytest.mark.thorough
 

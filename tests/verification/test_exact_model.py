@@ -5,12 +5,15 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
-from verification.formulations.exact_contact import cubic_shares
-from verification.formulations.exact_forces import allocate_scratch, sum_forces
+from verification.formulations.exact_forces import (
+    allocate_scratch,
+    cubic_shares,
+    natural_frequencies,
+    point_elasticity,
+    sum_forces,
+)
 from verification.formulations.exact_line import Array, Bars, ExactLine, Wires, no_bars, no_springs, no_strings
-from verification.formulations.exact_passage import no_pantograph
-from verification.formulations.exact_steps import ExactMotion, advance, relax
-from verification.formulations.exact_tangent import natural_frequencies, point_elasticity
+from verification.formulations.exact_passage import ExactMotion, advance, no_pantograph, relax
 
 GRAVITY = 9.81
 SPAN, TENSION, MASS, AXIAL_STIFFNESS, BENDING_STIFFNESS = 50.0, 16e3, 1.08, 13.8e6, 131.7

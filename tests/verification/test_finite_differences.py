@@ -18,10 +18,9 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.difference_arrays import NEVER_SLACK, Model, build_model
-from verification.formulations.difference_data import Heads
-from verification.formulations.difference_line import CaseData, build_line
+from verification.formulations.difference_line import CaseData, Heads, build_line
 from verification.formulations.difference_passage import build_heads, difference_quantities, force_quantities, simulate
-from verification.formulations.difference_statics import HeldStructure, rows
+from verification.formulations.difference_rest import HeldStructure, rows
 from verification.formulations.difference_step import march
 from verification.formulations.difference_strands import Strand, Wire, lay_out
 from verification.formulations.finite_differences import reference_quantities
@@ -242,7 +241,7 @@ def test_quantities_of_a_known_force() -> None:
     rate, speed = 2000.0, 50.0
     t = np.arange(0, 8, 1 / rate)
     force = 100 + 20 * np.sin(2 * np.pi * 10 * t)
-    low_pass = case("en50318-2002/250").file.filter.low_pass
+    low_pass = case("en50318-2002/250").file.filter
     values = force_quantities(force, speed * t, rate, (100.0, 300.0), low_pass, [(5.0, 20.0)] * 3)
     assert values["mean_force_N"] == pytest.approx(100)
     assert values["rms_5_20_N"] == pytest.approx(20 / np.sqrt(2))

@@ -343,13 +343,7 @@ CHANGES: dict[str, Change] = {
 
 
 def forge_results(results: Tree, name: str, seed: int) -> Tree:
-    """Results with one kind of forgery.
-
-    Args:
-        results: Genuine results.
-        name: Name of the kind.
-        seed: Seed of the random choices.
-    """
+    """Results with one kind of forgery."""
     forged = copy.deepcopy(results)
     CHANGES[name](forged, random.Random(f"{seed} {name}"))
     return Results.model_validate(forged).to_dict()

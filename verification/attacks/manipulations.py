@@ -134,7 +134,7 @@ class Runs:
             write_record(path, outcome.record, case=loaded.id)
         record, _ = read_record(path)
         supports = loaded.line.geometry.span_limits
-        evaluation = evaluate_record(record, loaded.file.filter.low_pass, supports)
+        evaluation = evaluate_record(record, loaded.file.filter, supports)
         self.evaluations[name] = evaluation
         sidecar = read_toml(path.with_suffix(".toml"), "sidecar")
         dossier.sidecar = {key: value for key, value in sidecar.items() if key not in {"sha256", "case_digest"}}

@@ -89,7 +89,7 @@ def run_reference(case: Case, element: float, step: float, forces: list[float]) 
         return values
     discretisation = case.file.discretisation.model_copy(update={"element_m": element, "time_step_s": step})
     record = run_passage(case, line, discretisation, tuple(forces)).record
-    found = evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
+    found = evaluate_record(record, case.file.filter, case.line.geometry.supports).values
     values |= {f"{k}|{name}": float(found[k][name]) for k in range(1, len(forces) + 1) for name in FORCES}
     return values | {f"0|{UPLIFT}": float(found[0][UPLIFT])}
 

@@ -7,8 +7,7 @@ Points are too flexible under a point force by their excess flexibility, so ever
 import numpy as np
 
 from verification.formulations.difference_line import Line
-from verification.formulations.difference_rest import Rest
-from verification.formulations.difference_statics import Bar, join
+from verification.formulations.difference_rest import Bar, Rest, join
 from verification.formulations.difference_strands import Floats, Strands
 
 STIFFNESS = {"z": "vertical_stiffness_N_m", "y": "lateral_stiffness_N_m"}

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pantocheck.conformance.quantities.bands import band_rms
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from verification.formulations.difference_arrays import Model, build_model
-from verification.formulations.difference_data import Heads
-from verification.formulations.difference_line import CaseData, build_line
+from verification.formulations.difference_line import CaseData, Heads, build_line
 from verification.formulations.difference_step import march
 from verification.formulations.difference_strands import Floats
 
@@ -152,7 +151,7 @@ def force_quantities(
     position: Floats,
     rate: float,
     section: tuple[float, float],
-    low_pass: LowPass,
+    low_pass: Filter,
     band_edges: Sequence[tuple[float, float]],
 ) -> dict[str, float]:
     """Quantities of one contact force over an analysis section."""
@@ -168,7 +167,7 @@ def difference_quantities(case: CaseData, spacing: float, uplift_forces: tuple[f
     """Quantities of a case, as a program receives it, in the second formulation."""
     model = build_model(build_line(case), spacing)
     passage = simulate(case, model, uplift_forces)
-    section, low_pass, values = case["evaluated_m"], LowPass(**case["filter"]), Quantities()
+    section, low_pass, values = case["evaluated_m"], Filter(**case["filter"]), Quantities()
     bands = case["derived"]["train"]["evaluation"]["bands_Hz"]
     for k, (force, position) in enumerate(zip(passage.force, passage.position, strict=True), 1):
         quantities = force_quantities(force, position, 1 / passage.step, section, low_pass, bands)

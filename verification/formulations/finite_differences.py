@@ -77,7 +77,7 @@ def reference_quantities(case: Case, element: float, step: float, forces: tuple[
     discretisation = case.file.discretisation.model_copy(update={"element_m": element, "time_step_s": step})
     line = discretise(build_catenary(case.line), element)
     record = run_passage(case, line, discretisation, forces).record
-    values = evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
+    values = evaluate_record(record, case.file.filter, case.line.geometry.supports).values
     quantities = {(k, name): float(values[k][name]) for k in range(1, len(forces) + 1) for name in QUANTITIES}
     uplift = float(values[0][LINE_QUANTITIES[0]])
     return quantities | {

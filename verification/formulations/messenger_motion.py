@@ -14,12 +14,10 @@ import numpy as np
 from pantocheck.model.modal.modes import compute_modes
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.formulations.cable_stiffness import TensionLaw, irvine_parameter, linearise_wire
-from verification.formulations.exact_building import AlongTrack
-from verification.formulations.exact_case import ExactCase, build_exact_case, change_pct, print_rows
-from verification.formulations.exact_line import ExactLine
+from verification.formulations.exact_case import AlongTrack, ExactCase, build_exact_case, change_pct, print_rows
+from verification.formulations.exact_forces import natural_frequencies, point_elasticity
+from verification.formulations.exact_line import ExactLine, support_points, watched_points
 from verification.formulations.exact_passage import Rest, find_rest
-from verification.formulations.exact_points import support_points, watched_points
-from verification.formulations.exact_tangent import natural_frequencies, point_elasticity
 
 MESSENGER = 1
 """Number of the messenger wire."""

@@ -17,7 +17,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_verification import EXTREMES, RELATIVE
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import run_passage
@@ -44,15 +44,15 @@ def simulate(
     return run_passage(case, line, discretisation, forces).record
 
 
-def evaluate(case: Case, record: Record, low_pass: LowPass | None = None) -> Quantities:
+def evaluate(case: Case, record: Record, low_pass: Filter | None = None) -> Quantities:
     """Verified quantities of a record."""
-    found = evaluate_record(record, low_pass or case.file.filter.low_pass, case.line.geometry.supports).values
+    found = evaluate_record(record, low_pass or case.file.filter, case.line.geometry.supports).values
     return {(owner, name): float(values[name]) for owner, values in found.items() for name in SHOWN if name in values}
 
 
 def with_filter(**changes: object) -> Runner:
     """Another filter."""
-    return lambda case, forces: evaluate(case, simulate(case, forces), replace(case.file.filter.low_pass, **changes))
+    return lambda case, forces: evaluate(case, simulate(case, forces), case.file.filter.model_copy(update=changes))
 
 
 def with_catenary(change: Callable[[Catenary], Catenary]) -> Runner:
@@ -91,7 +91,7 @@ def with_rate(every: int) -> Runner:
 
     def run(case: Case, forces: tuple[float, ...]) -> Quantities:
         record = simulate(case, forces)
-        low_pass = LowPass("butterworth", 8, 0.4 * record.rate / every, "zero")
+        low_pass = Filter(order=8, cutoff_Hz=0.4 * record.rate / every)
         force = np.array([low_pass(channel, record.rate) for channel in record.force])
         thinned = {name: getattr(record, name)[:, ::every] for name in ("position", "contact_height", "support_uplift")}
         return evaluate(case, replace(record, time=record.time[::every], force=force[:, ::every], **thinned))

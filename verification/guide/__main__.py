@@ -21,11 +21,9 @@ from pantocheck.conformance.pages.report_writers import remark_missing_formats, 
 from verification.guide.guide_building import build_guide, guide_identity, list_deviations
 from verification.guide.guide_driver import compute_parts
 from verification.guide.guide_format import Guide
-from verification.guide.guide_store import GuideStore
-from verification.guide.guide_tasks import list_tasks, list_timings
+from verification.guide.guide_tasks import GuideStore, list_tasks, list_timings, sum_durations
 from verification.guide.guide_values import list_guide_values
 from verification.guide.pages.guide_page import build_guide_page
-from verification.guide.part_durations import sum_durations
 
 VALUES_FILE = "guide-values.json"
 """Numbers of the guide by name, which the documentation prints."""

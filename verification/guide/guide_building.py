@@ -9,7 +9,7 @@ from pantocheck.conformance.core.results_part import ResultsPart
 from pantocheck.conformance.grading.results_building import build_suite, utc_now
 from pantocheck.conformance.results.results_format import Platform
 from pantocheck.conformance.runs.resolution import read_effects
-from verification.guide.guide_driver import GuideParts
+from verification.guide.guide_driver import GuideParts, read_limitations
 from verification.guide.guide_format import (
     Guide,
     LibraryCase,
@@ -19,7 +19,6 @@ from verification.guide.guide_format import (
     StoredEffect,
     Topic,
 )
-from verification.guide.known_limitations import read_limitations
 
 Part = TypeVar("Part", bound=ResultsPart)
 

@@ -1,16 +1,34 @@
-"""Driver of the guide: computes its open parts on several processes, and stores each as soon as it is finished."""
+"""Known limitations of the suite, from the Markdown file that is their only home."""
 
 import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from pantocheck.conformance.core.processes import end_workers, handle_worker_signals, limit_threads
 from pantocheck.conformance.core.results_part import ResultsPart
-from verification.guide.guide_format import FailedPart
-from verification.guide.guide_store import GuideStore
-from verification.guide.guide_tasks import GuideTask
+from verification.guide.guide_format import FailedPart, Limitation
+from verification.guide.guide_tasks import GuideStore, GuideTask
 
+DOCS = Path(__file__).parents[2] / "docs"
+LIMITATIONS_FILE = "known-limitations.md"
+"""Page of the documentation: a heading of second level per limitation, and list items below it."""
+
+
+def read_limitations() -> list[Limitation]:
+    """Known limitations, in the order of their file."""
+    text = (DOCS / LIMITATIONS_FILE).read_text("utf-8")
+    return [_read_limitation(part) for part in text.split("\n## ")[1:]]
+
+
+def _read_limitation(part: str) -> Limitation:
+    title, _, body = part.partition("\n")
+    items = [" ".join(item.split()) for item in f"\n{body}".split("\n* ")[1:]]
+    return Limitation(title=title.strip(), sentences=items)
+
+
+# Driver of the guide: computes its open parts on several processes, and stores each as soon as it is finished.
 Report = Callable[[str, Sequence[str]], None]
 """Callback with the name of the part that is finished now (empty: none), and the names of all finished parts."""
 

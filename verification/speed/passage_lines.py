@@ -8,7 +8,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.model import Catenary, DiscretisedLine, History, Passage
@@ -105,5 +105,5 @@ def figures(way: Passage, history: History, evaluated: tuple[float, float], pant
         support_uplift=history.motion[:, :, 0],
     )
     supports = tuple(x for _, x in way.watched)
-    values = evaluate_record(record, LowPass("butterworth", 6, 20.0, "zero"), supports).values
+    values = evaluate_record(record, Filter(), supports).values
     return {name: float({**values[0], **values[pantograph]}[name]) for name in QUANTITIES}

@@ -35,7 +35,7 @@ def compute_values(
     mesh = {"element_m": default.element_m / factor, "time_step_s": default.time_step_s / factor}
     discretisation = default.model_copy(update=mesh)
     run = run_passage(case, discretise(built, discretisation.element_m), discretisation, forces)
-    values = evaluate_record(run.record, case.file.filter.low_pass, case.line.geometry.supports).values
+    values = evaluate_record(run.record, case.file.filter, case.line.geometry.supports).values
     line = values.pop(0)
     quantities = {number: {name: {**line, **own}[name] for name in QUANTITIES} for number, own in values.items()}
     return {n: {name: float(value) for name, value in own.items()} for n, own in quantities.items()}, run.uplift_forces

@@ -15,15 +15,15 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BANDS, band_rms
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 
 CASES = ("en50318-2002/250", "en50318-2002/300")
 FILTERS = {
-    "causal, order 6": LowPass(phase="causal"),
-    "zero phase, order 12": LowPass(order=12),
+    "causal, order 6": Filter(phase="causal"),
+    "zero phase, order 12": Filter(order=12),
 }
 """Filters in place of the zero-phase filter of order 6; order 12 is that of order 6, run forwards and backwards."""
 BAND_PASS_ORDER = 6
@@ -34,10 +34,10 @@ def load_signals(case: Case) -> PantographSignals:
     """Signals of the first pantograph of a case by the reference simulator."""
     record = ReferenceSimulator().run_unrefined(case).record
     assert record is not None
-    return RecordSignals(record, case.file.filter.low_pass).pantographs[1]
+    return RecordSignals(record, case.file.filter).pantographs[1]
 
 
-def filter_changes(signals: PantographSignals, low_pass: LowPass) -> dict[str, float]:
+def filter_changes(signals: PantographSignals, low_pass: Filter) -> dict[str, float]:
     """Relative changes of standard deviation, largest and smallest force by another filter [%]."""
     other = low_pass(signals.force.delivered, signals.force.rate)[signals.inside]
     statistics = {"std_force_N": np.std, "max_force_N": np.max, "min_force_N": np.min}

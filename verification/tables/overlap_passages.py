@@ -20,7 +20,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import max_wave_speed
 from pantocheck.model.dynamics.active_window import build_window_arrays
@@ -31,7 +31,7 @@ from verification.speed.passage_lines import ac_simple, passage
 
 SPANS, RISE, SPAN = 22, 0.5, 55.0
 ELEMENT, STEP = 0.5, 1e-3
-LOW_PASS = LowPass("butterworth", 6, 20.0, "zero")
+LOW_PASS = Filter()
 NAMES = ("σ", "min", "max")
 KEPT_BEHIND = 1.5 * SPAN
 REACH = 660.0

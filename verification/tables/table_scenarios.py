@@ -185,4 +185,4 @@ def _simulate(case: Case, damping: Damping, forces: Sequence[float]) -> RecordSi
     variant = case.with_damping("other", damping)
     line = discretise(build_catenary(variant.line), variant.file.discretisation.element_m)
     run = run_passage(variant, line, variant.file.discretisation, tuple(map(float, forces)))
-    return RecordSignals(run.record, variant.file.filter.low_pass, variant.line.geometry.supports)
+    return RecordSignals(run.record, variant.file.filter, variant.line.geometry.supports)

@@ -36,7 +36,7 @@ def print_runs(case: Case) -> None:
         return run_passage(case, line, case.file.discretisation, forces)
 
     def mean_forces(passage: PassageRun) -> np.ndarray:
-        signals = RecordSignals(passage.record, case.file.filter.low_pass)
+        signals = RecordSignals(passage.record, case.file.filter)
         means = np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
         cells = (", ".join(f"{value:.3f}" for value in values) for values in (passage.uplift_forces, means))
         print(f"| {case.id} | {' | '.join(cells)} |", flush=True)

@@ -39,7 +39,7 @@ def calibrate_start(case: Case) -> Calibration:
     discretisation = case.file.discretisation
     line = discretise(build_catenary(case.line), discretisation.element_m)
     run = run_passage(case, line, discretisation)
-    signals = RecordSignals(run.record, case.file.filter.low_pass, case.line.geometry.supports)
+    signals = RecordSignals(run.record, case.file.filter, case.line.geometry.supports)
 
     def evaluate(starts: Iterable[RunStart]) -> list[Evaluation]:
         records = run_starts(starts, case, line, discretisation, run.uplift_forces)
@@ -91,7 +91,7 @@ def _run_longer(case: Case) -> tuple[RecordSignals, Case]:
     longer = replace(ac_simple(SPANS, case=case.id), file=file)
     discretisation = file.discretisation
     run = run_passage(longer, discretise(build_catenary(longer.line), discretisation.element_m), discretisation)
-    return RecordSignals(run.record, file.filter.low_pass, longer.line.geometry.supports), longer
+    return RecordSignals(run.record, file.filter, longer.line.geometry.supports), longer
 
 
 def calibrate_discretisation(case: Case) -> Calibration:
@@ -107,7 +107,7 @@ def _evaluate(case: Case, factor: float, forces: tuple[float, ...] | None) -> tu
     discretisation = case.file.discretisation.scale(factor)
     line = discretise(build_catenary(case.line), discretisation.element_m)
     run = run_passage(case, line, discretisation, forces)
-    evaluation = evaluate_record(run.record, case.file.filter.low_pass, case.line.geometry.supports)
+    evaluation = evaluate_record(run.record, case.file.filter, case.line.geometry.supports)
     return evaluation, run.uplift_forces
 
 

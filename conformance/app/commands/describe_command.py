@@ -14,7 +14,7 @@ from pantocheck.conformance.app.sidecar_draft import draft_drop_sidecar, draft_r
 from pantocheck.conformance.core.csv_table import open_text_table
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import CSV, EVERY_CHANNEL, MeasuredTable, read_tables
-from pantocheck.conformance.core.text_layout import SEPARATOR_NAMES
+from pantocheck.conformance.core.text_reading import SEPARATOR_NAMES
 from pantocheck.conformance.core.text_settings import TextSettings, name_encoding
 from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.drops.drop_reading import LARGEST_DROP

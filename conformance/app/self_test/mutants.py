@@ -52,7 +52,7 @@ def _filter_force(order: int) -> RunMutant:
     """The record states the filter of the case, but its force passed a zero-phase filter of another order."""
 
     def run(case: Case, record: Record) -> Outcome:
-        low_pass = replace(case.file.filter.low_pass, order=order)
+        low_pass = case.file.filter.model_copy(update={"order": order})
         force = np.array([low_pass(force, record.rate) for force in record.force])
         return Delivered(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
 
@@ -63,7 +63,7 @@ def _filter_force_and_height(cutoff: float) -> RunMutant:
     """Force and contact height passed the same zero-phase filter, which the record does not state."""
 
     def run(case: Case, record: Record) -> Outcome:
-        low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
+        low_pass = case.file.filter.change_cutoff(cutoff)
         changes: dict[str, Any] = {
             name: np.array([low_pass(channel, record.rate) for channel in channels])
             for name in ("force", "contact_height")

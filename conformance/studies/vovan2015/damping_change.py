@@ -206,7 +206,7 @@ def _add_changes(case: Case, before: Delivered, after: Delivered) -> Delivered:
 
 
 def _build_signals(case: Case, record: Record) -> RecordSignals:
-    return RecordSignals(record, case.file.filter.low_pass, case.line.geometry.supports)
+    return RecordSignals(record, case.file.filter, case.line.geometry.supports)
 
 
 def _draw_rear_force(case: Case, span: int, signals: Mapping[str, RecordSignals]) -> list[Chart]:
@@ -217,7 +217,7 @@ def _draw_rear_force(case: Case, span: int, signals: Mapping[str, RecordSignals]
     start, end = case.line.geometry.span(span)
     charts = []
     for cutoff in (case.file.filter.cutoff_Hz, EXTENDED_CUTOFF_HZ):
-        low_pass = replace(case.file.filter.low_pass, cutoff_Hz=cutoff)
+        low_pass = case.file.filter.change_cutoff(cutoff)
         series = []
         for model, run in signals.items():
             record = run.record

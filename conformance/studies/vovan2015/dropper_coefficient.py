@@ -25,7 +25,7 @@ from pantocheck.conformance.drops.drop_simulation import require_mass_drop, simu
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import build_passage, build_run_table, integrate_passage, record_passage
@@ -134,7 +134,7 @@ def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Valu
 
 
 def _band_values(case: Case, record: Record) -> ValuesByOwner:
-    return evaluate_record(record, case.file.filter.low_pass, case.line.geometry.supports).values
+    return evaluate_record(record, case.file.filter, case.line.geometry.supports).values
 
 
 def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:
@@ -253,7 +253,7 @@ def find_oscillation(motion: RealArray, time: RealArray) -> RealArray:
     The motion is that of contact and messenger wire at the dropper, (2, m) [m/s]; time is 0 at the release, (m,) [s].
     """
     extension = motion[MESSENGER] - motion[CONTACT]
-    low = LowPass(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
+    low = Filter(cutoff_Hz=HIGH_HZ)(extension, 1 / (time[1] - time[0]))
     return np.asarray((extension - low)[time >= 0])
 
 

@@ -336,7 +336,7 @@ def test_defaults_of_a_mass_drop(drop_case: Path) -> None:
 def test_defaults_of_a_case(edited_case: EditedCase) -> None:
     """Filter of EN 50318, 0.5 m and 1 ms; the run starts at the end of the first span and runs out over one span."""
     case = load_case(edited_case("250.toml", {"filter": None, "discretisation": None}))
-    low_pass = case.file.filter.low_pass
+    low_pass = case.file.filter
     assert (low_pass.kind, low_pass.order, low_pass.cutoff_Hz, low_pass.phase) == ("butterworth", 6, 20.0, "zero")
     assert (case.file.discretisation.element_m, case.file.discretisation.time_step_s) == (0.5, 0.001)
     halved = case.file.discretisation.scale(0.5)

@@ -256,7 +256,7 @@ def test_designs_of_the_tolerances_differ_in_their_seeds() -> None:
 # Open points of the sources of the 2002 model: results in its notes for the other readings.
 def values(case: Case) -> dict:
     record = ReferenceSimulator().run_unrefined(case).record
-    return evaluate_record(record, case.file.filter.low_pass).values[1]
+    return evaluate_record(record, case.file.filter).values[1]
 
 
 @pytest.mark.parametrize(("speed", "deviation"), [(250, 32.9), (300, 38.2)])

@@ -15,7 +15,7 @@ from pantocheck.conformance.comparison.force_difference import (
     span_profile,
 )
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 
@@ -31,7 +31,7 @@ def signals(
 ) -> PantographSignals:
     """Signals of a run whose force [N] is a function of the time since 0 m [s]."""
     time = np.arange(int(1000 / SPEED * rate)) / rate
-    return PantographSignals(SPEED * time, ForceChannel(force(time), rate, LowPass(), filtered), section)
+    return PantographSignals(SPEED * time, ForceChannel(force(time), rate, Filter(), filtered), section)
 
 
 def tone(frequency: float, amplitude: float, phase: float = 0.0) -> Force:
@@ -76,7 +76,7 @@ def test_a_force_filtered_at_20_hz_has_no_upper_band() -> None:
 def test_coherence_is_one_for_a_common_part_and_low_for_independent_noise() -> None:
     """Common noise up to 12 Hz, independent noise above: the chance level is that of 5 % of the frequencies."""
     rng = np.random.default_rng(3)
-    low_pass = LowPass(order=8, cutoff_Hz=12.0)
+    low_pass = Filter(order=8, cutoff_Hz=12.0)
     # Noise on a grid of 1 kHz, so that every run has the same samples of the common part.
     noise = rng.normal(0, 30, (3, 20000))
     common = low_pass(noise[0], 1000.0)

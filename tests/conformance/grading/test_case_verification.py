@@ -40,7 +40,7 @@ def record(twin: Case) -> Record:
 @pytest.fixture
 def values(twin: Case, record: Record) -> Values:
     """Verified quantities of that record."""
-    evaluation = evaluate_record(record, twin.file.filter.low_pass, twin.line.geometry.supports)
+    evaluation = evaluate_record(record, twin.file.filter, twin.line.geometry.supports)
     return {
         owner: {name: float(value) for name, value in quantities.items() if name in VERIFIED_QUANTITIES}
         for owner, quantities in evaluation.values.items()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.conformance.grading.contact_loss_list import find_force_places, find_uplift_place
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 
@@ -16,7 +16,7 @@ def make_signals(section: tuple[float, float]) -> PantographSignals:
     """A peak at 120 m, a dip at 180 m and a higher peak at 300 m; spikes of one sample are above 20 Hz."""
     force = 100 + sum(a * np.exp(-(((POSITION - x) / 5) ** 2)) for a, x in ((50, 120), (-40, 180), (70, 300)))
     force[POSITION == 150.0] += 500
-    return PantographSignals(POSITION, ForceChannel(force, RATE, LowPass(cutoff_Hz=20.0)), section)
+    return PantographSignals(POSITION, ForceChannel(force, RATE, Filter(cutoff_Hz=20.0)), section)
 
 
 def test_force_places_lie_in_the_analysis_section_and_ignore_what_the_filter_removes() -> None:

@@ -57,7 +57,7 @@ FAULTS: dict[CheckName, Callable[[Record], Record]] = {
 def test_contradiction_of_the_second_pantograph_is_found(
     two_pantograph_case: Case, record: Record, check: CheckName
 ) -> None:
-    low_pass = two_pantograph_case.file.filter.low_pass
+    low_pass = two_pantograph_case.file.filter
     sound = check_record(two_pantograph_case, RecordSignals(record, low_pass))
     assert check not in sound or sound[check].kind != "contradiction"
     findings = check_record(two_pantograph_case, RecordSignals(FAULTS[check](record), low_pass))
@@ -71,13 +71,13 @@ def test_filter_within_a_thousandth_is_that_of_the_case(
 ) -> None:
     """It must be checked, because the suite does not filter again; further above, it does."""
     rough = replace(record, force=record.force + _noise(record), filter_applied_Hz=stated)
-    findings = check_record(two_pantograph_case, RecordSignals(rough, two_pantograph_case.file.filter.low_pass))
+    findings = check_record(two_pantograph_case, RecordSignals(rough, two_pantograph_case.file.filter))
     assert ("roll-off" in findings) is checked
 
 
 def test_contact_height_is_that_of_the_pantograph(two_pantograph_case: Case, record: Record) -> None:
     doubled = replace(record, contact_height=_scale_second(record.contact_height, 2.0))
-    values = evaluate_record(doubled, two_pantograph_case.file.filter.low_pass).values
+    values = evaluate_record(doubled, two_pantograph_case.file.filter).values
     first, second = (values[number]["contact_height_range_mm"] for number in (1, 2))
     assert second == pytest.approx(2 * first, rel=0.01)
 

@@ -181,9 +181,9 @@ def test_record_of_an_uneven_line_is_free_of_findings(uneven: Case) -> None:
     """Two pantographs; without the heights at rest, coincidence finds 15 mm. Shifted by 10 m the record is refuted."""
     record = simulate(uneven)
     supports = uneven.line.geometry.supports
-    assert check_record(uneven, RecordSignals(record, uneven.file.filter.low_pass, supports)) == {}
+    assert check_record(uneven, RecordSignals(record, uneven.file.filter, supports)) == {}
     shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
-    assert check_record(uneven, RecordSignals(shifted, uneven.file.filter.low_pass, supports)) != {}
+    assert check_record(uneven, RecordSignals(shifted, uneven.file.filter, supports)) != {}
 
 
 @pytest.mark.parametrize("static_share", ["none", "level"])
@@ -208,7 +208,7 @@ def test_record_of_an_irregular_line_with_tolerances_is_free_of_findings(static_
         exact = rest_height(discretise(build_catenary(case.line), 0.5), np.array(supports))
         np.testing.assert_allclose(found, exact, atol=1e-9)
     record = simulate(case)
-    assert check_record(case, RecordSignals(record, case.file.filter.low_pass, supports)) == {}
+    assert check_record(case, RecordSignals(record, case.file.filter, supports)) == {}
 
 
 @pytest.fixture(scope="module")
@@ -231,7 +231,7 @@ def test_heights_at_rest_in_an_overlap_are_those_of_the_lowest_wire(overlapping:
 def test_record_of_an_overlap_is_free_of_findings(overlapping: Case) -> None:
     """The heads change from wire to wire 60 mm higher than elsewhere; shifted by 10 m the record is refuted."""
     record = simulate(overlapping)
-    low_pass, supports = overlapping.file.filter.low_pass, overlapping.line.geometry.supports
+    low_pass, supports = overlapping.file.filter, overlapping.line.geometry.supports
     assert record.evaluated[0] < 275.0 < record.evaluated[1]
     assert check_record(overlapping, RecordSignals(record, low_pass, supports)) == {}
     shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.bands import BANDS, amplitude_spectrum, band_rms
-from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, LowPass
+from pantocheck.conformance.quantities.filters import CUTOFF_TOLERANCE, Filter
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 RATE = 500.0
@@ -50,11 +50,11 @@ def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only() -> None
     """White noise through |H|^2 = 1/(1 + W^6)^2-like skirts: within 5 %, and equal without content near the cut-off."""
     force = noise(5, 20_000)
     brick = band_rms(force, RATE, 0, 20)
-    assert_allclose(LowPass()(force, RATE).std(), brick, rtol=0.05)
+    assert_allclose(Filter()(force, RATE).std(), brick, rtol=0.05)
     time = np.arange(20_000) / RATE
     slow = 120 + 20 * np.sin(2 * np.pi * 1.0 * time) + 10 * np.sin(2 * np.pi * 7.0 * time)
     # Gain at 7 Hz is 1 - 0.5 (7/20)^6 (sqrt(2) - 1) ~ 0.999.
-    assert_allclose(LowPass()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)
+    assert_allclose(Filter()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)
 
 
 @settings(max_examples=20)

@@ -5,7 +5,7 @@ import pytest
 
 from pantocheck.conformance.quantities.contact_losses import list_losses, loss_durations
 from pantocheck.conformance.quantities.evaluation import evaluate_signals
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.records.block_bootstrap import bootstrap_uncertainties
@@ -16,7 +16,7 @@ POSITION = SPEED * np.arange(20_000) / RATE
 
 def build_signals(force: np.ndarray, shortest: float | None = None) -> PantographSignals:
     """Analysis section from 100 m to 900 m: samples 2000 to 17999, 16 s."""
-    return PantographSignals(POSITION, ForceChannel(force, RATE, LowPass()), (100.0, 900.0), None, None, shortest)
+    return PantographSignals(POSITION, ForceChannel(force, RATE, Filter()), (100.0, 900.0), None, None, shortest)
 
 
 def lose_contact(*intervals: tuple[int, int]) -> np.ndarray:
@@ -99,7 +99,7 @@ def test_arc_share_is_the_time_with_arcs_under_load(
         arcing[start : start + 16] = 1
     signals = PantographSignals(
         POSITION,
-        ForceChannel(np.full(20_000, 120.0), RATE, LowPass()),
+        ForceChannel(np.full(20_000, 120.0), RATE, Filter()),
         (100.0, 900.0),
         None,
         np.vstack([arcing, loaded]),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.unavailable import (
@@ -25,7 +25,7 @@ def pantograph(
     """Pantograph from `start` at 50 m/s: 0.05 m between samples."""
     position = start + step * np.arange(samples)
     force = 119.0 + 28.0 * np.sin(2 * np.pi * position / 60)
-    return PantographSignals(position, ForceChannel(force, RATE, LowPass(cutoff_Hz=cutoff)), section)
+    return PantographSignals(position, ForceChannel(force, RATE, Filter(cutoff_Hz=cutoff)), section)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_record_without_room_for_the_filter_gives_a_warning(
 ) -> None:
     """Two periods of 20 Hz at 50 m/s are 5 m, on either side of the section of either pantograph."""
     position = np.linspace(200 - before, 400 + after, 4201)
-    channel = ForceChannel(np.full(position.size, 119.0), RATE, LowPass())
+    channel = ForceChannel(np.full(position.size, 119.0), RATE, Filter())
     train = {n: pantograph((200.0, 400.0)) for n in (1, 2)}
     train[number] = PantographSignals(position, channel, (200.0, 400.0))
     warnings = edge_warnings(train, SPEED)

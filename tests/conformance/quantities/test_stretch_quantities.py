@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.stated_quantities import (
@@ -14,7 +14,7 @@ from pantocheck.conformance.quantities.stated_quantities import (
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 
-LOW_PASS = LowPass("butterworth", 6, 20.0, "zero")
+LOW_PASS = Filter()
 POSITION = np.arange(0.0, 600.0, 0.05)
 FORCE = 120 + 20 * np.sin(2 * np.pi * POSITION / 11.0) + np.where((POSITION >= 200) & (POSITION < 260), 80.0, 0.0)
 """Force at 50 m/s and 1000 samples per second, 4.5 Hz; from 200 m to 260 m, in the overlap, it is higher."""

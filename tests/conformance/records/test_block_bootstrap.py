@@ -7,7 +7,7 @@ import pytest
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.quantities.statistics import WHOLE_RECORD, Sampling
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
@@ -19,7 +19,7 @@ DIGEST = "9f" * 32
 
 def force_signals(force: RealArray, filter_applied_Hz: float | None = None) -> PantographSignals:
     position = np.arange(force.size) * SPEED / RATE
-    channel = ForceChannel(force, RATE, LowPass(), filter_applied_Hz)
+    channel = ForceChannel(force, RATE, Filter(), filter_applied_Hz)
     return PantographSignals(position, channel, (position[0], position[-1]))
 
 

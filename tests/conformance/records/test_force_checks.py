@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.records.force_checks import detect_filtered, find_outliers
 
@@ -57,7 +57,7 @@ def signals(*tones: tuple[float, float], rate: float = 500.0, seconds: float = 2
     """Force of 120 N with tones of a frequency [Hz] and an amplitude [N]."""
     time = np.arange(int(seconds * rate)) / rate
     force = 120 + sum(amplitude * np.sin(2 * np.pi * frequency * time) for frequency, amplitude in tones)
-    channel = ForceChannel(np.asarray(force), rate, LowPass())
+    channel = ForceChannel(np.asarray(force), rate, Filter())
     return PantographSignals(50 * time, channel, (0.0, 50 * time[-1]))
 
 

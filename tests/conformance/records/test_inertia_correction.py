@@ -89,7 +89,7 @@ def test_head_inertia_recovers_the_contact_force_up_to_20_hz(tmp_path: Path, cas
     without = {key: {**value, "head": []} if "sum" in value else value for key, value in columns.items()}
     edit_toml(sidecar, {"columns": without})
     plain = read_record(sidecar)[0]
-    low_pass = Filter().low_pass
+    low_pass = Filter()
     for number in (1, 2):
         true, found, bare = (
             RecordSignals(item, low_pass).pantographs[number].graded for item in (record, corrected, plain)

@@ -71,7 +71,7 @@ def test_every_format_and_mapping_gives_the_same_record_and_quantities(
     read, _ = read_record(foreign(name))
     for key in ("time", "position", "force", "contact_height"):
         assert_allclose(getattr(read, key), getattr(record, key), rtol=1e-12, atol=1e-12, err_msg=key)
-    low_pass = Filter().low_pass
+    low_pass = Filter()
     expected, found = (RecordSignals(item, low_pass).evaluation for item in (record, read))
     assert expected.values[1].keys() >= {"mean_force_N", "std_force_N", "contact_height_range_mm"}
     for owner in (1, 2):

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Value, evaluate_signals
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.records.force_checks import find_outliers
 from pantocheck.conformance.records.record import Record, RecordInvalid
@@ -37,7 +37,7 @@ def sidecar(**keys: Any) -> RecordSidecar:
 
 
 def ready(samples: RecordSamples, tolerance: float = 5.0, **keys: Any) -> PreparedRecord:
-    return prepare_record(samples, sidecar(**keys), LowPass(), tolerance)
+    return prepare_record(samples, sidecar(**keys), Filter(), tolerance)
 
 
 def by_time(seconds: float = 30.0, rate: float = 500.0) -> RecordSamples:
@@ -53,14 +53,14 @@ def test_simulated_record_is_unchanged() -> None:
     """Even samples, a run-in and a run-out: the quantities are those of the record itself, to the last bit."""
     samples = by_time()
     keys = {"evaluated_m": [300.0, 1500.0]}
-    expected = evaluate_record(build_record(samples, sidecar(**keys)), LowPass()).values[1]
+    expected = evaluate_record(build_record(samples, sidecar(**keys)), Filter()).values[1]
     assert values(ready(samples, **keys)) == expected
 
 
 def test_record_in_other_units_is_prepared_in_si(converted_record: Path, two_pantograph_record: Record) -> None:
     """The first pantograph crosses 150 m to 270 m, so that it covers the analysis section."""
     samples, described, _ = read_samples(converted_record)
-    prepared = prepare_record(samples, described.model_copy(update={"evaluated_m": (160.0, 240.0)}), LowPass(), 5.0)
+    prepared = prepare_record(samples, described.model_copy(update={"evaluated_m": (160.0, 240.0)}), Filter(), 5.0)
     assert prepared.pantographs[1].section == (160.0, 240.0)
     assert_allclose(prepared.pantographs[1].force.delivered, two_pantograph_record.force[0], rtol=1e-12)
 
@@ -187,7 +187,7 @@ def test_speed_channel_and_positions_must_both_be_steady() -> None:
 @pytest.mark.parametrize("stated", [True, False])
 def test_measuring_chain_filtered_at_20_Hz_has_no_values_above(stated: bool) -> None:
     samples = by_time()
-    filtered = RecordSamples(LowPass(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
+    filtered = RecordSamples(Filter(order=8)(samples.force[0], 500.0)[None], samples.time, position=samples.position)
     found = ready(filtered, filter_applied_Hz=20.0) if stated else ready(filtered)
     got = evaluate_signals(found.pantographs, LineSignals(found.section))
     for name in ("rms_20_50_N", "std_force_50_N", "cov_50", "contact_loss_pct"):

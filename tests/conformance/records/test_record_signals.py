@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from numpy.typing import ArrayLike
 
 from pantocheck.conformance.quantities.evaluation import LINE, Value
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.force_quantities import PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.registry import (
     QUANTITIES,
@@ -36,14 +36,14 @@ def record(force: ArrayLike | None = None, rate: float = RATE, length: float = 6
 
 
 def values(item: Record, **filter_settings: Any) -> dict[str, Value]:
-    return evaluate_record(item, LowPass(**filter_settings)).values[1]
+    return evaluate_record(item, Filter(**filter_settings)).values[1]
 
 
 def test_every_quantity_of_a_known_force() -> None:
     found = values(record(contact_height=5.3 + 0.02 * np.sin(2 * np.pi * np.arange(12_000) / 12_000 * 12)[None]))
     # Gain of the default filter at 2, 10 and 30 Hz, and of the 50 Hz one: 1 / (1 + (sqrt(2) - 1) W^6) by definition.
-    gain = LowPass().gain(np.array([2.0, 10.0, 30.0]), RATE)
-    gain_50 = LowPass(cutoff_Hz=50.0).gain(np.array([2.0, 10.0, 30.0]), RATE)
+    gain = Filter().gain(np.array([2.0, 10.0, 30.0]), RATE)
+    gain_50 = Filter(cutoff_Hz=50.0).gain(np.array([2.0, 10.0, 30.0]), RATE)
     sigma = np.sqrt(np.sum((gain * [20, 10, 8]) ** 2) / 2)
     sigma_50 = np.sqrt(np.sum((gain_50 * [20, 10, 8]) ** 2) / 2)
     expected = {
@@ -88,7 +88,7 @@ def test_each_pantograph_is_evaluated_at_its_own_position() -> None:
     time = np.arange(12_000) / RATE
     position = np.array([SPEED * time, SPEED * time - 100])
     force = np.where(position < 200, 500.0, np.where(position < 400, [[110.0], [130.0]], 900.0))
-    found = evaluate_record(record(force, position=position), LowPass()).values
+    found = evaluate_record(record(force, position=position), Filter()).values
     assert_allclose([found[1]["mean_force_N"], found[2]["mean_force_N"]], [110, 130], rtol=1e-12)
 
 
@@ -96,12 +96,12 @@ def test_uplift_is_the_largest_at_the_evaluated_supports() -> None:
     supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
     uplift = np.zeros((5, 12_000))
     uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
-    found = evaluate_record(record(support_position=supports, support_uplift=uplift), LowPass(), tuple(supports))
+    found = evaluate_record(record(support_position=supports, support_uplift=uplift), Filter(), tuple(supports))
     assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
 
 
 def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> None:
-    evaluation = evaluate_record(record(filter_applied_Hz=20.0), LowPass())
+    evaluation = evaluate_record(record(filter_applied_Hz=20.0), Filter())
     assert set(evaluation.skipped[1]) == {
         "std_force_50_N",
         "cov_50",
@@ -117,7 +117,7 @@ def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> No
 
 
 def test_low_rate_has_no_values_up_to_50_hz() -> None:
-    evaluation = evaluate_record(record(rate=100.0), LowPass())
+    evaluation = evaluate_record(record(rate=100.0), Filter())
     assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
     assert (
         "the record has 100 samples per second; a filter at 50 Hz needs at least 125"
@@ -128,7 +128,7 @@ def test_low_rate_has_no_values_up_to_50_hz() -> None:
 
 @pytest.mark.parametrize("length", [190.0, 390.0])
 def test_truncated_record_has_no_values(length: float) -> None:
-    evaluation = evaluate_record(record(length=length), LowPass())
+    evaluation = evaluate_record(record(length=length), Filter())
     assert evaluation.values[1] == {}
     assert "but the analysis section extends from 200 m to 400 m" in evaluation.skipped[1]["mean_force_N"]
 
@@ -142,7 +142,7 @@ def test_every_pantograph_covers_the_section_to_one_sample(rate: float, samples:
     force = np.array([[110.0], [130.0]]) + 20 * np.sin(2 * np.pi * 2 * time)
     start, end, missing = position[0, 0], position[1, -1], samples * SPEED / rate
     for number, section in ((1, (start - missing, end)), (2, (start, end + missing))):
-        evaluation = evaluate_record(record(force, rate, position=position, evaluated=section), LowPass())
+        evaluation = evaluate_record(record(force, rate, position=position, evaluated=section), Filter())
         assert ("mean_force_N" in evaluation.values[number]) is (samples <= 1)
         assert samples <= 1 or "the record covers" in evaluation.skipped[number]["mean_force_N"]
         assert "mean_force_N" in evaluation.values[3 - number]
@@ -158,21 +158,21 @@ def test_minimum_may_be_negative() -> None:
     inside = np.abs(time - 6.5) < 0.2
     force = np.where(inside, [[-60.0], [-20.0]], 100.0)
     position = np.array([SPEED * time, SPEED * time])
-    found = evaluate_record(record(force, position=position), LowPass()).values
+    found = evaluate_record(record(force, position=position), Filter()).values
     assert -60 - 0.15 * 160 < found[1]["min_force_N"] <= -60
     assert -20 - 0.15 * 120 < found[2]["min_force_N"] <= -20
 
 
 def test_short_section_has_no_low_band() -> None:
-    evaluation = evaluate_record(record(evaluated=(200.0, 220.0)), LowPass())
+    evaluation = evaluate_record(record(evaluated=(200.0, 220.0)), Filter())
     assert "lasts 0.4 s" in evaluation.skipped[1]["rms_0_5_N"]
     assert evaluation.values[1]["std_force_N"] > 0
-    shorter = evaluate_record(record(evaluated=(200.0, 205.0)), LowPass())
+    shorter = evaluate_record(record(evaluated=(200.0, 205.0)), Filter())
     assert "need at least 0.2 s" in shorter.skipped[1]["std_force_N"]
 
 
 def test_record_without_uplift_or_height_states_the_reason() -> None:
-    evaluation = evaluate_record(record(), LowPass())
+    evaluation = evaluate_record(record(), Filter())
     assert evaluation.skipped[1]["contact_height_range_mm"] == "the record has no contact height"
     assert evaluation.skipped[LINE]["max_uplift_at_support_mm"] == "the record has no uplift at supports"
 

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.record_checks import check_record
 
-NOISE = LowPass(cutoff_Hz=100.0)(np.random.default_rng(1).normal(0.0, 12.0, 20_000), 1000.0)
+NOISE = Filter(cutoff_Hz=100.0)(np.random.default_rng(1).normal(0.0, 12.0, 20_000), 1000.0)
 """Force between the cut-off of 20 Hz and 100 Hz from a fixed seed [N]."""
 
 
@@ -48,12 +48,12 @@ def record(wave: type[Wave], two_pantograph_case: Case) -> Record:
 
 
 def contradictions(case: Case, record: Record) -> dict[str, str]:
-    findings = check_record(case, RecordSignals(record, case.file.filter.low_pass))
+    findings = check_record(case, RecordSignals(record, case.file.filter))
     return {name: finding.text for name, finding in findings.items() if finding.kind == "contradiction"}
 
 
 def test_record_without_fault_has_no_finding(two_pantograph_case: Case, record: Record) -> None:
-    assert check_record(two_pantograph_case, RecordSignals(record, two_pantograph_case.file.filter.low_pass)) == {}
+    assert check_record(two_pantograph_case, RecordSignals(record, two_pantograph_case.file.filter)) == {}
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -72,7 +72,7 @@ def test_doubt_of_the_first_pantograph_does_not_hide_a_contradiction_of_the_seco
     weak = 0.75 / 4.3  # At full noise, the implied content is 4.3 times that below the cut-off; 0.5 to 1 is a doubt.
     stated = replace(record, filter_applied_Hz=20.0)
     doubted = change(stated, "force", 0, lambda force: force + weak * NOISE[: force.size])
-    low_pass = two_pantograph_case.file.filter.low_pass
+    low_pass = two_pantograph_case.file.filter
     assert check_record(two_pantograph_case, RecordSignals(doubted, low_pass))["roll-off"].kind == "doubt"
     both = change(doubted, "force", 1, lambda force: force + 5 * weak * NOISE[: force.size])
     assert "pantograph 2" in contradictions(two_pantograph_case, both)["roll-off"]

@@ -35,7 +35,7 @@ def test_sections_are_shifted_span_by_span(growing: tuple[Case, Record]) -> None
 def test_spread_is_the_largest_difference(growing: tuple[Case, Record]) -> None:
     """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
     case, record = growing
-    spread = section_spread(RecordSignals(record, case.file.filter.low_pass), case.shifted_sections)
+    spread = section_spread(RecordSignals(record, case.file.filter), case.shifted_sections)
     assert spread[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
     assert spread[1]["contact_loss_pct"] == 0.0
 
@@ -52,12 +52,12 @@ def test_record_that_covers_too_few_sections_has_no_spread(growing: tuple[Case, 
         support_position=None,
         support_uplift=None,
     )
-    assert section_spread(RecordSignals(short, case.file.filter.low_pass), case.shifted_sections) == {}
+    assert section_spread(RecordSignals(short, case.file.filter), case.shifted_sections) == {}
 
 
 def test_value_closer_to_a_limit_than_the_change_between_sections_is_marked(growing: tuple[Case, Record]) -> None:
     case, record = growing
-    value = evaluate_record(record, case.file.filter.low_pass).values[1]["mean_force_N"]
+    value = evaluate_record(record, case.file.filter).values[1]["mean_force_N"]
     assert isinstance(value, float)
     limit = Limit(quantity="mean_force_N", lower=value - 1.0, upper=value + 50, trust="secondary", source="test")
     result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.traces import MAX_POINTS, build_pantograph_traces, build_uplift_traces, thin_series
@@ -25,7 +25,7 @@ def signals(**changes: Any) -> RecordSignals:
         "force": force[None],
         "evaluated": (0.0, 5000.0),
     }
-    return RecordSignals(Record(**(channels | changes)), LowPass())
+    return RecordSignals(Record(**(channels | changes)), Filter())
 
 
 def test_thinned_spectrum_keeps_its_peak() -> None:

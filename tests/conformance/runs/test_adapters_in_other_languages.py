@@ -65,7 +65,7 @@ def evaluate(system: System, case: Case) -> dict[str, Value]:
     assert isinstance(outcome, Delivered), outcome
     assert outcome.record is not None
     assert outcome.record.support_uplift is not None
-    values = evaluate_record(outcome.record, case.file.filter.low_pass).values[1]
+    values = evaluate_record(outcome.record, case.file.filter).values[1]
     return values | {"uplift": float(outcome.record.support_uplift.max())}
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from helpers.extreme_runs import build_case, simulate
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import CheckName
@@ -21,7 +21,7 @@ from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
 from pantocheck.conformance.runs.record_checks import check_record
 
 Series = NDArray[np.float64]
-FILTER = LowPass(cutoff_Hz=20.0)
+FILTER = Filter(cutoff_Hz=20.0)
 
 
 def change(
@@ -48,13 +48,13 @@ def bare_line() -> tuple[Case, Record]:
 
 
 def doubts(case: Case, record: Record) -> dict[CheckName, str]:
-    findings = check_record(case, RecordSignals(record, case.file.filter.low_pass, case.line.geometry.supports))
+    findings = check_record(case, RecordSignals(record, case.file.filter, case.line.geometry.supports))
     return {name: finding.kind for name, finding in findings.items()}
 
 
 def deviation(case: Case, record: Record, row: int) -> float:
     """Standard deviation of the graded force over the section [N]."""
-    return float(RecordSignals(record, case.file.filter.low_pass).pantographs[row + 1].graded.std())
+    return float(RecordSignals(record, case.file.filter).pantographs[row + 1].graded.std())
 
 
 def passing_support(record: Record, row: int) -> tuple[int, float]:
@@ -94,7 +94,7 @@ def test_raised_minimum_is_found(
 ) -> None:
     """A bump of 20 ms at the smallest force, in standard deviations; tolerance 0.15."""
     case, record = run
-    signals = RecordSignals(record, case.file.filter.low_pass).pantographs[row + 1]
+    signals = RecordSignals(record, case.file.filter).pantographs[row + 1]
     smallest = signals.inside.start + int(signals.graded.argmin())
     bump = np.exp(-(((record.time - record.time[smallest]) / 0.02) ** 2))
     raised = change(record, "force", row, lambda force: force + share * deviation(case, record, row) * bump)
@@ -112,7 +112,7 @@ def test_constant_height_is_named(run: tuple[Case, Record], row: int) -> None:
     """A constant has no steps whose size could be stated."""
     case, record = run
     constant = change(record, "contact_height", row, lambda height: np.full_like(height, 5.3))
-    found = IMPLIED_FORCE.run(case, RecordSignals(constant, case.file.filter.low_pass))
+    found = IMPLIED_FORCE.run(case, RecordSignals(constant, case.file.filter))
     assert found is not None
     assert found.kind == "unchecked"
     assert f"contact height of pantograph {row + 1}: it is constant" in found.text
@@ -163,7 +163,7 @@ UPLIFTS: dict[str, Callable[[Record], Record]] = {
         record,
         support_uplift=np.where(
             np.isfinite(record.support_uplift),
-            [LowPass(cutoff_Hz=5.0)(np.nan_to_num(u), record.rate) for u in record.support_uplift],
+            [Filter(cutoff_Hz=5.0)(np.nan_to_num(u), record.rate) for u in record.support_uplift],
             np.nan,
         ),
     ),

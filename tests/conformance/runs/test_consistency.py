@@ -10,7 +10,7 @@ from scipy.signal import lsim
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import CheckName, Finding
@@ -29,11 +29,11 @@ def record(wave: type[Wave], case_250: Case) -> Record:
 def rough(record: Record) -> Record:
     """The same force with white noise up to 100 Hz from a fixed seed; no contact height."""
     noise = np.random.default_rng(1).normal(0.0, 12.0, record.time.size)
-    return replace(record, force=record.force + LowPass(cutoff_Hz=100.0)(noise, record.rate), contact_height=None)
+    return replace(record, force=record.force + Filter(cutoff_Hz=100.0)(noise, record.rate), contact_height=None)
 
 
 def findings(case: Case, record: Record) -> dict[CheckName, Finding]:
-    return check_record(case, RecordSignals(record, case.file.filter.low_pass))
+    return check_record(case, RecordSignals(record, case.file.filter))
 
 
 def kinds(case: Case, record: Record) -> list[tuple[CheckName, str]]:
@@ -81,7 +81,7 @@ def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, sampl
     state = np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ stiffness, -inverse @ damping]])
     drive = np.array([[0.0], [0.0], [0.0], [-1 / chain.masses_kg[1]]])
     system = (state, drive, np.array([[0.0, 1.0, 0.0, 0.0]]), np.zeros((1, 1)))
-    slow = LowPass(cutoff_Hz=3.0)(np.random.default_rng(2).normal(0.0, 300.0, time.size), record.rate)
+    slow = Filter(cutoff_Hz=3.0)(np.random.default_rng(2).normal(0.0, 300.0, time.size), record.rate)
     force = 119.0 + slow + 0.5 * np.sin(2 * np.pi * 40.0 * time)  # every contact force has content above 20 Hz
     height = lsim(system, slow, time)[1]
     assert record.support_position is not None
@@ -94,7 +94,7 @@ def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, sampl
     assert finding.kind == "contradiction"
     assert delay in finding.text
     # A filter that only runs forwards delays the force by 0.02 s at 20 Hz: that is no contradiction.
-    causal = LowPass(phase="causal")(force, record.rate)
+    causal = Filter(phase="causal")(force, record.rate)
     late = replace(whole, force=causal[None], filter_applied_Hz=20.0)
     assert kinds(case_250, late) == [("dynamics", "doubt")]
 
@@ -107,7 +107,7 @@ def test_fit_of_a_consistent_record_is_exact(case_250: Case, record: Record) -> 
 
 def test_missing_or_weak_filter_is_found(case_250: Case, rough: Record) -> None:
     def kinds_after_filter(order: int | None) -> list[tuple[CheckName, str]]:
-        force = rough.force if order is None else LowPass(order=order)(rough.force[0], rough.rate)[None]
+        force = rough.force if order is None else Filter(order=order)(rough.force[0], rough.rate)[None]
         return kinds(case_250, replace(rough, force=force, filter_applied_Hz=20.0))
 
     without_height = ("dynamics", "unchecked")

@@ -142,9 +142,7 @@ def test_filter_is_rebuilt_from_its_numbers() -> None:
     assert values.filter_passes == 2
     sections = butter(values.filter_pass_order, values.filter_pass_cutoff_Hz, fs=rate, output="sos")
     # The cut-off has six digits.
-    assert sosfiltfilt(sections, signal)[500:-500] == pytest.approx(
-        case.file.filter.low_pass(signal, rate)[500:-500], abs=1e-5
-    )
+    assert sosfiltfilt(sections, signal)[500:-500] == pytest.approx(case.file.filter(signal, rate)[500:-500], abs=1e-5)
 
 
 def test_stitch_wires_share_the_tension_of_the_messenger_wire() -> None:

@@ -44,7 +44,7 @@ def evaluate(outcome: Outcome, case: Case) -> dict[str, Value]:
     """Quantities of the pantograph of a delivered record."""
     assert isinstance(outcome, Delivered)
     assert outcome.record is not None
-    return evaluate_record(outcome.record, case.file.filter.low_pass).values[1]
+    return evaluate_record(outcome.record, case.file.filter).values[1]
 
 
 def adapter(name: str, *arguments: str) -> System:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from helpers.extreme_runs import build_case, simulate
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.force_content import CONTENT, bending_length, force_content, kink_content
@@ -27,7 +27,7 @@ def run() -> tuple[Case, Record]:
 
 
 def read_signals(case: Case, record: Record) -> RecordSignals:
-    return RecordSignals(record, case.file.filter.low_pass, case.line.geometry.supports)
+    return RecordSignals(record, case.file.filter, case.line.geometry.supports)
 
 
 def doubts(case: Case, record: Record) -> dict[str, str]:
@@ -47,7 +47,7 @@ def smooth(record: Record, rows: tuple[int, ...], low_pass: Callable[[Series, fl
 def test_same_filter_of_force_and_height_is_found(run: tuple[Case, Record], row: int, phase: str) -> None:
     """At 10 Hz; the equations of the pantograph hold for the filtered channels too."""
     case, record = run
-    filtered = smooth(record, (row,), LowPass(cutoff_Hz=10.0, phase=phase))
+    filtered = smooth(record, (row,), Filter(cutoff_Hz=10.0, phase=phase))
     finding = check_record(case, read_signals(case, filtered))["content"]
     assert finding.kind == "doubt"
     assert finding.text.startswith(f"pantograph {row + 1}: the force has 0.0")
@@ -56,13 +56,13 @@ def test_same_filter_of_force_and_height_is_found(run: tuple[Case, Record], row:
 @pytest.mark.parametrize("row", [0, 1])
 def test_no_other_check_finds_the_same_filter(run: tuple[Case, Record], row: int) -> None:
     case, record = run
-    assert doubts(case, smooth(record, (row,), LowPass(cutoff_Hz=10.0))) == {"content": "doubt"}
+    assert doubts(case, smooth(record, (row,), Filter(cutoff_Hz=10.0))) == {"content": "doubt"}
 
 
 def test_filter_at_10_Hz_stated_as_the_filter_of_the_case_is_found(run: tuple[Case, Record]) -> None:
     """The stated filter is divided out: the filter at 10 Hz still leaves 64 times less content at 30-50 Hz."""
     case, record = run
-    filtered = replace(smooth(record, (0, 1), LowPass(cutoff_Hz=10.0)), filter_applied_Hz=20.0)
+    filtered = replace(smooth(record, (0, 1), Filter(cutoff_Hz=10.0)), filter_applied_Hz=20.0)
     assert doubts(case, filtered)["content"] == "doubt"
 
 
@@ -71,14 +71,14 @@ def test_filter_at_10_Hz_stated_as_the_filter_of_the_case_is_found(run: tuple[Ca
 def test_stated_filter_is_accepted(run: tuple[Case, Record], phase: str, cutoff: float, stated: float | None) -> None:
     """A filter at 100 Hz, as against aliasing, need not be stated."""
     case, record = run
-    filtered = replace(smooth(record, (0, 1), LowPass(cutoff_Hz=cutoff, phase=phase)), filter_applied_Hz=stated)
+    filtered = replace(smooth(record, (0, 1), Filter(cutoff_Hz=cutoff, phase=phase)), filter_applied_Hz=stated)
     assert "content" not in doubts(case, filtered)
 
 
 def test_slow_train_and_low_rate(run: tuple[Case, Record]) -> None:
     """Bending of the wire, over 0.094 m, rounds kinks at 50 Hz below 29.6 m/s; 80 samples per second end at 32 Hz."""
     case, record = run
-    filtered = smooth(record, (0, 1), LowPass(cutoff_Hz=10.0))
+    filtered = smooth(record, (0, 1), Filter(cutoff_Hz=10.0))
     assert_allclose(bending_length(case), np.sqrt(195.0 / 22e3))
     for speed, found in ((29.0, False), (30.0, True)):
         assert (CONTENT.run(case, read_signals(case, replace(filtered, speed=speed))) is not None) == found

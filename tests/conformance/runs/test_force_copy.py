@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from helpers.extreme_runs import build_case, simulate
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.force_content import COPY, find_likeness
@@ -24,7 +24,7 @@ def run() -> tuple[Case, Record]:
 
 
 def read_signals(case: Case, record: Record) -> RecordSignals:
-    return RecordSignals(record, case.file.filter.low_pass, case.line.geometry.supports)
+    return RecordSignals(record, case.file.filter, case.line.geometry.supports)
 
 
 def take(record: Record, source: int, delay: float) -> Record:
@@ -115,7 +115,7 @@ def test_likeness_of_exact_parts() -> None:
     """A scaled and shifted part is found between samples; the negative one is no copy; short and constant have none."""
     time = np.arange(4000) / 500.0
     noise = np.random.default_rng(1).normal(0.0, 1.0, time.size)
-    signal = LowPass(cutoff_Hz=20.0)(noise, 500.0)
+    signal = Filter(cutoff_Hz=20.0)(noise, 500.0)
     shifted = np.interp(time[700:1700] + 0.3 / 500.0, time, signal)
     likeness = find_likeness(2.0 * shifted + 5.0, signal)
     assert likeness is not None

@@ -16,12 +16,12 @@ from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, fi
 
 
 def check(case: Case, record: Record) -> Finding | None:
-    return DYNAMICS.run(case, RecordSignals(record, case.file.filter.low_pass))
+    return DYNAMICS.run(case, RecordSignals(record, case.file.filter))
 
 
 def fit(case: Case, record: Record, row: int) -> ResponseFit:
     """Fit of one pantograph to every second sample of the section: 25 per period of 20 Hz, at 1000 Hz."""
-    low_pass, signals = case.file.filter.low_pass, RecordSignals(record, case.file.filter.low_pass)
+    low_pass, signals = case.file.filter, RecordSignals(record, case.file.filter)
     first, last = np.searchsorted(record.position[row], signals.pantographs[row + 1].section)
     assert record.contact_height is not None
     force, height = (

@@ -46,7 +46,7 @@ def errors(case: Case, element: float, time_step: float) -> dict[str, float]:
 
 def values(case: Case) -> dict[str, float]:
     record = ReferenceSimulator().run_unrefined(case).record
-    return {name: float(value) for name, value in evaluate_record(record, case.file.filter.low_pass).values[1].items()}
+    return {name: float(value) for name, value in evaluate_record(record, case.file.filter).values[1].items()}
 
 
 def warned(case: Case, element: float, time_step: float) -> list[str]:

@@ -30,7 +30,7 @@ KINK, SMOOTH = 5.0, 40.0
 
 
 def check(case: Case, record: Record) -> Finding | None:
-    return SUPPORT_PASSING.run(case, RecordSignals(record, case.file.filter.low_pass))
+    return SUPPORT_PASSING.run(case, RecordSignals(record, case.file.filter))
 
 
 def bumps(distance: NDArray[np.float64], width: float) -> NDArray[np.float64]:

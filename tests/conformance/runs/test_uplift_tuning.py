@@ -144,7 +144,7 @@ def discretised(case: Case) -> DiscretisedLine:
 def mean_forces(case: Case, line: DiscretisedLine, uplift: tuple[float, ...]) -> np.ndarray:
     """Mean contact forces over the analysis section with given uplift forces [N]."""
     run = run_passage(case, line, case.file.discretisation, uplift)
-    signals = RecordSignals(run.record, case.file.filter.low_pass)
+    signals = RecordSignals(run.record, case.file.filter)
     return np.array([pantograph.delivered.mean() for pantograph in signals.pantographs.values()])
 
 

@@ -8,7 +8,7 @@ from helpers.lines import DAMPED, Array, bare_wire, simple_line
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.connector_step import column_half_width, inverse_columns
-from pantocheck.model.dynamics.effective_matrix import factorise
+from pantocheck.model.dynamics.kernel_arrays import factorise
 
 
 @pytest.fixture(scope="module", params=[(0.5, 1e-3), (1.3, 4e-3)])

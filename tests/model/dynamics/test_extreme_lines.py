@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from helpers.extreme_runs import build_case, simulate
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.quantities.filters import LowPass
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.record_checks import check_record, record_state
@@ -67,7 +67,7 @@ def records() -> dict[str, tuple[Case, Record]]:
 
 
 def state(case: Case, record: Record) -> tuple[str, str]:
-    return record_state(check_record(case, RecordSignals(record, case.file.filter.low_pass)))
+    return record_state(check_record(case, RecordSignals(record, case.file.filter)))
 
 
 def shift(record: Record, number: int, distance: float) -> Record:
@@ -79,7 +79,7 @@ def shift(record: Record, number: int, distance: float) -> Record:
 
 def low_pass_all(record: Record) -> Record:
     """The record as a measuring chain of 20 Hz delivers it."""
-    low_pass = LowPass(cutoff_Hz=20.0)
+    low_pass = Filter(cutoff_Hz=20.0)
 
     def smooth(channels: NDArray[np.float64] | None) -> NDArray[np.float64]:
         assert channels is not None

@@ -11,8 +11,8 @@ from pantocheck.model import Catenary, discretise
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
-from pantocheck.model.dynamics.effective_matrix import factorise
 from pantocheck.model.dynamics.extents import find_extents, merge_extents
+from pantocheck.model.dynamics.kernel_arrays import factorise
 from pantocheck.model.dynamics.panels import (
     FADED,
     SHORTEST_PIECE,

@@ -9,8 +9,7 @@ import pytest
 
 from verification.guide.guide_driver import compute_parts
 from verification.guide.guide_format import Topic
-from verification.guide.guide_store import GuideStore
-from verification.guide.guide_tasks import GuideTask, list_tasks
+from verification.guide.guide_tasks import GuideStore, GuideTask, list_tasks
 
 
 def _write_topic(title: str, log: Path) -> Topic:

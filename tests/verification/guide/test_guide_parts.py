@@ -13,15 +13,11 @@ from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.drops.identify import identify_modes
 from verification.guide import peers
 from verification.guide.guide_building import list_effects
-from verification.guide.guide_tasks import list_tasks, list_timings
-from verification.guide.known_limitations import LIMITATIONS_FILE, read_limitations
-from verification.guide.part_durations import DURATIONS_S
-from verification.guide.peers.peer_list import PEERS
-from verification.guide.peers.peer_package import Peer, run_peer
-from verification.guide.peers.salib_indices import evaluate_ishigami
+from verification.guide.guide_driver import LIMITATIONS_FILE, read_limitations
+from verification.guide.guide_tasks import DURATIONS_S, list_tasks, list_timings
+from verification.guide.library_values import describe_fault, describe_mutant, measure_passage, name_processor
+from verification.guide.peers.peer_list import PEERS, Peer, evaluate_ishigami, run_peer
 from verification.guide.peers.subspace_modes import KNOWN_MODES, build_known_drop
-from verification.guide.performance import measure_passage, name_processor
-from verification.guide.self_test_summary import describe_fault, describe_mutant
 
 ROOT = Path(__file__).parents[3]
 

@@ -12,8 +12,7 @@ from verification.guide.pages.confidence_sections import (
     mark_code,
 )
 from verification.guide.pages.formulation_section import build_formulation_section
-from verification.guide.pages.peer_section import build_peer_section
-from verification.guide.pages.topic_section import build_topic_section
+from verification.guide.pages.topic_section import build_peer_section, build_topic_section
 from verification.guide.pages.validation_section import build_validation_section
 
 GUIDE_SCOPE = (

@@ -1,13 +1,38 @@
-"""Sections of the verification against closed forms: comparisons, orders of convergence and figures."""
+"""Errors against a refined step, beside the slope of the theoretical order."""
 
 from typing import Any
 
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, NullLocator
+
 from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.core.figure_style import HALF, INK, SHADES, add_legend, label_decades, render_svg
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import format_value
-from verification.guide.pages.convergence_chart import draw_convergence
 
+
+@render_svg
+def draw_convergence(study: dict[str, Any]) -> Figure:
+    """Errors of a convergence study of guide.json on logarithmic axes."""
+    steps, errors = np.array(study["steps"]), np.array(study["errors"])
+    figure = Figure(figsize=(HALF, 2.1))
+    axes = figure.subplots()
+    axes.set(xscale="log", yscale="log", xlabel=study["parameter"], ylabel="relative error [-]")
+    slope = errors[-1] * (steps / steps[-1]) ** study["theory"]
+    axes.plot(steps, slope, "--", color=SHADES[1], linewidth=1.0, label=f"order {study['theory']:g}")
+    axes.plot(steps, errors, "o-", color=INK, linewidth=1.0, markersize=3.5, label="computed")
+    label_decades(axes.yaxis)
+    axes.set_xticks(steps, [f"{step:g}" for step in steps])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.margins(x=0.08)
+    add_legend(axes, columns=2)
+    return figure
+
+
+# Sections of the verification against closed forms: comparisons, orders of convergence and figures.
 AGREEMENT = {True: "yes", False: "NO"}
 """Words for a value inside or outside its tolerance."""
 
@@ -89,3 +114,29 @@ def _draw_study(study: dict[str, Any]) -> doc.Figure:
         f"Convergence: {study['quantity']}.",
         wide=False,
     )
+
+
+# Section on the comparisons with packages of others.
+PEER_SCOPE = (
+    "Packages of others solve parts of the same problems. A comparison runs where its package is installed; no stored "
+    "value replaces it."
+)
+
+INSTALL_LINE = "pip install 'pantocheck[peers]'"
+
+
+def build_peer_section(peers: list[dict[str, Any]]) -> doc.Section:
+    """Section with one part per package."""
+    return doc.Section("Peers", (doc.Paragraph(PEER_SCOPE), *map(_build_peer, peers)), anchor="peers")
+
+
+def _build_peer(peer: dict[str, Any]) -> doc.Section:
+    blocks: tuple[doc.Block, ...] = (doc.Paragraph(peer["setting"]),)
+    if peer["version"] is None:
+        reason = (f"Not run: {peer['package']} is not installed. Install it with ", doc.Code(INSTALL_LINE), ".")
+        blocks = (*blocks, doc.Paragraph(reason))
+    else:
+        version = f"Installed version: {peer['package']} {peer['version']}."
+        rows = peer["comparisons"]
+        blocks = (*blocks, doc.Paragraph(version), build_value_table(rows), list_tolerance_reasons(rows))
+    return doc.Section(peer["title"], blocks)
