@@ -5,7 +5,6 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from pantocheck.conformance.core.extras import install_line, is_installed
 from pantocheck.conformance.core.figure_style import read_source_date
@@ -15,10 +14,7 @@ from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.embedded_results import strip_times
 from pantocheck.conformance.results.file_places import ReportPlaces
 from pantocheck.conformance.results.report_files import FILES
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.results.results_format import Results
-
+from pantocheck.conformance.results.results_format import Results
 
 NO_PLACES = ReportPlaces()
 """Places of a report whose input files are not known."""
