@@ -1,9 +1,7 @@
 """One style for all figures: SVG, letters as paths, no dates, the same bytes every time."""
 
 import io
-import os
 from collections.abc import Callable, Iterable
-from datetime import UTC, datetime
 from functools import cache, wraps
 from importlib.resources import as_file
 from typing import Any, ParamSpec, TypeVar
@@ -17,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.core.texts import TEMPLATES
 
 INK, GREY, PALE = "#1a1d21", "#8a929b", "#e9edf1"
@@ -121,27 +119,3 @@ def add_box(axes: Axes, values: RealArray, place: float) -> None:
         capprops={"color": GREY},
         manage_ticks=False,
     )
-
-
-# Date of a document from the environment, so that the same results give the same bytes.
-LATEST = 253402300799
-"""End of the year 9999 [s since 1970], the last date that can be written."""
-
-
-def read_source_date() -> int | None:
-    """`SOURCE_DATE_EPOCH` [s since 1970]; None if the environment does not set it.
-
-    Raises:
-        InputError: `SOURCE_DATE_EPOCH` is not a number of seconds.
-    """
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    if epoch is None:
-        return None
-    if not (epoch.isascii() and epoch.isdigit() and int(epoch[:15]) <= LATEST):
-        raise InputError("SOURCE_DATE_EPOCH", f"'{epoch}' is not a date", "Give whole seconds since 1970-01-01 UTC.")
-    return int(epoch)
-
-
-def format_date(seconds: int) -> str:
-    """Date of a document [s since 1970] in words; empty if it is not known."""
-    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC" if seconds else ""

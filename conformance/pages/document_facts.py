@@ -1,6 +1,6 @@
 """Identity of a report on its page 1: administrative data, date, digest, verification and signature."""
 
-from pantocheck.conformance.core.figure_style import format_date
+from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.pages.document import Facts, Section
 from pantocheck.conformance.pages.scope_page import list_sources
 from pantocheck.conformance.pages.words import format_plain, format_value

@@ -9,7 +9,7 @@ import hashlib
 import json
 from datetime import datetime
 
-from pantocheck.conformance.core.figure_style import read_source_date
+from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.results.results_format import Results
 
 NAME = "results.json"

@@ -13,7 +13,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
 from markupsafe import Markup
 
-from pantocheck.conformance.core.figure_style import format_date
+from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import Document, to_plain
 from pantocheck.conformance.pages.embedded_results import BLOCK_ID, encode_data_block

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pantocheck.conformance.core.extras import install_line, is_installed
-from pantocheck.conformance.core.figure_style import read_source_date
 from pantocheck.conformance.core.files import write_atomically
+from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.pages.badge import render_badge
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.embedded_results import strip_times
