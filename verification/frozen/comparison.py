@@ -55,7 +55,8 @@ def _exit_codes(old: Path, new: Path, name: str) -> tuple[str, str] | None:
         str(json.loads((folder / "commands.json").read_text()).get(known, {}).get("exit_code", ABSENT))
         for folder, known in ((old, SPLIT.get(name, name)), (new, name))
     ]
-    return None if codes[0] == codes[1] else (codes[0], codes[1])
+    # A command that neither state has run is not an agreement.
+    return None if codes[0] == codes[1] != ABSENT else (codes[0], codes[1])
 
 
 def _pair_files(old: Path, new: Path, name: str, tables: Tables) -> list[tuple[str, Path | None, Path | None]]:

@@ -115,6 +115,12 @@ RENAMED_TEXT = (
         "criterion value limit verdict",
         _CRITERIA,
     ),
+    Rename(r"(?<=Criterion Value )Limits(?= ± model ±)", "Limit", _CRITERIA),
+    Rename(r"(?<=Criterion Value Limit ± model ± )noise\b", "measured", _CRITERIA),
+    Rename(r"\bcriterion value limits verdict\b", "criterion value limit verdict", _CRITERIA),
+    Rename(r"(?<= Hz )(\S+) ([\d.]+) to -(?= )", r"\1 >= \2", _CRITERIA),
+    Rename(r"(?<= N \[[%°]\] )(\S+) (?=[\d.]+ (?:PASS|FAIL|SKIP))", r"\1 <= ", _CRITERIA),
+    Rename(r" show/line\.svg\b", "", "`show --drawing` is the command `line draw`"),
     Rename(
         r"\belasticity_difference_pct ([\d.]+) (?=\d+ (?:PASS|FAIL))",
         r"Largest difference of the elasticity, relative to the measured one [%] \1 <= ",
