@@ -37,6 +37,18 @@ OLD_WORDS = {
 }
 """Words of commit 326dbcb4 for the commands that have other words since."""
 
+OLD_OPTIONS = {"show": "--drawing show/line.svg"}
+"""Options that a command had in commit 326dbcb4 and that are a command of their own since."""
+
+OLD_SCHEMAS = {
+    "response-limits.toml": "pantocheck.response-limits/1",
+    "drop-limits.toml": "pantocheck.drop-limits/1",
+}
+"""Formats of inputs in commit 326dbcb4; their other keys are the same since."""
+
+SPLIT = {"line-draw": "show"}
+"""Commands that are options of another command in commit 326dbcb4, with the name of that command."""
+
 EVERY_FORMAT = "--formats html,pdf,json,csv,junit,md,badge,annotations,codequality"
 RESPONSES = "inputs/dossier/measured/response-70N.csv inputs/dossier/measured/response-110N.csv"
 DROPPED_LINE = "--line vovan2015/mass-drop/printed"
@@ -84,6 +96,10 @@ COMMANDS = {
     ),
     "drop-fit": f"drop fit drop-population/modes.json {DROPPED_LINE}",
     "drop-compare": f"drop compare drop-campaign/drop-1.h5 {DROPPED_LINE} --damping drop-fit/damping.toml",
+    "drop-graded": (
+        f"drop compare drop-campaign/drop-1.h5 {DROPPED_LINE} --damping drop-fit/damping.toml"
+        " --limits inputs/drop-limits.toml"
+    ),
     "line-statics": (
         "line statics inputs/dossier/measured/statics.csv --line inputs/dossier/line.toml --height-tolerance-mm 10"
         " --elasticity-tolerance-pct 10"
@@ -94,6 +110,10 @@ COMMANDS = {
         " --out line-import/line.toml"
     ),
     "pantograph-compare": f"pantograph compare {RESPONSES} --pantograph inputs/dossier/pantograph.toml",
+    "pantograph-graded": (
+        f"pantograph compare {RESPONSES} --pantograph inputs/dossier/pantograph.toml"
+        " --limits inputs/response-limits.toml"
+    ),
     "pantograph-fit": f"pantograph fit {RESPONSES} --masses 3 --out pantograph-fit/fitted.toml",
     "new-line": "new line new-line/line.toml",
     "new-case": "new case new-case/case.toml",
@@ -102,7 +122,8 @@ COMMANDS = {
     "new-administration": "new administration new-administration/administration.toml",
     "new-dossier": "new dossier new-dossier/dossier.toml",
     "cases": "cases",
-    "show": "show en50318-2018/ac-stitched/275 --derived --request show/request.json --drawing show/line.svg",
+    "show": "show en50318-2018/ac-stitched/275 --derived --request show/request.json",
+    "line-draw": "line draw en50318-2018/ac-stitched/275 --out line-draw/line.svg",
     "show-drop": "show vovan2015/mass-drop/stand-in --derived",
     "describe": "describe inputs/dossier/measured/run-160.csv --out describe/run-160.toml",
     "verify-html": "verify en50318-2002/certificate.html",
@@ -141,10 +162,10 @@ def write(folder: Path, program: Path, words: Words, checkout: Path, selected: l
         True if every command ended with 0 (pass) or 1 (not passed).
     """
     folder.mkdir(parents=True, exist_ok=True)
-    _copy_inputs(folder / "inputs", checkout)
+    _copy_inputs(folder / "inputs", checkout, words)
     listed = folder / "commands.json"
     outcomes = json.loads(listed.read_text()) if selected and listed.is_file() else {}
-    names = selected or list(COMMANDS)
+    names = [name for name in selected or COMMANDS if words == "new" or name not in SPLIT]
     begin = time.monotonic()
     for name in names:
         outcomes[name] = vars(_run(folder, program.absolute(), words, name))
@@ -154,9 +175,12 @@ def write(folder: Path, program: Path, words: Words, checkout: Path, selected: l
     return not failed
 
 
-def _copy_inputs(folder: Path, checkout: Path) -> None:
+def _copy_inputs(folder: Path, checkout: Path, words: Words) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(INPUTS, folder)
+    for name, schema in OLD_SCHEMAS.items() if words == "old" else ():
+        text = (folder / name).read_text()
+        (folder / name).write_text(text.replace("pantocheck.comparison-limits/1", schema))
     for example in EXAMPLES:
         shutil.copytree(checkout / "examples" / example, folder / example)
 
@@ -169,7 +193,7 @@ def _run(folder: Path, program: Path, words: Words, name: str) -> Outcome:
     if "--out" not in arguments and arguments[0] not in WITHOUT_FOLDER:
         arguments += ["--out", name]
     if words == "old":
-        arguments = _old_words(arguments)
+        arguments = _old_words(arguments) + shlex.split(OLD_OPTIONS.get(name, ""))
     begin = time.monotonic()
     done = subprocess.run(
         [str(program), *arguments], cwd=folder, env=_environment(program), capture_output=True, text=True, check=False

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from difflib import SequenceMatcher
 from pathlib import Path
 
-from verification.frozen.commands import COMMANDS
-from verification.frozen.contents import read_contents
-from verification.frozen.tables import ADDED, NOT_COMPARED, REMOVED, Tables
+from verification.frozen.commands import COMMANDS, SPLIT
+from verification.frozen.contents import Contents, read_contents
+from verification.frozen.tables import ADDED, MOVED, NOT_COMPARED, REMOVED, Tables
 
 ABSENT = "(absent)"
 LONGEST = 160
@@ -52,15 +52,18 @@ def compare(old: Path, new: Path, selected: list[str]) -> bool:
 
 def _exit_codes(old: Path, new: Path, name: str) -> tuple[str, str] | None:
     codes = [
-        str(json.loads((folder / "commands.json").read_text()).get(name, {}).get("exit_code", ABSENT))
-        for folder in (old, new)
+        str(json.loads((folder / "commands.json").read_text()).get(known, {}).get("exit_code", ABSENT))
+        for folder, known in ((old, SPLIT.get(name, name)), (new, name))
     ]
-    return None if codes[0] == codes[1] else (codes[0], codes[1])
+    # A command that neither state has run is not an agreement.
+    return None if codes[0] == codes[1] != ABSENT else (codes[0], codes[1])
 
 
 def _pair_files(old: Path, new: Path, name: str, tables: Tables) -> list[tuple[str, Path | None, Path | None]]:
     """Name in the new state and both paths of every file of a command."""
-    old_files = {tables.file(file): path for file, path in _list_files(old, name)}
+    old_names = {name, SPLIT.get(name, name)}
+    renamed = {tables.file(file): path for old_name in sorted(old_names) for file, path in _list_files(old, old_name)}
+    old_files = {file: path for file, path in renamed.items() if file.startswith(f"{name}/")}
     new_files = dict(_list_files(new, name))
     return [
         (file, old_files.get(file), new_files.get(file))
@@ -86,6 +89,9 @@ def _compare_files(
     if old.read_bytes() == new.read_bytes():
         counts["files with the same bytes"] += 1
     old_parts, new_parts = read_contents(old, tables.old_text), read_contents(new, tables.new_text)
+    if _count_words(old_parts) == _count_words(new_parts) and tables.omits(MOVED, file):
+        counts["files whose words moved"] += 1
+        old_parts = new_parts
     for part in old_parts | new_parts:
         old_part, new_part = old_parts.get(part), new_parts.get(part)
         if old_part is None or new_part is None:
@@ -98,6 +104,12 @@ def _compare_files(
                 counts[f"{kind}s"] += 1
             counts[ITEMS[kind]] += len(new_part)
             yield from _compare_sequences(part, list(old_part), list(new_part))
+
+
+def _count_words(parts: Contents) -> Counter[str]:
+    """Every word with its number, in any order; empty for a file with values."""
+    sequences = [content for content in parts.values() if not isinstance(content, dict)]
+    return Counter(word for sequence in sequences for word in sequence)
 
 
 def _compare_values(
@@ -118,6 +130,8 @@ def _compare_values(
             counts["values removed"] += 1
         elif place not in renamed and tables.omits(ADDED, place):
             counts["values added"] += 1
+        elif tables.changes(place, renamed.get(place), later.get(place)):
+            counts["values changed"] += 1
         else:
             yield place.removeprefix(file), renamed.get(place, ABSENT), later.get(place, ABSENT)
 

@@ -38,6 +38,12 @@ def read_contents(path: Path, text: Text) -> Contents:
             page = _Page(text)
             page.feed(path.read_text())
             return page.contents()
+        case ".txt" | ".md":
+            # Words, since the width of a column or a longer path breaks the lines elsewhere.
+            return {"text": text(" ".join(path.read_text().split())).split()}
+        case ".uff":
+            # Lines are filled up to 80 columns.
+            return {"line": [line.rstrip() for line in text(path.read_text()).splitlines()]}
         case _:
             return {"line": text(path.read_text()).splitlines()}
 
@@ -79,8 +85,8 @@ def _array(array: np.ndarray, text: Text) -> str:
 def _read_pdf(path: Path, text: Text) -> Contents:
     contents: Contents = {}
     for number, page in enumerate(PdfReader(path).pages, 1):
-        # Long words are broken at zero-width spaces.
-        extracted = re.sub("\u200b\n?", "", page.extract_text())
+        # Long words are broken at zero-width spaces, and paths after a slash.
+        extracted = re.sub("\u200b\n?|(?<=[a-z]/)\n(?=[a-z])", "", page.extract_text())
         contents[f"page {number}"] = text(" ".join(extracted.split())).split()
     return contents
 
