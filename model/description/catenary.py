@@ -286,6 +286,9 @@ class Catenary:
     def wire(self, name: str) -> Wire:
         """Wire with a name.
 
+        Args:
+            name: Name of the wire.
+
         Raises:
             KeyError: There is no such wire.
         """

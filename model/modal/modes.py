@@ -37,7 +37,12 @@ class ComponentEnergies:
 
 @use_one_thread
 def compute_modes(line: DiscretisedLine, count: int) -> Modes:
-    """Compute the lowest modes of a line."""
+    """Compute the lowest modes of a line, every dropper taut.
+
+    Args:
+        line: Line in its initial state.
+        count: Number of modes.
+    """
     matrices, factored = assemble_matrices(line), factored_stiffness(line)
 
     def solve_free(force: Array) -> Array:

@@ -23,5 +23,5 @@ def test_drawing_has_the_layers_of_the_import_rules() -> None:
     ]
     layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     drawing = TEXT.split("```")[1]
-    places = [drawing.index(f" {name} ") for layer in layers for name in layer.split(" | ")]
+    places = [drawing.index(f" {name}  ") for layer in layers for name in layer.split(" | ")]
     assert places == sorted(places)

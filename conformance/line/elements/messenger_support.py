@@ -28,18 +28,14 @@ if TYPE_CHECKING:
 class MessengerSupportTable(SourcedTable):
     """Support of the messenger wire: a vertical spring and damper."""
 
-    stiffness_N_m: Annotated[Positive, Field(le=1e10, description="vertical stiffness [N/m]")]
-    damping_N_s_m: Annotated[NonNegative, Field(description="vertical damper [N s/m]"), Feature("support_dampers")] = (
-        0.0
-    )
-    along_track: Annotated[
-        Literal["free", "fixed"],
-        Field(
-            description="motion of the messenger wire along the track at the supports; free: its tension is constant; "
-            "fixed: its tension changes with its elongation between two supports"
-        ),
-        Feature("messenger_wire_held_along_track"),
-    ] = "free"
+    stiffness_N_m: Annotated[Positive, Field(le=1e10)]
+    """Vertical stiffness [N/m]."""
+    damping_N_s_m: Annotated[NonNegative, Feature("support_dampers")] = 0.0
+    """Vertical damper [N s/m]."""
+    along_track: Annotated[Literal["free", "fixed"], Feature("messenger_wire_held_along_track")] = "free"
+    """Motion of the messenger wire along the track at the supports; free: its tension is constant; fixed: its
+    tension changes with its elongation between two supports.
+    """
 
 
 MessengerSupportChanges: Any = create_changes("MessengerSupportChanges", MessengerSupportTable, "messenger_support")

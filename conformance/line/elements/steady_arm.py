@@ -41,31 +41,21 @@ ClampMass = Annotated[float, Field(ge=0, le=20, description="mass of a clamp [kg
 class SteadyArmTable(SourcedTable):
     """Steady arm, which holds the contact wire at a support."""
 
-    vertical_stiffness_N_m: Annotated[
-        float | None,
-        Field(ge=0, le=1e7, description="vertical stiffness at the wire [N/m]; default: force of the arm / length"),
-        ARMS,
-    ] = None
-    static_share: Annotated[
-        Literal["level", "none"],
-        Field(
-            description="weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the "
-            "support; none: no weight"
-        ),
-    ]
-    length_m: Annotated[float | None, Field(gt=0, le=5, description="length of the arm [m]"), ARMS] = None
-    mass_kg_m: Annotated[float, Field(ge=0, le=20, description="mass per length of the arm [kg/m]"), ARM_MASS] = 0.0
+    vertical_stiffness_N_m: Annotated[float | None, Field(ge=0, le=1e7), ARMS] = None
+    """Vertical stiffness at the wire [N/m]; default: force of the arm / length."""
+    static_share: Literal["level", "none"]
+    """Weight of the contact wire on the arm at rest; level: as much as keeps the wire level at the support; none: no
+    weight.
+    """
+    length_m: Annotated[float | None, Field(gt=0, le=5), ARMS] = None
+    """Length of the arm [m]."""
+    mass_kg_m: Annotated[float, Field(ge=0, le=20), ARM_MASS] = 0.0
+    """Mass per length of the arm [kg/m]."""
     clamp_kg: Annotated[ClampMass, ARM_MASS] = 0.0
-    vertical_damper_N_s_m: Annotated[
-        NonNegative,
-        Field(le=1e6, description="vertical damper between wire and ground [N s/m]"),
-        Feature("steady_arm_dampers"),
-    ] = 0.0
-    acts: Annotated[
-        Literal["pull", "push"],
-        Field(description="kind of lateral force of the arm on the contact wire"),
-        Feature("pushing_steady_arms"),
-    ] = "pull"
+    vertical_damper_N_s_m: Annotated[NonNegative, Field(le=1e6), Feature("steady_arm_dampers")] = 0.0
+    """Vertical damper between wire and ground [N s/m]."""
+    acts: Annotated[Literal["pull", "push"], Feature("pushing_steady_arms")] = "pull"
+    """Kind of lateral force of the arm on the contact wire."""
 
     @cross_check
     def _check_stiffness(self) -> Problems:
