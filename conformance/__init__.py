@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pantocheck.conformance.app.notebook.campaign_session import read_traces, run_campaign
-    from pantocheck.conformance.app.notebook.compared_runs import ComparedRuns, compare_runs
-    from pantocheck.conformance.app.notebook.fitted_damping import FittedDamping
     from pantocheck.conformance.app.notebook.fitted_pantograph import FittedPantograph, fit_pantograph
     from pantocheck.conformance.app.notebook.graded_results import (
         GradedResults,
@@ -19,6 +17,7 @@ if TYPE_CHECKING:
         validate_dossier,
     )
     from pantocheck.conformance.app.notebook.identified_lines import (
+        FittedDamping,
         IdentifiedLines,
         IdentifiedRecords,
         identify_line,
@@ -27,7 +26,13 @@ if TYPE_CHECKING:
     from pantocheck.conformance.app.notebook.opened_case import OpenedCase, build_case, list_cases, open_case
     from pantocheck.conformance.app.notebook.opened_drop import OpenedDrop, open_drop
     from pantocheck.conformance.app.notebook.opened_line import OpenedLine, OpenedPantograph, open_line, open_pantograph
-    from pantocheck.conformance.app.notebook.opened_run import OpenedRun, SimulatedRun, open_run
+    from pantocheck.conformance.app.notebook.opened_run import (
+        ComparedRuns,
+        OpenedRun,
+        SimulatedRun,
+        compare_runs,
+        open_run,
+    )
     from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
     from pantocheck.conformance.core.input_error import InputError
 
@@ -67,8 +72,8 @@ __all__ = [
 ]
 
 _MODULES = {
-    "ComparedRuns": "app.notebook.compared_runs",
-    "FittedDamping": "app.notebook.fitted_damping",
+    "ComparedRuns": "app.notebook.opened_run",
+    "FittedDamping": "app.notebook.identified_lines",
     "FittedPantograph": "app.notebook.fitted_pantograph",
     "GradedResults": "app.notebook.graded_results",
     "IdentifiedLines": "app.notebook.identified_lines",
@@ -83,7 +88,7 @@ _MODULES = {
     "VerifiedReport": "app.notebook.verified_report",
     "assess_run": "app.notebook.graded_results",
     "build_case": "app.notebook.opened_case",
-    "compare_runs": "app.notebook.compared_runs",
+    "compare_runs": "app.notebook.opened_run",
     "fit_pantograph": "app.notebook.fitted_pantograph",
     "grade_cases": "app.notebook.graded_results",
     "identify_line": "app.notebook.identified_lines",

@@ -1,7 +1,9 @@
 """Evaluation of a campaign: from the rows of its store to campaign.json."""
 
+import json
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,10 +15,9 @@ from pantocheck.conformance.campaigns.campaign_columns import (
     drop_constant,
     read_columns,
 )
-from pantocheck.conformance.campaigns.campaign_comparison import RunPair, compare_values
+from pantocheck.conformance.campaigns.campaign_design import DesignAxis, SampleAxis
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
-from pantocheck.conformance.campaigns.design_axes import DesignAxis, SampleAxis
 from pantocheck.conformance.campaigns.input_charts import MOST_MAPS, build_input_charts, build_maps, mark_limit
 from pantocheck.conformance.campaigns.sample_statistics import (
     build_indices,
@@ -28,10 +29,81 @@ from pantocheck.conformance.campaigns.sample_statistics import (
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.figure_data import Chart, Series
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.sourced_table import NO_SOURCE, SourcedTable
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.quantities.limit_text import format_stated
-from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults, Estimate, ValueStatistics
+from pantocheck.conformance.results.campaign_format import (
+    CampaignEnding,
+    CampaignResults,
+    Estimate,
+    ValueComparison,
+    ValueStatistics,
+)
+
+
+@dataclass(frozen=True)
+class RunPair:
+    """Values of two runs with equal inputs."""
+
+    place: str
+    """Case and inputs in words."""
+    here: dict[str, float]
+    there: dict[str, float]
+    """Quantities of this campaign and of the other one, by column."""
+
+
+def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[EvaluatedValue]) -> list[RunPair]:
+    """Pair the finished runs of two campaigns that have the same case, inputs and system, with some of their values.
+
+    The system does not count if the campaigns have no system in common: then their systems are compared.
+
+    Raises:
+        InputError: No run of one campaign has the inputs of a run of the other.
+    """
+    systems = [{row.run.system for row in each.rows()} for each in (store, other)]
+    with_system = bool(systems[0] & systems[1])
+    columns = [value.column for value in values]
+    there = {key: quantities for key, _, quantities in _list_runs(other, with_system, columns)}
+    pairs = [
+        RunPair(place, quantities, there[key])
+        for key, place, quantities in _list_runs(store, with_system, columns)
+        if key in there
+    ]
+    if not pairs:
+        hint = "Compare campaigns of the same cases with equal inputs."
+        raise InputError("option --compare", "no run has the inputs of a run of the other campaign", hint)
+    return pairs
+
+
+def compare_values(pairs: Sequence[RunPair], values: Sequence[EvaluatedValue]) -> Iterator[ValueComparison]:
+    """Differences of each value, this campaign minus the other one."""
+    for value in values:
+        common = [pair for pair in pairs if value.column in pair.here and value.column in pair.there]
+        if common:
+            difference = np.array([pair.here[value.column] - pair.there[value.column] for pair in common])
+            largest = int(np.argmax(np.abs(difference)))
+            yield ValueComparison(
+                label=value.title,
+                runs=len(common),
+                mean=float(difference.mean()),
+                rms=float(np.sqrt(np.mean(difference**2))),
+                largest=float(difference[largest]),
+                place=common[largest].place,
+            )
+
+
+def _list_runs(
+    store: CampaignStore, with_system: bool, columns: Sequence[str]
+) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """Key, place in words and some quantities of the runs that have a result."""
+    for row in store.rows():
+        if row.quantities:
+            run = row.run
+            key = json.dumps([run.case_id, run.system if with_system else None, run.inputs], sort_keys=True)
+            place = ", ".join([run.case_id, *(f"{name} = {value}" for name, value in run.inputs.items())])
+            yield key, place, {name: row.quantities[name] for name in columns if name in row.quantities}
+
 
 SEED = ".seed"
 """End of the keys of seeds. Their values have no order: runs that differ in them are random designs."""
@@ -40,14 +112,7 @@ SEED = ".seed"
 def evaluate_campaign(
     prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding, pairs: Sequence[RunPair] = ()
 ) -> CampaignResults:
-    """Evaluate the finished runs of a campaign.
-
-    Args:
-        prepared: The campaign.
-        store: Its finished runs.
-        ending: Reason of its end.
-        pairs: Runs beside those of another campaign.
-    """
+    """Evaluate the finished runs of a campaign, alone and in pairs with those of another campaign."""
     design = prepared.design
     varied = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
     grid = [key for key in varied if not key.endswith(SEED)]

@@ -7,10 +7,9 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, parse_condition
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, build_axis, parse_condition, sample_inputs
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, name_column, vary_inputs
-from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
 from pantocheck.conformance.cases.case_source import repeated_id
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
@@ -58,20 +57,12 @@ def find_campaign_file(name: str) -> Path | None:
 
 
 def read_campaign(path: Path) -> PreparedCampaign:
-    """Read and prepare a campaign file; paths in it are relative to the file.
-
-    Raises:
-        InputError: The file, or a file that it names, cannot be read or is wrong.
-    """
+    """Read and prepare a campaign file; paths in it are relative to the file."""
     return prepare_campaign(read_model(path, CampaignFile, "campaign"), path.parent)
 
 
 def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
-    """Prepare a campaign.
-
-    Args:
-        file: Content of a campaign file.
-        folder: Folder to which its paths are relative.
+    """Prepare a campaign, whose paths are relative to a folder.
 
     Raises:
         InputError: A case, table, key, condition, limit or system is wrong.

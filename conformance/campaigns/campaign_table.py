@@ -21,11 +21,7 @@ VERDICT_COLUMNS = ("verdict", "criteria_verdict", "verification_verdict", "reaso
 
 
 def write_campaign_table(store: CampaignStore, path: Path) -> None:
-    """Write the finished runs as CSV, by their numbers; the same runs give the same bytes.
-
-    Raises:
-        InputError: The file cannot be written.
-    """
+    """Write the finished runs as CSV, by their numbers; the same runs give the same bytes."""
     produce_atomically(path, lambda temporary: _write(store, temporary))
 
 

@@ -7,14 +7,13 @@ import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
-from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun, RangeAxis
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution, ValueRange
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.design_axes import RangeAxis
-from pantocheck.conformance.campaigns.local_workers import Execute, LocalWorkers
+from pantocheck.conformance.campaigns.run_executors import Execute, LocalWorkers
 
 
 def speed_design(runs: int) -> CampaignDesign:

@@ -12,9 +12,8 @@ from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.options import CasesOption, SetOption, TrustOption, complete_case
 from pantocheck.conformance.app.commands.progress_display import report_campaign
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
-from pantocheck.conformance.campaigns.campaign_comparison import RunPair, pair_runs
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
-from pantocheck.conformance.campaigns.campaign_evaluation import evaluate_campaign
+from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation
 from pantocheck.conformance.campaigns.campaign_preparation import (
     PreparedCampaign,
@@ -23,7 +22,7 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
 )
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.processes import interruption_exit_code

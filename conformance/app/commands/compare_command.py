@@ -12,7 +12,7 @@ from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
 from pantocheck.conformance.app.commands.options import SetOption, choose_case, complete_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.compared_runs import write_comparison
+from pantocheck.conformance.app.notebook.opened_run import write_comparison
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.comparison.compared_run import (

@@ -15,12 +15,7 @@ from pantocheck.conformance.results.incomplete_uncertainty import mark_half_widt
 
 
 class HangingText:
-    """Paragraph that wraps below its text, not below its mark.
-
-    Args:
-        mark: Begin of the first line, such as two spaces or a bullet.
-        text: Text after the mark.
-    """
+    """Paragraph that wraps below its text, not below its mark, such as two spaces or a bullet."""
 
     def __init__(self, mark: str, text: Text) -> None:
         self.mark, self.text = mark, text
@@ -218,10 +213,7 @@ def build_quantities_table(
 ) -> FittedTable:
     """Table of quantities that are single numbers; those of the line come last.
 
-    Args:
-        values, uncertainty: Values and their uncertainties.
-        names: Quantities of the table, in its order.
-        missing: Components that the uncertainties lack.
+    `names` chooses and orders the quantities; `missing` are the components that the uncertainties lack.
     """
     numbers = ("value", "+-") if uncertainty else ("value",)
     headings = ("quantity", *numbers, "unit")

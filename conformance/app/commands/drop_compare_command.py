@@ -105,11 +105,7 @@ def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
 
 
 def name_damping_files(paths: Sequence[Path]) -> list[str]:
-    """Stems of the files; with the name of the folder in front where several files have the same stem.
-
-    Raises:
-        InputError: Two files have the same stem in folders of the same name.
-    """
+    """Stems of the files; with the name of the folder in front where several files have the same stem."""
     stems = [path.stem for path in paths]
     names = [
         f"{path.absolute().parent.name}/{path.stem}" if stems.count(path.stem) > 1 else path.stem for path in paths

@@ -9,7 +9,7 @@ from pantocheck.conformance.app.commands.command_output import CommandOutput, Un
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
 from pantocheck.conformance.app.commands.options import complete_case, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.fitted_damping import write_damping_fit
+from pantocheck.conformance.app.notebook.identified_lines import write_damping_fit
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.drops.damping_model import MODAL_GROUPS
 from pantocheck.conformance.drops.damping_results import FitOptions, WireCoefficients, build_damping_results

@@ -86,11 +86,7 @@ DriftOption = Annotated[
 
 
 def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
-    """Administrative data from a file, with the number of the report from the command line in place of its own.
-
-    Raises:
-        InputError: The file cannot be read or is wrong.
-    """
+    """Administrative data from a file, with the number of the report from the command line in place of its own."""
     stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
     return stated if report_number is None else {**stated, "report_number": report_number}
 
@@ -100,15 +96,9 @@ OPTIONS = {"drift_pct": "--drift", "jobs": "--jobs", "timeout_s": "--timeout", "
 
 
 def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
-    """Combine the options of the command line with those of a plan.
+    """Combine the options of the command line, by their key in a plan, with those of a plan.
 
-    Administrative data replace those of the plan key by key.
-
-    Args:
-        plan: File of the plan.
-        formats: Names of formats, separated by commas.
-        options: Other options of the command line by their key in a plan; they replace those of the plan unless they
-            are None.
+    An option that is not None replaces that of the plan; administrative data do so key by key.
 
     Raises:
         InputError: The plan cannot be read, or a value of the plan or of the command line is wrong.
@@ -140,14 +130,10 @@ def choose_case(
     changes: Sequence[InputChange] = (),
     catalogue: Catalogue = LIBRARY,
 ) -> Case:
-    """Find the only case of a kind.
+    """Find the only case that a name, glob or path selects and that is acceptable.
 
     Args:
-        name: Id, glob or path.
-        accept: Condition on a case.
-        kind: Condition in words, for the message.
-        changes: Changes of the inputs of the case.
-        catalogue: Cases that have an id.
+        accept, kind: Condition on a case, and the same in words for the message.
 
     Raises:
         InputError: No case, or several cases, meet the condition.
@@ -160,11 +146,7 @@ def choose_case(
 
 
 def read_line(name: str) -> LineFile:
-    """Read the line of a line file, or of the cases that an id or path selects.
-
-    Raises:
-        InputError: The file is invalid, or the cases have different lines.
-    """
+    """Read the line of a line file, or the common line of the cases that an id or path selects."""
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
         return read_model(Path(name), LineFile, "line")
     cases = select_cases([name])

@@ -46,14 +46,7 @@ LEGEND = (
 def build_results_output(
     results: Results, files: Sequence[Path], exit_code: int, remarks: Sequence[str] = ()
 ) -> CommandOutput:
-    """Verdict, criteria and values of each case, and remarks.
-
-    Args:
-        results: Results of a run.
-        files: Written files.
-        exit_code: Exit code of the command.
-        remarks: Remarks on the files.
-    """
+    """Verdict, criteria and values of each case, and remarks on the cases and on the files."""
     system = f"{results.system.name} {results.system.version}".strip()
     headline = f"{build_headline(results)} System: {system}"
     parts: list[RenderableType] = [

@@ -23,10 +23,7 @@ MAX_PASSPHRASE_BYTES = 4096
 
 
 def read_passphrase(file: Path | None) -> bytes:
-    """Passphrase from a file without the end of its first line, else from the environment, else typed by the user.
-
-    Args:
-        file: File of the passphrase; None to read the variable `PANTOCHECK_PASSPHRASE` or to ask.
+    """Passphrase from the first line of a file, else from the variable `PANTOCHECK_PASSPHRASE`, else typed by the user.
 
     Raises:
         InputError: The file cannot be read, or there is neither a file, nor the variable, nor a terminal.

@@ -15,7 +15,7 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
 )
 from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.campaigns.run_traces import RunTraces, unpack_traces
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import validate_model

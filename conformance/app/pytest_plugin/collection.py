@@ -90,11 +90,7 @@ class CaseNode(pytest.Collector):
             yield BaselineItem.from_parent(self, name="baseline")
 
     def result(self) -> CaseResult:
-        """Result of the case, computed once per session.
-
-        Raises:
-            CriterionNotMet: The case ended in error.
-        """
+        """Result of the case, computed once per session; an error fails the test, and a reason skips it."""
         result = self.campaign.result(self.case)
         if result.verdict == "error":
             self.report(f"error: {result.reason}")
@@ -228,9 +224,6 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
     Returns:
         Lines for the summary of the session.
         Whether the cases of a plan that ran in this session do not pass.
-
-    Raises:
-        InputError: A file cannot be written.
     """
     lines, not_passed = [], False
     for path in list_registered(folder):

@@ -91,11 +91,7 @@ TWIN_SUBJECT = "two pantographs"
 
 
 def check_line_at_rest(system: System) -> AdapterFinding:
-    """Send a check of the line at rest, and name the answer: values, a refusal or an error.
-
-    Args:
-        system: The adapter.
-    """
+    """Send a check of the line at rest, and name the answer: values, a refusal or an error."""
     case = build_case_at_rest()
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
@@ -116,11 +112,7 @@ def check_line_at_rest(system: System) -> AdapterFinding:
 
 
 def check_two_pantographs(system: System) -> AdapterFinding:
-    """Send the short case with two pantographs, and name the answer: a record of both, a refusal or an error.
-
-    Args:
-        system: The adapter.
-    """
+    """Send the short case with two pantographs, and name the answer: a record of both, a refusal or an error."""
     case = build_twin_case()
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
@@ -206,9 +198,6 @@ def check_adapter(system: System) -> AdapterCheck:
     """Run short cases on an adapter and list all that is missing or wrong.
 
     The line at rest and two pantographs follow a short case that ended without an error.
-
-    Args:
-        system: The adapter.
     """
     case, simulator = build_short_case(), ReferenceSimulator()
     outcome = system.run(case)
@@ -334,13 +323,7 @@ The contact height of the short case varies by 0.05 m. Usual other zeros, the ra
 
 
 def describe_other_position(case: Case, record: Record, stated: StartTable | None) -> str | None:
-    """Text on positions that begin before the start; None if they do not.
-
-    Args:
-        case: Case with a speed.
-        record: Delivered record.
-        stated: Start that the sidecar states; None stands for that of the case.
-    """
+    """Text on positions that begin before the stated start, or that of the case; None if they do not."""
     first, place = float(record.position[-1, 0]), (stated or case.start_table).place_m
     if first >= place - PLACE_TOLERANCE_M:
         return None
@@ -352,12 +335,7 @@ def describe_other_position(case: Case, record: Record, stated: StartTable | Non
 
 
 def describe_other_height(case: Case, record: Record) -> str | None:
-    """Text on a contact height with another zero than that of the case; None for the same zero or without a height.
-
-    Args:
-        case: Case with a speed and one tension section.
-        record: Delivered record.
-    """
+    """Text on a contact height with another zero than that of the case; None for the same zero or without a height."""
     train = build_derived(case).train
     if record.contact_height is None or train is None:
         return None

@@ -9,13 +9,14 @@ import pytest
 
 from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
-from pantocheck.conformance.campaigns.campaign_comparison import compare_values, pair_runs
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_evaluation import (
     build_sample_charts,
     build_statistics,
+    compare_values,
     evaluate_campaign,
+    pair_runs,
 )
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign

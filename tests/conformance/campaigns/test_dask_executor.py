@@ -12,7 +12,7 @@ from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.core.input_error import InputError
 
 RUNS = 80

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 from scipy import stats
 
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue
+from pantocheck.conformance.campaigns.campaign_design import sample_inputs
 from pantocheck.conformance.campaigns.campaign_file import InputSampling
-from pantocheck.conformance.campaigns.design_axes import sample_inputs
 from pantocheck.conformance.campaigns.sample_statistics import build_indices, estimate_sobol_indices, select_independent
 
 KEYS = ("x1", "x2", "x3")

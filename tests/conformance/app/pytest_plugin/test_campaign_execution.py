@@ -16,7 +16,7 @@ from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, d
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.local_workers import LocalWorkers
+from pantocheck.conformance.campaigns.run_executors import LocalWorkers
 from pantocheck.conformance.core.input_error import InputError
 
 RUNS = 200
