@@ -1,4 +1,4 @@
-"""Shell completion of the ids of cases."""
+"""Options that several commands share, and the choice of the case or line that they name."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,6 +13,7 @@ from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.validation_messages import build_input_error
 from pantocheck.conformance.execution.plan import Plan, read_plan
@@ -27,7 +28,6 @@ def complete_case(incomplete: str) -> list[str]:
     return [name for name in list_library(library_folder()) if name.startswith(incomplete)]
 
 
-# Option `--cases` of every command that takes cases, without the imports of a run.
 CasesOption = Annotated[
     list[Path] | None,
     typer.Option(
@@ -37,8 +37,6 @@ CasesOption = Annotated[
     ),
 ]
 
-
-# Options, and the choice of a case or line, that several commands share.
 SetOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -46,6 +44,18 @@ SetOption = Annotated[
         metavar="KEY=VALUE",
         help="Change an input of the case, its line or its pantographs; repeat the option for several.",
     ),
+]
+LineOption = Annotated[
+    str,
+    typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
+]
+ElementOption = Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)]
+ResponsesArgument = Annotated[
+    list[Path],
+    typer.Argument(help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."),
+]
+DropCaseArgument = Annotated[
+    str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)
 ]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
 FormatsOption = Annotated[
@@ -143,6 +153,23 @@ def choose_case(
         ids = ", ".join(case.id for case in cases) or "none"
         raise InputError(f"case '{name}'", f"expected one case {kind}, found {ids}", "Give the id of one case.")
     return cases[0]
+
+
+def choose_train_case(name: str, changes: Sequence[InputChange], catalogue: Catalogue = LIBRARY) -> Case:
+    """Find the only case with a train; parameters as in `choose_case`."""
+    return choose_case(name, lambda case: not case.is_static, "with a train", changes, catalogue)
+
+
+def choose_drop_case(name: str, changes: Sequence[InputChange] = ()) -> Case:
+    """Find the only case with a mass drop; parameters as in `choose_case`."""
+    return choose_case(name, lambda case: case.file.mass_drop is not None, "with a [mass_drop] table", changes)
+
+
+def leave_out_required(pattern: str, cases: list[Case]) -> list[Case]:
+    """Cases that the pattern selects itself, without the cases that they require."""
+    exact = [case for case in cases if case.id == pattern]
+    required = {name for case in cases for name in case.file.requires}
+    return exact or [case for case in cases if case.id not in required] or cases
 
 
 def read_line(name: str) -> LineFile:

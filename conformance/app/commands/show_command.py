@@ -15,7 +15,7 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, format_number
-from pantocheck.conformance.app.commands.options import CasesOption, complete_case
+from pantocheck.conformance.app.commands.options import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases, source_text
@@ -330,13 +330,6 @@ def show_command(
         parts,
         files=[] if request is None else [request],
     )
-
-
-def leave_out_required(pattern: str, cases: list[Case]) -> list[Case]:
-    """Cases that the pattern selects itself, without the cases that they require."""
-    exact = [case for case in cases if case.id == pattern]
-    required = {name for case in cases for name in case.file.requires}
-    return exact or [case for case in cases if case.id not in required] or cases
 
 
 def _write_request(cases: list[Case], path: Path) -> None:

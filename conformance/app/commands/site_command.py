@@ -49,7 +49,8 @@ def site_command(
     pages = _name_case_pages(published)
     for run in published:
         with follow_steps(run.folder):
-            _write_run(run, out)
+            write_pages(run.results, out / run.folder, ("html",))
+            write_atomically(out / run.folder / FILES["json"], run.results.to_json())
     for case, page in pages.items():
         write_report(build_case_page(case, published), out / page)
     write_report(build_site_index(title, published, pages), out / "index.html")
@@ -68,9 +69,8 @@ def _find_results(folders: list[Path], out: Path) -> list[Path]:
     for folder in folders:
         own = {path.resolve(): path for path in _walk_results(folder, out)}
         if not own:
-            raise InputError(
-                f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR."
-            )
+            hint = "Write results with pantocheck run --out DIR."
+            raise InputError(f"folder '{folder}'", "no results.json in it", hint)
         paths |= {place: path for place, path in own.items() if place not in paths}
     if len(paths) > MOST_RESULTS:
         raise InputError("folders of results", f"more than {MOST_RESULTS} results", "Give folders with fewer results.")
@@ -97,9 +97,3 @@ def _name_case_pages(published: list[PublishedResults]) -> dict[str, str]:
     """Page of each case, by id; a number keeps names apart that differ in signs only."""
     ids = sorted({case.id for run in published for case in run.results.cases})
     return {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
-
-
-def _write_run(run: PublishedResults, out: Path) -> None:
-    """Write the certificate and the results of a run."""
-    write_pages(run.results, out / run.folder, ("html",))
-    write_atomically(out / run.folder / FILES["json"], run.results.to_json())

@@ -32,6 +32,7 @@ from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.results.damping_format import Coefficient, DampingResults
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
 from pantocheck.conformance.results.identified_modes import Mode, ModesFile, read_modes
+from pantocheck.model import Catenary
 
 COEFFICIENT_COLUMNS = ("kind", "matrix", "value", "low_95", "high_95", "determined", "reason")
 """Columns of the table of coefficients, with the keys of damping.json."""
@@ -125,6 +126,11 @@ class FittedDamping:
         return write_damping_fit(self.results, Path(folder))[1]
 
 
+def refuse_other_modes(modes: tuple[Mode, ...], catenary: Catenary, name: str) -> None:
+    """Refuse modes whose record is of another line; `name` is that of their file."""
+    refuse_other_line(compare_line(select_usable(modes, name), catenary), name)
+
+
 def write_damping_fit(results: DampingResults, folder: Path) -> tuple[Document, list[Path]]:
     """Write all files of a fit; returns the report and the paths of the files.
 
@@ -213,9 +219,9 @@ class IdentifiedLines:
         Raises:
             InputError: The line is not that of the record, or the modes do not determine a model.
         """
-        catenary, name = build_catenary(case.case.line), "modes"
-        refuse_other_line(compare_line(select_usable(self.modes, name), catenary), name)
-        return FittedDamping(build_damping_results(self.modes, catenary, element_m, name, FitOptions(wires)))
+        catenary = build_catenary(case.case.line)
+        refuse_other_modes(self.modes, catenary, "modes")
+        return FittedDamping(build_damping_results(self.modes, catenary, element_m, "modes", FitOptions(wires)))
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json; returns the paths of the files.
