@@ -1,15 +1,18 @@
 """Preparation of a campaign: its files are read and checked before the first run."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, build_axis, parse_condition, sample_inputs
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, name_column, vary_inputs
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore
+from pantocheck.conformance.campaigns.run_executors import RunExecutor
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
 from pantocheck.conformance.cases.case_source import repeated_id
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
@@ -24,6 +27,7 @@ from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.execution.plan import place_cases, place_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.results.campaign_format import CampaignEnding
 from pantocheck.conformance.runs.system_choice import choose_system
 
 OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
@@ -48,6 +52,12 @@ class PreparedCampaign:
     """
     origins: dict[str, CaseOrigin]
     """Source of each case from outside, by its id."""
+
+    def drive(
+        self, store: CampaignStore, executor: RunExecutor, report: Callable[[CampaignProgress], None] = lambda _: None
+    ) -> CampaignEnding:
+        """Execute the runs that the store does not hold; parameters as in `drive_campaign`."""
+        return drive_campaign(self.design, self.execute, store, executor, self.file.execution, report)
 
 
 def find_campaign_file(name: str) -> Path | None:

@@ -36,7 +36,11 @@ def build_comparison_output(
     return CommandOutput(
         style_verdict(comparison.verdict) + escape_text(f" {find_headline(comparison)}"),
         comparison,
-        [*tables, *_list_criteria(comparison.criteria), *_list_remarks(comparison)],
+        [
+            *tables,
+            *_list_criteria(comparison.criteria),
+            *(indent_text(remark, "warning: ") for remark in list_remarks(comparison)),
+        ],
         files=files,
         remarks=remark_missing_formats(),
         exit_code=EXIT_CODES[comparison.verdict],
@@ -55,8 +59,3 @@ def _list_criteria(criteria: tuple[ComparisonCriterion, ...]) -> Iterator[Render
     for item in criteria:
         if item.reason:
             yield indent_text(f"{name_criterion(item)}: {item.reason}")
-
-
-def _list_remarks(comparison: ModelComparison) -> Iterator[RenderableType]:
-    for remark in list_remarks(comparison):
-        yield indent_text(remark, "warning: ")

@@ -1,6 +1,6 @@
 """Paragraph with a mark, whose further lines begin below its text."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.padding import Padding
@@ -171,10 +171,17 @@ def _open_console(stderr: bool) -> Console:
 
 
 def build_table(
-    *headings: str, title: str | None = None, unbroken: Collection[str] = (), right: Collection[str] = ()
+    *headings: str,
+    title: str | None = None,
+    unbroken: Collection[str] = (),
+    right: Collection[str] = (),
+    rows: Iterable[Sequence[str | Text]] = (),
 ) -> FittedTable:
     """Table that fits the width of the output; parameters as in `FittedTable`."""
-    return FittedTable(headings, title, unbroken, right)
+    table = FittedTable(headings, title, unbroken, right)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 def style_verdict(verdict: Verdict) -> Text:

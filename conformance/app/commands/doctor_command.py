@@ -61,12 +61,8 @@ def list_requirements() -> tuple[DeclaredPackage, ...]:
     return tuple(sorted(requirements, key=lambda requirement: requirement.extra))
 
 
-def list_environment() -> dict[str, str]:
-    """Facts by name, in the order of the report."""
-    return dict(_list_facts(os.environ))
-
-
-def _list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Facts on the environment by name, in the order of the report."""
     yield "Pantocheck", version("pantocheck")
     yield "digest of the suite", suite_digest() or "not known"
     yield "commit of the suite", find_suite_commit() or "not known"
@@ -109,20 +105,12 @@ def doctor_command() -> CommandOutput:
 
     Example: pantocheck doctor --json > environment.json
     """
-    facts, requirements = list_environment(), list_requirements()
+    facts, requirements = dict(list_facts(os.environ)), list_requirements()
     faulty = [requirement for requirement in requirements if not requirement.extra and requirement.state != "installed"]
-    packages = [
-        {
-            "name": requirement.name,
-            "extra": requirement.extra,
-            "lowest": requirement.lowest,
-            "installed": requirement.installed,
-            "state": requirement.state,
-        }
-        for requirement in requirements
-    ]
-    names = ", ".join(requirement.name for requirement in faulty)
-    conclusion = Text(f"Missing or too old: {names}" if faulty else "Every dependency is installed.")
+    names = ("name", "extra", "lowest", "installed", "state")
+    packages = [{name: getattr(requirement, name) for name in names} for requirement in requirements]
+    listed = ", ".join(requirement.name for requirement in faulty)
+    conclusion = Text(f"Missing or too old: {listed}" if faulty else "Every dependency is installed.")
     return CommandOutput(
         conclusion,
         {"environment": facts, "packages": packages},
@@ -132,22 +120,13 @@ def doctor_command() -> CommandOutput:
 
 
 def _build_tables(facts: dict[str, str], requirements: tuple[DeclaredPackage, ...]) -> Iterator[RenderableType]:
-    table = build_table("fact", "value", unbroken=("fact",))
-    for name, value in facts.items():
-        table.add_row(name, escape_text(value))
-    yield table
+    rows = ((name, escape_text(value)) for name, value in facts.items())
+    yield build_table("fact", "value", unbroken=("fact",), rows=rows)
     for extra, group in groupby(requirements, lambda requirement: requirement.extra):
         members = list(group)
-        title = f"extra {extra}: {_describe_extra(extra, members)}" if extra else "packages of every installation"
+        complete = all(member.state == "installed" for member in members)
+        state = "complete" if complete else f"not complete; pip install 'pantocheck[{extra}]'"
+        title = f"extra {extra}: {state}" if extra else "packages of every installation"
         yield Padding(escape_text(title), (1, 0, 0, 0))
-        table = build_table("package", "installed", "lowest", "state")
-        for member in members:
-            table.add_row(member.name, member.installed or "-", member.lowest, member.state)
-        yield table
-
-
-def _describe_extra(extra: str, members: list[DeclaredPackage]) -> str:
-    """State of an extra, with the line that installs it."""
-    if all(member.state == "installed" for member in members):
-        return "complete"
-    return f"not complete; pip install 'pantocheck[{extra}]'"
+        packages = ((member.name, member.installed or "-", member.lowest, member.state) for member in members)
+        yield build_table("package", "installed", "lowest", "state", rows=packages)

@@ -77,14 +77,13 @@ def _write_differences(values: ComparedValues, path: Path) -> Path:
 def _tabulate_differences(comparison: StaticComparison) -> RenderableType:
     """Differences of all values."""
     numbers = ("mean", "RMS", "outliers", "missing")
-    table = build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers)
-    for values in comparison.values:
-        table.add_row(
+    rows = (
+        (
             values.name.replace("_", " "),
             values.unit,
-            format_number(values.mean_difference, 3),
-            format_number(values.rms_difference, 3),
-            str(len(values.outlier_rows)),
-            str(len(values.missing_rows)),
+            *(format_number(difference, 3) for difference in (values.mean_difference, values.rms_difference)),
+            *(str(len(numbered)) for numbered in (values.outlier_rows, values.missing_rows)),
         )
-    return table
+        for values in comparison.values
+    )
+    return build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers, rows=rows)

@@ -59,7 +59,8 @@ def build_results_output(
     for case in results.cases:
         parts += [Text(), *_describe_case(case, footnotes)]
     parts.append(Text())
-    rows = [row for case in results.cases for row in _list_rows(case)]
+    rows = [row for case in results.cases for row in case.criteria]
+    rows += [row for case in results.cases if case.verification is not None for row in case.verification.criteria]
     if rows:
         shift = SHIFT_LEGEND if any(row.spread is not None for row in rows) else ""
         parts.append(Text(LEGEND.format(shift=shift), "dim"))
@@ -103,11 +104,6 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
         yield indent_text(describe_comparison(case.baseline))
         yield from _list_criteria([item for item in case.criteria if item.is_drift])
-
-
-def _list_rows(case: CaseResult) -> list[Criterion]:
-    """Criteria in the tables of a case."""
-    return [*case.criteria, *(() if case.verification is None else case.verification.criteria)]
 
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:

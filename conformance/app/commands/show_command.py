@@ -180,9 +180,8 @@ def build_derived_tables(case: Case) -> list[RenderableType]:
         if part is None:
             continue
         title = f"Derived values: {name} (lists by span: span {middle})"
-        table = build_table("key", "value", "meaning", title=title, unbroken=("key",))
-        for path, value, meaning in _rows(part, case.line.geometry.spans, middle):
-            table.add_row(escape_text(path), escape_text(value), escape_text(meaning))
+        rows = (map(escape_text, row) for row in _rows(part, case.line.geometry.spans, middle))
+        table = build_table("key", "value", "meaning", title=title, unbroken=("key",), rows=map(tuple, rows))
         tables.append(Padding(table, (1, 0, 0, 0)))
     return [*tables]
 
@@ -319,7 +318,10 @@ def show_command(
     """
     cases = leave_out_required(case, select_cases([case], (), open_catalogue(folders or ())))
     if request is not None:
-        _write_request(cases, request)
+        if len(cases) != 1:
+            raise InputError("option --request", f"the pattern selects {len(cases)} cases", "Give the id of one case.")
+        check_writable(request.parent)
+        write_atomically(request, (json.dumps(build_case_message(cases[0]), indent=1) + "\n").encode())
     parts: list[RenderableType] = []
     for each in cases:
         tables = [*(build_derived_tables(each) if derived else []), *(build_rest_tables(each) if at_rest else [])]
@@ -330,10 +332,3 @@ def show_command(
         parts,
         files=[] if request is None else [request],
     )
-
-
-def _write_request(cases: list[Case], path: Path) -> None:
-    if len(cases) != 1:
-        raise InputError("option --request", f"the pattern selects {len(cases)} cases", "Give the id of one case.")
-    check_writable(path.parent)
-    write_atomically(path, (json.dumps(build_case_message(cases[0]), indent=1) + "\n").encode())

@@ -16,7 +16,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages.case_page import build_case_page
 from pantocheck.conformance.pages.report_writers import write_pages, write_report
-from pantocheck.conformance.pages.site_index import PublishedResults, build_site_index, name_file, publish_results
+from pantocheck.conformance.pages.site_index import build_site_index, name_file, publish_results
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_reading import read_results
 
@@ -46,7 +46,9 @@ def site_command(
             results = read_results(path)
             contents.append((results, tuple(find_discrepancies(results))))
     published = publish_results(contents)
-    pages = _name_case_pages(published)
+    ids = sorted({case.id for run in published for case in run.results.cases})
+    # A number keeps names apart that differ in signs only.
+    pages = {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
     for run in published:
         with follow_steps(run.folder):
             write_pages(run.results, out / run.folder, ("html",))
@@ -91,9 +93,3 @@ def _walk_results(folder: Path, out: Path) -> Iterator[Path]:
                 found = f"more than {MOST_RESULTS} results"
                 raise InputError(f"folder '{folder}'", found, "Give a folder with fewer results.")
             yield path
-
-
-def _name_case_pages(published: list[PublishedResults]) -> dict[str, str]:
-    """Page of each case, by id; a number keeps names apart that differ in signs only."""
-    ids = sorted({case.id for run in published for case in run.results.cases})
-    return {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
