@@ -5,11 +5,14 @@ from a power spectral density.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from pantocheck.model.description.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 POINTS_PER_WAVELENGTH = 16
 """Points of a realised irregularity per shortest wavelength: its cubic spline is then accurate to 0.03 %."""
@@ -93,5 +96,7 @@ def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
     return np.asarray(_spline(irregularity)(inside))
 
 
-def _spline(irregularity: Irregularity) -> CubicSpline:
+def _spline(irregularity: Irregularity) -> "CubicSpline":
+    from scipy.interpolate import CubicSpline  # a list of cases does not wait for it
+
     return CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
+from helpers.command_line import pantocheck
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.app.commands import run_command as command_module
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -81,7 +81,7 @@ def test_case_that_the_reference_did_not_run_states_why(both: tuple[Results, Res
 
 
 def run_command(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["run", "en50318-2002/250", "--with-reference", *arguments])
+    return pantocheck("run", "en50318-2002/250", "--with-reference", *arguments)
 
 
 def test_reference_beside_itself_is_refused() -> None:

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
+from helpers.command_line import pantocheck
 from helpers.wave_system import SIGMA, Wave
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.results_building import build_results
@@ -41,26 +41,33 @@ def contents() -> dict[str, str]:
 @pytest.fixture
 def results(tmp_path: Path, contents: dict[str, str]) -> Path:
     """Folder with the results."""
+    return write_results(tmp_path / "results", contents)
+
+
+def write_results(folder: Path, contents: dict[str, str]) -> Path:
     for name, content in contents.items():
-        (tmp_path / "results" / name).mkdir(parents=True)
-        (tmp_path / "results" / name / "results.json").write_text(content, encoding="utf-8")
-    return tmp_path / "results"
+        (folder / name).mkdir(parents=True)
+        (folder / name / "results.json").write_text(content, encoding="utf-8")
+    return folder
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, contents: dict[str, str]) -> Path:
     """Site of the results, with a hostile title."""
     folder = tmp_path_factory.mktemp("site")
-    for name, content in contents.items():
-        (folder / "results" / name).mkdir(parents=True)
-        (folder / "results" / name / "results.json").write_text(content, encoding="utf-8")
-    done = build(folder / "results", "--out", str(folder / "site"), "--title", "<script>alert(1)</script>")
+    done = build(
+        write_results(folder / "results", contents),
+        "--out",
+        str(folder / "site"),
+        "--title",
+        "<script>alert(1)</script>",
+    )
     assert done.exit_code == 0, done.output
     return folder / "site"
 
 
 def build(folder: Path, *arguments: str) -> Result:
-    return CliRunner().invoke(app, ["site", str(folder), *arguments])
+    return pantocheck("site", str(folder), *arguments)
 
 
 def read_text(page: Path) -> str:
@@ -89,18 +96,15 @@ def test_every_link_leads_to_a_file_of_the_site(site: Path) -> None:
         assert (page.parent / link).is_file(), link
 
 
-def test_case_page_shows_the_values_of_every_version(site: Path) -> None:
+def test_case_page_shows_the_values_of_every_version_and_hostile_names_are_escaped(site: Path) -> None:
     (page,) = (site / "cases").iterdir()
     text = read_text(page)
     for sigma in (SIGMA, 1.3 * SIGMA):
         assert f"{sigma:.4g}"[:4] in text
     assert "Pantograph 2" in text
-
-
-def test_hostile_names_are_escaped(site: Path) -> None:
-    page = (site / "index.html").read_text("utf-8")
-    assert "<b>other" not in page
-    assert "<script>alert" not in page
+    index = (site / "index.html").read_text("utf-8")
+    assert "<b>other" not in index
+    assert "<script>alert" not in index
 
 
 def test_results_that_contradict_themselves_are_shown_as_errors(results: Path, tmp_path: Path) -> None:
