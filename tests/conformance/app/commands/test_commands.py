@@ -319,9 +319,6 @@ def write_refusal(folder: Path) -> Path:
     """Program that skips every case."""
 
 
-XX
-
-
 def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
