@@ -186,6 +186,11 @@ def read_plan(path: Path) -> Plan:
     )
 
 
+def split_names(text: str) -> tuple[str, ...]:
+    """Names that are separated by commas."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
 def place_cases(names: Sequence[str], folder: Path) -> tuple[str, ...]:
     """Ids, globs and paths of cases; paths are relative to the folder of their file."""
     return tuple(str(folder / name) if name.endswith(".toml") else name for name in names)

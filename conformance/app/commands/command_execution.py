@@ -1,4 +1,4 @@
-"""Signals that end a run: a signal after the last case waits until the reports are written.
+"""Execution of a command, and the signals that end a run.
 
 =========================  ==================================================
 time of the signal         effect

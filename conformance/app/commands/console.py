@@ -1,4 +1,4 @@
-"""Paragraph with a mark, whose further lines begin below its text."""
+"""Terminal output: paragraphs, tables for any width, verdicts and numbers."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
@@ -143,7 +143,6 @@ def _cells(text: str) -> int:
     return Text(text).cell_len
 
 
-# Terminal output: width, tables, verdicts and numbers.
 _STYLES: dict[Verdict, str] = {
     "pass": "bold green",
     "fail": "bold red",

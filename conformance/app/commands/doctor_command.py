@@ -1,4 +1,4 @@
-"""Facts on the environment: versions, extras, cache of the compiled kernels, threads, fonts and folders."""
+"""`pantocheck doctor`: versions, extras, cache of the compiled kernels, threads, fonts and folders."""
 
 import os
 import platform
@@ -96,7 +96,6 @@ def _parse_version(text: str) -> tuple[int, ...]:
     return tuple(map(int, match[0].split("."))) if match else ()
 
 
-# `pantocheck doctor`: report on the installation.
 def doctor_command() -> CommandOutput:
     """Show versions, extras, caches and folders.
 

@@ -16,7 +16,7 @@ from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.validation_messages import build_input_error
-from pantocheck.conformance.execution.plan import Plan, read_plan
+from pantocheck.conformance.execution.plan import Plan, read_plan, split_names
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.administration import read_administration
@@ -114,7 +114,7 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
         InputError: The plan cannot be read, or a value of the plan or of the command line is wrong.
     """
     if formats is not None:
-        options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
+        options["formats"] = split_names(formats)
     texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
     base = {} if plan is None else read_plan(plan).model_dump(exclude_none=True)
     given = {key: value for key, value in texts.items() if value is not None}

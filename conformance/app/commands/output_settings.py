@@ -1,14 +1,4 @@
-"""Settings of the output of every command: amount, form and colour.
-
-=================  ===================================================================================
-option             meaning
-=================  ===================================================================================
-`-v`, `--verbose`  further details on standard output, and the steps of the computation on standard error
-`-q`, `--quiet`    errors and the verdict line, without progress
-`--json`           one JSON object on standard output, and nothing else there
-`--no-color`       no colour and no bold text, as with the variable `NO_COLOR`
-=================  ===================================================================================
-"""
+"""Settings of the output of every command: amount, form and colour."""
 
 import codecs
 import inspect

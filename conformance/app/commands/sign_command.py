@@ -1,4 +1,4 @@
-"""Passphrase of a key: from a file, from the environment, or typed. It is never an argument, which other users see."""
+"""`pantocheck sign`: a signature for a certificate or for results."""
 
 import getpass
 import os
@@ -25,6 +25,8 @@ MAX_PASSPHRASE_BYTES = 4096
 def read_passphrase(file: Path | None) -> bytes:
     """Passphrase from the first line of a file, else from the variable `PANTOCHECK_PASSPHRASE`, else typed by the user.
 
+    It is never an argument, which other users see.
+
     Raises:
         InputError: The file cannot be read, or there is neither a file, nor the variable, nor a terminal.
     """
@@ -42,7 +44,6 @@ def read_passphrase(file: Path | None) -> bytes:
     return getpass.getpass("Passphrase of the key: ").encode("utf-8")
 
 
-# `pantocheck sign`: a signature for a certificate or for results.
 def sign_command(
     document: Annotated[Path, typer.Argument(metavar="FILE", help="Document to sign: PDF, HTML or JSON.")],
     key: Annotated[Path, typer.Option(help="Private key: PKCS#12 (.p12, .pfx) or PEM.")],

@@ -1,4 +1,4 @@
-"""Values of the Python interface in one line, for the prompt of an interpreter and for notebooks."""
+"""Display of the Python interface: values in one line, tables, and warnings of missing formats."""
 
 import importlib.util
 import textwrap
@@ -20,16 +20,8 @@ def describe_in_one_line(value: object, *facts: str) -> str:
     return f"<{type(value).__name__} {textwrap.shorten(', '.join(facts), LONGEST_DESCRIPTION, placeholder=' ...')}>"
 
 
-# Tables of the Python interface: pandas if it is installed, otherwise columns of numpy.
 def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
-    """Table of equally long columns.
-
-    Args:
-        columns: Columns by name.
-
-    Returns:
-        A table of pandas if that is installed, otherwise the columns.
-    """
+    """Table of equally long columns: of pandas if that is installed, otherwise the columns themselves."""
     if importlib.util.find_spec("pandas") is None:
         return dict(columns)
     import pandas
@@ -49,12 +41,7 @@ def _build_column(values: Sequence[object]) -> NDArray[Any]:
     return np.array(values, dtype=object)
 
 
-# Warning of a report in Python that is written without PDF.
 def warn_missing_formats(stated: Sequence[str] | None = None) -> None:
-    """Warn the caller of a method of the interface of default formats whose extra is not installed.
-
-    Args:
-        stated: Formats that the caller states; None: the default formats.
-    """
+    """Warn the caller of a method of the interface of formats, stated or default, whose extra is not installed."""
     for remark in remark_missing_formats(stated):
         warnings.warn(remark, stacklevel=3)

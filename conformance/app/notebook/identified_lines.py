@@ -132,11 +132,7 @@ def refuse_other_modes(modes: tuple[Mode, ...], catenary: Catenary, name: str) -
 
 
 def write_damping_fit(results: DampingResults, folder: Path) -> tuple[Document, list[Path]]:
-    """Write all files of a fit; returns the report and the paths of the files.
-
-    Raises:
-        InputError: A file cannot be written.
-    """
+    """Write all files of a fit; returns the report and the paths of the files."""
     from pantocheck.conformance.pages.damping_page import build_damping_document
     from pantocheck.conformance.pages.report_writers import write_document
 
@@ -259,11 +255,7 @@ class IdentifiedRecords(IdentifiedLines):
 
 
 def write_identification(lines: tuple[IdentifiedLine, ...], folder: Path) -> tuple[Document, list[Path]]:
-    """Write identification.json and the report; returns the report and the paths of the files.
-
-    Raises:
-        InputError: A file cannot be written.
-    """
+    """Write identification.json and the report; returns the report and the paths of the files."""
     from pantocheck.conformance.pages.identification_page import build_identification_document
     from pantocheck.conformance.pages.report_writers import write_document
 

@@ -298,11 +298,7 @@ def compare_runs(*runs: OpenedRun | str | Path) -> ComparedRuns:
 
 
 def write_comparison(comparison: RunComparison, folder: Path) -> list[Path]:
-    """Write all files of a comparison; return their paths.
-
-    Raises:
-        InputError: A file cannot be written.
-    """
+    """Write all files of a comparison; return their paths."""
     from pantocheck.conformance.pages.report_writers import write_document
     from pantocheck.conformance.pages.run_comparison_page import build_run_comparison
 

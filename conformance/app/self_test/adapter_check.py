@@ -1,4 +1,4 @@
-"""Finding of the check of an adapter."""
+"""Check of an adapter: short cases run on it, one of them on the reference simulator too, and gaps are named."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -83,11 +83,8 @@ def build_case_at_rest() -> Case:
 
 
 # Messages of a run that an adapter must answer beside those of one pantograph: the line at rest, two pantographs.
-REST_SUBJECT = "line at rest"
-"""Subject of the finding on a check of the line at rest."""
-
-TWIN_SUBJECT = "two pantographs"
-"""Subject of the finding on a passage with two pantographs."""
+REST_SUBJECT, TWIN_SUBJECT = "line at rest", "two pantographs"
+"""Subjects of the findings."""
 
 
 def check_line_at_rest(system: System) -> AdapterFinding:
@@ -122,20 +119,9 @@ def check_two_pantographs(system: System) -> AdapterFinding:
             "Cases with several pantographs are skipped.",
             "Answer with a record of all pantographs, or 'skipped'",
         )
-    return _check_twin_record(case, outcome)
-
-
-def _describe_no_delivery(subject: str, outcome: Skipped | Errored, consequence: str, remedy: str) -> AdapterFinding:
-    """Finding on an answer without a delivery; a refusal is no fault of an adapter."""
-    if isinstance(outcome, Skipped):
-        return AdapterFinding("note", subject, f"refused: {outcome.reason}. {consequence}")
-    return AdapterFinding("wrong", subject, f"error: {outcome.reason}. {remedy}.")
-
-
-def _check_twin_record(case: Case, delivered: Delivered) -> AdapterFinding:
-    if delivered.record is None:
+    if outcome.record is None:
         return AdapterFinding("missing", TWIN_SUBJECT, "'delivered' without a record. Write one, or answer 'skipped'.")
-    result = grade_case(case, delivered, "secondary")
+    result = grade_case(case, outcome, "secondary")
     if result.record is None:
         text = (
             f"{result.reason}. Write position, force and contact height of every pantograph, in running order, or "
@@ -147,7 +133,14 @@ def _check_twin_record(case: Case, delivered: Delivered) -> AdapterFinding:
     return AdapterFinding("ok", TWIN_SUBJECT, "a record of both pantographs was delivered.")
 
 
-# Check of an adapter: short cases run on it, one of them on the reference simulator too, and gaps are named.
+def _describe_no_delivery(subject: str, outcome: Skipped | Errored, consequence: str, remedy: str) -> AdapterFinding:
+    """Finding on an answer without a delivery; a refusal is no fault of an adapter."""
+    if isinstance(outcome, Skipped):
+        return AdapterFinding("note", subject, f"refused: {outcome.reason}. {consequence}")
+    return AdapterFinding("wrong", subject, f"error: {outcome.reason}. {remedy}.")
+
+
+# Delivery of the short case, beside that of the reference simulator.
 USUAL_DIFFERENCE = 0.1
 """Relative difference from the reference simulator that needs no explanation: the string example differs by less."""
 
