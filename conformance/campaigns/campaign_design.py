@@ -117,6 +117,12 @@ class SampleAxis:
         return tuple(sampled.key for sampled in self.sampling.input if not isinstance(sampled.distribution, Seed))
 
 
+def list_identifying_rows(axis: DesignAxis) -> list[object]:
+    """Keys, length, and first and last rows of a range or sample; all rows of a list or table."""
+    rows = range(len(axis)) if isinstance(axis, ColumnAxis) else (0, len(axis) - 1)
+    return [list(axis.keys), len(axis), *(axis.row(i) for i in rows)]
+
+
 def build_axis(
     variation: ValueVariation | RangeVariation | ColumnVariation | TableVariation, folder: Path
 ) -> DesignAxis:

@@ -122,6 +122,9 @@ def evaluate_campaign(
     charted = drop_constant(values, columns)
     saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
     independent = select_independent(columns, saltelli[0]) if saltelli else columns
+    inputs = {key: _describe_axis(axis, key) for axis in design.axes for key in axis.keys}
+    for link in design.links:
+        inputs[link.key] = f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
     maps = list(build_maps(columns, charted, grid))
     verdicts, reasons = count_reasons(store)
     finished, failed = store.count()
@@ -131,7 +134,7 @@ def evaluate_campaign(
         ending=ending,
         cases=list(design.case_ids),
         systems=list(design.systems),
-        inputs=dict(_describe_inputs(prepared)),
+        inputs=inputs,
         sources=dict(_list_sources(prepared)),
         total=design.count_runs(),
         finished=finished,
@@ -150,14 +153,6 @@ def evaluate_campaign(
     )
 
 
-def _describe_inputs(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
-    """Varied inputs with their ranges, distributions or links."""
-    for axis in prepared.design.axes:
-        yield from ((key, _describe_axis(axis, key)) for key in axis.keys)
-    for link in prepared.design.links:
-        yield link.key, f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
-
-
 def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
     """Cases from outside, and varied inputs whose source is stated, with their source."""
     for case_id, origin in prepared.origins.items():
@@ -173,6 +168,7 @@ def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
 
 
 def _describe_axis(axis: DesignAxis, key: str) -> str:
+    """Range or distribution of a varied input."""
     if isinstance(axis, SampleAxis):
         distribution = next(item.distribution for item in axis.sampling.input if item.key == key)
         facts = ", ".join(f"{name} {value}" for name, value in distribution if name != "kind" and value is not None)

@@ -69,7 +69,9 @@ class LocalWorkers:
         idle: list[_Worker] = []
         with adopt_orphans(), _end_children():
             while True:
-                while len(busy) < self.workers and (run := _take(waiting, runs)) is not None:
+                while (
+                    len(busy) < self.workers and (run := waiting.popleft() if waiting else next(runs, None)) is not None
+                ):
                     worker = _give(run, idle, execute)
                     busy[worker.connection] = worker
                 if not busy:
@@ -138,7 +140,6 @@ def _end_children() -> Iterator[None]:
 
 
 def _take(waiting: deque[PlannedRun], runs: Iterator[PlannedRun]) -> PlannedRun | None:
-    """Next run: one that must be repeated, or a new one; None if there is none."""
     return waiting.popleft() if waiting else next(runs, None)
 
 

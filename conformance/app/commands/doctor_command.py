@@ -68,7 +68,8 @@ def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     yield "commit of the suite", find_suite_commit() or "not known"
     yield "Python", f"{platform.python_version()} ({platform.python_implementation()}), {sys.executable}"
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
-    yield "processors", f"{_count_processors()} usable of {os.cpu_count()}"
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    yield "processors", f"{usable} usable of {os.cpu_count()}"
     yield (
         "thread limits",
         ", ".join(f"{name}={environment[name]}" for name in _THREADS if name in environment) or "none",
@@ -83,11 +84,6 @@ def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
 
 
 _THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
-
-def _count_processors() -> int:
-    """Number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _parse_version(text: str) -> tuple[int, ...]:

@@ -50,13 +50,10 @@ def line_draw_command(
     if out.suffix.lower() not in DRAWING_FORMATS:
         raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}.")
     check_writable(out.parent)
-    drawing = _build_line(line) if _is_line(line) else _build_case(line, folders)
+    is_line = line.endswith(".toml") and recognise_named_file(read_toml(Path(line), "file").keys()) == "line"
+    drawing = _build_line(line) if is_line else _build_case(line, folders)
     write_atomically(out, DRAWING_FORMATS[out.suffix.lower()](drawing))
     return CommandOutput(escape_text(drawing.title), {"title": drawing.title}, files=(out,))
-
-
-def _is_line(name: str) -> bool:
-    return name.endswith(".toml") and recognise_named_file(read_toml(Path(name), "file").keys()) == "line"
 
 
 def _build_line(name: str) -> LineDrawing:

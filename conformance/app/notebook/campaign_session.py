@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.app.notebook.display import tabulate_columns
+from pantocheck.conformance.app.notebook.display import build_column, tabulate_columns
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import (
     find_campaign_file,
@@ -45,7 +45,7 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
             prepared.drive(store, executor)
         write_campaign_table(store, folder / "campaign.csv")
         columns = collect_columns(store)
-    return tabulate_columns(columns)
+    return tabulate_columns({name: build_column(values) for name, values in columns.items()})
 
 
 def read_traces(folder: str | Path, run: int) -> RunTraces:

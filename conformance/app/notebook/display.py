@@ -31,14 +31,17 @@ def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
 
 def tabulate_rows(rows: Sequence[Mapping[str, object]], names: Sequence[str]) -> Any:
     """Table of rows with the same keys; see `tabulate_columns`. A number that is missing is NaN."""
-    return tabulate_columns({name: _build_column([row[name] for row in rows]) for name in names})
+    return tabulate_columns({name: build_column([row[name] for row in rows]) for name in names})
 
 
-def _build_column(values: Sequence[object]) -> NDArray[Any]:
+def build_column(values: Sequence[object]) -> NDArray[Any]:
     """Array of numbers if every value is a number or missing, otherwise of objects."""
     if all(value is None or (isinstance(value, float | int) and not isinstance(value, bool)) for value in values):
         return np.array([np.nan if value is None else value for value in values])
-    return np.array(values, dtype=object)
+    column = np.empty(len(values), object)
+    for place, value in enumerate(values):  # a list stays the value of one cell
+        column[place] = value
+    return column
 
 
 def warn_missing_formats(stated: Sequence[str] | None = None) -> None:

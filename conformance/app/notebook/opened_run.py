@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,13 +63,16 @@ class OpenedRun:
         The column `unknown_components` names the components that the uncertainty lacks, such as those of mesh and start
         after `simulate`. Quantities with several values, such as the elasticity along a span, are left out.
         """
+        widths = {owner: self.run.uncertainty.get(owner, {}) for owner in self.run.values}
         rows = [
             {
                 "pantograph": owner,
                 "quantity": name,
                 "value": value,
                 "unit": quantity_unit(name),
-                "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
+                "uncertainty": width
+                if isinstance(width := self.run.uncertainty.get(owner, {}).get(name), float)
+                else None,
                 "unknown_components": ", ".join(self.run.unknown_components),
                 "label": quantity_label(name),
             }
@@ -176,11 +179,6 @@ def open_run(path: str | Path) -> OpenedRun:
         InputError: The record cannot be read or is invalid.
     """
     return OpenedRun(read_record_run(Path(path)))
-
-
-def _select_number(values: Mapping[str, Value], name: str) -> float | None:
-    value = values.get(name)
-    return value if isinstance(value, float) else None
 
 
 # Comparisons: quantities side by side, and forces at the same positions.
