@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,16 +63,13 @@ class OpenedRun:
         The column `unknown_components` names the components that the uncertainty lacks, such as those of mesh and start
         after `simulate`. Quantities with several values, such as the elasticity along a span, are left out.
         """
-        widths = {owner: self.run.uncertainty.get(owner, {}) for owner in self.run.values}
         rows = [
             {
                 "pantograph": owner,
                 "quantity": name,
                 "value": value,
                 "unit": quantity_unit(name),
-                "uncertainty": width
-                if isinstance(width := self.run.uncertainty.get(owner, {}).get(name), float)
-                else None,
+                "uncertainty": _select_number(self.run.uncertainty.get(owner, {}), name),
                 "unknown_components": ", ".join(self.run.unknown_components),
                 "label": quantity_label(name),
             }
@@ -167,6 +164,11 @@ class SimulatedRun(OpenedRun):
         }
         system = {"name": self.system.name, "version": self.system.version}
         return write_record(Path(path), self.record, case=self.case.id, system=system, further=further)
+
+
+def _select_number(values: Mapping[str, Value], name: str) -> float | None:
+    value = values.get(name)
+    return value if isinstance(value, float) else None
 
 
 def open_run(path: str | Path) -> OpenedRun:

@@ -2,11 +2,11 @@
 
 import json
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
 from jsonschema import validate
-from typer.testing import Result
 
 from helpers.command_line import pantocheck
 from helpers.response_records import (
@@ -53,8 +53,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    return pantocheck("pantograph", "compare", *arguments, "--pantograph", "pantograph.toml", "--out", "out")
+run = partial(pantocheck, "pantograph", "compare", "--pantograph", "pantograph.toml", "--out", "out")
 
 
 def test_reports_are_written_and_the_exit_code_follows_the_verdict(folder: Path) -> None:

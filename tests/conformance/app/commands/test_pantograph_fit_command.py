@@ -2,11 +2,11 @@
 
 import json
 import tomllib
+from functools import partial
 from pathlib import Path
 
 import pytest
 from jsonschema import validate
-from typer.testing import Result
 
 from helpers.command_line import pantocheck
 from helpers.response_records import (
@@ -29,8 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    return pantocheck("pantograph", "fit", "measured.csv", "--out", "fitted.toml", *arguments)
+run = partial(pantocheck, "pantograph", "fit", "measured.csv", "--out", "fitted.toml")
 
 
 def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:

@@ -4,10 +4,10 @@ import json
 import re
 import shutil
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
 
 from helpers.command_line import pantocheck
 from helpers.wave_system import SIGMA, Wave
@@ -66,8 +66,7 @@ def site(tmp_path_factory: pytest.TempPathFactory, contents: dict[str, str]) -> 
     return folder / "site"
 
 
-def build(folder: Path, *arguments: str) -> Result:
-    return pantocheck("site", str(folder), *arguments)
+build = partial(pantocheck, "site")
 
 
 def read_text(page: Path) -> str:
@@ -113,7 +112,7 @@ def test_results_that_contradict_themselves_are_shown_as_errors(results: Path, t
     forged = json.loads(path.read_text("utf-8"))
     forged["verdict"] = forged["cases"][0]["verdict"] = "pass"
     path.write_text(json.dumps(forged), encoding="utf-8")
-    done = build(results, "--out", str(tmp_path / "site"))
+    done = build(results, "--out", tmp_path / "site")
     assert done.exit_code == 0
     assert "verdict 'pass' stated" in done.output
     text = read_text(tmp_path / "site" / "index.html")
@@ -131,7 +130,7 @@ def test_repeated_site_gives_the_same_bytes_and_ignores_itself(
     shutil.rmtree(results / "old")
     contents = []
     for _ in range(2):  # the site lies inside the folder of the results
-        assert build(results, "--out", str(results / "site")).exit_code == 0
+        assert build(results, "--out", results / "site").exit_code == 0
         contents.append({path: path.read_bytes() for path in (results / "site").rglob("*") if path.is_file()})
     assert contents[0] == contents[1]
 
@@ -141,7 +140,7 @@ def test_a_folder_without_results_is_named(tmp_path: Path, make: bool) -> None:
     folder = tmp_path / "empty"
     if make:
         folder.mkdir()
-    done = build(folder, "--out", str(tmp_path / "site"))
+    done = build(folder, "--out", tmp_path / "site")
     assert done.exit_code == 2
     assert ("no results.json in it" if make else "not a folder") in " ".join(done.output.split())
 
@@ -150,8 +149,8 @@ def test_several_folders_give_the_site_of_all_their_results(results: Path, tmp_p
     """A folder inside another one adds nothing: each file is taken once."""
     one, two = tmp_path / "one", tmp_path / "two"
     first, *_ = sorted(results.iterdir())
-    assert build(results, "--out", str(one)).exit_code == 0
-    assert build(first, str(results), str(first), "--out", str(two)).exit_code == 0
+    assert build(results, "--out", one).exit_code == 0
+    assert build(first, str(results), str(first), "--out", two).exit_code == 0
     assert read_text(two / "index.html") == read_text(one / "index.html")
 
 
@@ -159,7 +158,7 @@ def test_links_and_folders_named_as_results_are_left_out(results: Path, tmp_path
     (results / "copy").mkdir()
     (results / "copy" / "results.json").symlink_to(results / "old" / "results.json")
     (results / "folder" / "results.json").mkdir(parents=True)
-    done = build(results, "--out", str(tmp_path / "site"))
+    done = build(results, "--out", tmp_path / "site")
     assert "3 runs" in done.output
 
 
