@@ -6,8 +6,8 @@ from typing import Any, NoReturn
 
 import pytest
 
-from pantocheck.conformance.app.pytest_plugin.hooks import shared_folder
 from pantocheck.conformance.app.pytest_plugin.session import PlanSession, list_registered
+from pantocheck.conformance.app.pytest_plugin.shared_folder import shared_folder
 from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
     criterion_line,
     is_unverified,

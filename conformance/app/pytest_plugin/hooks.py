@@ -4,37 +4,18 @@ Every pytest session imports this module, so it imports only pytest until a plan
 """
 
 import shutil
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from pantocheck.conformance.app.pytest_plugin.shared_folder import FOLDER_KEY, created_folder, shared_folder
+
 if TYPE_CHECKING:
     from pantocheck.conformance.app.pytest_plugin.user_fixtures import GradedCase
 
 _LINES = pytest.StashKey[list[str]]()
-
-FOLDER_KEY = "pantocheck_folder"
-"""Key of the shared folder in the input of a worker of pytest-xdist."""
-
-_FOLDER = pytest.StashKey[Path]()
-
-
-def shared_folder(config: pytest.Config) -> Path:
-    """Folder of the session for the results of cases, the same in all workers of pytest-xdist."""
-    worker: dict[str, Any] | None = getattr(config, "workerinput", None)
-    if worker is not None:
-        return Path(worker[FOLDER_KEY])
-    if _FOLDER not in config.stash:
-        config.stash[_FOLDER] = Path(tempfile.mkdtemp(prefix="pantocheck-"))
-    return config.stash[_FOLDER]
-
-
-def created_folder(config: pytest.Config) -> Path | None:
-    """Shared folder if this process created it; None in a worker, and if no plan was collected."""
-    return config.stash.get(_FOLDER, None)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -367,7 +367,8 @@ def test_loading_the_plugin_imports_nothing_heavy() -> None:
     assert not loaded & {"numpy", "scipy", "numba", "pydantic", "typer", "rich", "h5py", "matplotlib", "filelock"}
     ours = {name for name in loaded if name.startswith("pantocheck")}
     plugin = "pantocheck.conformance.app.pytest_plugin"
-    assert ours == {"pantocheck", "pantocheck.conformance", "pantocheck.conformance.app", plugin, f"{plugin}.hooks"}
+    packages = {"pantocheck", "pantocheck.conformance", "pantocheck.conformance.app", plugin}
+    assert ours == {*packages, f"{plugin}.hooks", f"{plugin}.shared_folder"}
 
 
 def test_fixtures_grade_records_and_arrays(pytester: pytest.Pytester, plan: Path) -> None:
