@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pantocheck.conformance.app.notebook.campaign_session import read_traces, run_campaign
-    from pantocheck.conformance.app.notebook.compared_runs import ComparedRuns, compare_runs
-    from pantocheck.conformance.app.notebook.fitted_damping import FittedDamping
     from pantocheck.conformance.app.notebook.fitted_pantograph import FittedPantograph, fit_pantograph
     from pantocheck.conformance.app.notebook.graded_results import (
         GradedResults,
@@ -19,6 +17,7 @@ if TYPE_CHECKING:
         validate_dossier,
     )
     from pantocheck.conformance.app.notebook.identified_lines import (
+        FittedDamping,
         IdentifiedLines,
         IdentifiedRecords,
         identify_line,
@@ -27,7 +26,13 @@ if TYPE_CHECKING:
     from pantocheck.conformance.app.notebook.opened_case import OpenedCase, build_case, list_cases, open_case
     from pantocheck.conformance.app.notebook.opened_drop import OpenedDrop, open_drop
     from pantocheck.conformance.app.notebook.opened_line import OpenedLine, OpenedPantograph, open_line, open_pantograph
-    from pantocheck.conformance.app.notebook.opened_run import OpenedRun, SimulatedRun, open_run
+    from pantocheck.conformance.app.notebook.opened_run import (
+        ComparedRuns,
+        OpenedRun,
+        SimulatedRun,
+        compare_runs,
+        open_run,
+    )
     from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
     from pantocheck.conformance.core.input_error import InputError
 
@@ -67,44 +72,23 @@ __all__ = [
 ]
 
 _MODULES = {
-    "ComparedRuns": "app.notebook.compared_runs",
-    "FittedDamping": "app.notebook.fitted_damping",
-    "FittedPantograph": "app.notebook.fitted_pantograph",
-    "GradedResults": "app.notebook.graded_results",
-    "IdentifiedLines": "app.notebook.identified_lines",
-    "IdentifiedRecords": "app.notebook.identified_lines",
-    "InputError": "core.input_error",
-    "OpenedCase": "app.notebook.opened_case",
-    "OpenedDrop": "app.notebook.opened_drop",
-    "OpenedLine": "app.notebook.opened_line",
-    "OpenedPantograph": "app.notebook.opened_line",
-    "OpenedRun": "app.notebook.opened_run",
-    "SimulatedRun": "app.notebook.opened_run",
-    "VerifiedReport": "app.notebook.verified_report",
-    "assess_run": "app.notebook.graded_results",
-    "build_case": "app.notebook.opened_case",
-    "compare_runs": "app.notebook.compared_runs",
-    "fit_pantograph": "app.notebook.fitted_pantograph",
-    "grade_cases": "app.notebook.graded_results",
-    "identify_line": "app.notebook.identified_lines",
-    "list_cases": "app.notebook.opened_case",
-    "open_case": "app.notebook.opened_case",
-    "open_drop": "app.notebook.opened_drop",
-    "open_line": "app.notebook.opened_line",
-    "open_modes": "app.notebook.identified_lines",
-    "open_pantograph": "app.notebook.opened_line",
-    "open_results": "app.notebook.graded_results",
-    "open_run": "app.notebook.opened_run",
-    "read_traces": "app.notebook.campaign_session",
-    "run_campaign": "app.notebook.campaign_session",
-    "validate_dossier": "app.notebook.graded_results",
-    "verify_report": "app.notebook.verified_report",
+    "app.notebook.campaign_session": "read_traces run_campaign",
+    "app.notebook.fitted_pantograph": "FittedPantograph fit_pantograph",
+    "app.notebook.graded_results": "GradedResults assess_run grade_cases open_results validate_dossier",
+    "app.notebook.identified_lines": "FittedDamping IdentifiedLines IdentifiedRecords identify_line open_modes",
+    "app.notebook.opened_case": "OpenedCase build_case list_cases open_case",
+    "app.notebook.opened_drop": "OpenedDrop open_drop",
+    "app.notebook.opened_line": "OpenedLine OpenedPantograph open_line open_pantograph",
+    "app.notebook.opened_run": "ComparedRuns OpenedRun SimulatedRun compare_runs open_run",
+    "app.notebook.verified_report": "VerifiedReport verify_report",
+    "core.input_error": "InputError",
 }
-"""Modules of the public names."""
+"""Public names by their module."""
 
 
 def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
-    if name not in _MODULES:
-        raise AttributeError(f"module 'pantocheck.conformance' has no attribute {name!r}")
-    return getattr(import_module(f"pantocheck.conformance.{_MODULES[name]}"), name)
+    for module, names in _MODULES.items():
+        if name in names.split():
+            return getattr(import_module(f"pantocheck.conformance.{module}"), name)
+    raise AttributeError(f"module 'pantocheck.conformance' has no attribute {name!r}")

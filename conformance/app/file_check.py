@@ -48,10 +48,10 @@ TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in ta
 
 
 def check_input_file(path: Path, kind: str | None = None) -> str:
-    """Check an input file with the files that it names.
+    """Check a TOML file, JSON file or table of a record, with the files that it names.
 
     Args:
-        path: TOML file, JSON file, or table of a record. A folder stands for one without input files.
+        path: The file; a folder stands for one without input files.
         kind: Kind of a TOML file, a key of `READ_FORMATS`; None: it is recognised by its keys.
 
     Returns:
@@ -241,14 +241,7 @@ _CHECKS: dict[str, Callable[[Path], str]] = {
 
 # Kind of an input file, recognised by its keys.
 def recognise_toml(tree: Mapping[str, Any], where: str) -> str:
-    """Recognise the kind of a TOML file: the format with the fewest unknown and missing keys.
-
-    Args:
-        tree: Content of the file.
-        where: Name of the file in messages.
-
-    Returns:
-        Name of the format, a key of `READ_FORMATS`.
+    """Kind of a TOML file, a key of `READ_FORMATS`: the format with the fewest unknown and missing keys.
 
     Raises:
         InputError: No format has a key of the file, or several formats fit equally well.
@@ -262,7 +255,7 @@ def recognise_toml(tree: Mapping[str, Any], where: str) -> str:
 
 
 def recognise_json(content: Any, where: str) -> str:
-    """Recognise the kind of a JSON file by its schema; a list contains modes. Parameters as in `recognise_toml`."""
+    """Kind of a JSON file by its schema; a list contains modes."""
     if isinstance(content, list):
         return "modes"
     stated = content.get("schema") if isinstance(content, dict) else None

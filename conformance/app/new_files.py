@@ -24,28 +24,14 @@ def read_template(kind: NewKind) -> str:
 
 
 def choose_parts(path: Path, named: Mapping[str, str | None]) -> dict[str, str]:
-    """Choose line and pantograph of a new case.
-
-    Args:
-        path: Case file to be written.
-        named: File names of the user, with the keys `line` and `pantograph`; None: `line.toml` and `pantograph.toml`
-            beside the case, or else those of the library.
-
-    Returns:
-        Names for the case file, with the same keys.
-    """
+    """Line and pantograph of a new case: files that the user names, files beside the case, or those of the library."""
     beside = {part: f"{part}.toml" for part in LIBRARY_PARTS}
     default = {part: name if (path.parent / name).is_file() else LIBRARY_PARTS[part] for part, name in beside.items()}
     return {part: named.get(part) or name for part, name in default.items()}
 
 
 def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
-    """Text of a new case.
-
-    Args:
-        path: Case file to be written; its name becomes the id of the case.
-        parts: Names of line and pantograph, as from `choose_parts`.
-    """
+    """Text of a new case with some parts; the name of its file becomes its id."""
     values = {**parts, "id": "own/" + (re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem) or "case")}
     text = read_template("case")
     for name, value in values.items():
@@ -54,11 +40,7 @@ def fill_case_template(path: Path, parts: Mapping[str, str]) -> str:
 
 
 def write_new_file(path: Path, text: str) -> None:
-    """Write a file that does not exist yet.
-
-    Raises:
-        InputError: The name does not end in .toml, the file exists, or it cannot be written.
-    """
+    """Write a TOML file that does not exist yet."""
     where = f"file '{path}'"
     if path.suffix != ".toml":
         raise InputError(where, f"has the suffix {path.suffix!r}", "Give a name that ends in .toml .")

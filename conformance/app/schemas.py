@@ -112,14 +112,7 @@ class ReadSchema(WrittenSchema):
 
 
 def build_schema(name: str) -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of a format.
-
-    Args:
-        name: One of `FORMAT_NAMES`.
-
-    Returns:
-        The schema; it refers to nothing outside itself.
-    """
+    """JSON Schema (draft 2020-12) of one of `FORMAT_NAMES`; it refers to nothing outside itself."""
     if name in READ_FORMATS:
         schema = READ_FORMATS[name].model_json_schema(schema_generator=ReadSchema)
     elif name in WRITTEN_FORMATS:

@@ -13,14 +13,7 @@ TO_DO = "COMPLETE:"
 
 
 def draft_record_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
-    """Sidecar of a contact-force record.
-
-    Args:
-        file: Name of the table.
-        facts: Its columns.
-        time: Its time.
-        layout: Stated layout of a text table.
-    """
+    """Sidecar of a contact-force record, for a table with some columns, a time and a stated layout."""
     own = all(find_column(fact.column.name or "", fact.column.row) for fact in facts)
     guesses = guess_channels(facts)
     forces = len(guesses.get("force", [])) or 1
@@ -122,7 +115,7 @@ def _list_position_help(guesses: dict[str, list[ChannelFacts]]) -> Iterator[str]
 
 
 def draft_drop_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
-    """Sidecar of a mass-drop record; parameters as in `draft_record_sidecar`."""
+    """Sidecar of a mass-drop record."""
     channels = [fact for fact in facts if time is None or fact.column is not time.column]
     rate = "200.0" if time is None else f"{time.rate:.6g}"
     rate = rate if "." in rate or "e" in rate else f"{rate}.0"

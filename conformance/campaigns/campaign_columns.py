@@ -112,12 +112,7 @@ class CampaignColumns:
 
 
 def choose_values(store: CampaignStore, limits: dict[str, tuple[float | None, float | None]]) -> list[EvaluatedValue]:
-    """Choose the evaluated values: those with a limit, or else the usual quantities of all pantographs and the line.
-
-    Args:
-        store: Finished runs.
-        limits: Lower and upper bound by column.
-    """
+    """Choose the evaluated values: those with a limit, or else the usual quantities of all pantographs and the line."""
     delivered = {name for row in islice(store.rows(), SEARCHED_RUNS) for name in row.quantities}
     limited = [EvaluatedValue(name, *bounds) for name, bounds in limits.items() if name in delivered]
     usual = [

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
-from pantocheck.conformance.campaigns.local_workers import Execute, RunExecutor
+from pantocheck.conformance.campaigns.run_executors import Execute, RunExecutor
 from pantocheck.conformance.results.campaign_format import CampaignEnding
 
 FEWEST_JUDGED = 20
@@ -77,13 +77,9 @@ def drive_campaign(
     execution: Execution,
     report: Callable[[CampaignProgress], None],
 ) -> CampaignEnding:
-    """Execute the runs of a campaign that its store does not hold.
+    """Execute the runs of a design that its store does not hold.
 
     Args:
-        design: Runs of the campaign.
-        execute: Function that executes one run.
-        store: Finished runs.
-        executor: Executor of the runs.
         execution: Conditions of an early stop.
         report: Callback that receives the progress after every run.
 

@@ -1,7 +1,9 @@
 """Evaluation of a campaign: from the rows of its store to campaign.json."""
 
+import json
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,10 +15,9 @@ from pantocheck.conformance.campaigns.campaign_columns import (
     drop_constant,
     read_columns,
 )
-from pantocheck.conformance.campaigns.campaign_comparison import RunPair, compare_values
+from pantocheck.conformance.campaigns.campaign_design import DesignAxis, SampleAxis
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
-from pantocheck.conformance.campaigns.design_axes import DesignAxis, SampleAxis
 from pantocheck.conformance.campaigns.input_charts import MOST_MAPS, build_input_charts, build_maps, mark_limit
 from pantocheck.conformance.campaigns.sample_statistics import (
     build_indices,
@@ -28,10 +29,81 @@ from pantocheck.conformance.campaigns.sample_statistics import (
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.figure_data import Chart, Series
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.sourced_table import NO_SOURCE, SourcedTable
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.quantities.limit_text import format_stated
-from pantocheck.conformance.results.campaign_format import CampaignEnding, CampaignResults, Estimate, ValueStatistics
+from pantocheck.conformance.results.campaign_format import (
+    CampaignEnding,
+    CampaignResults,
+    Estimate,
+    ValueComparison,
+    ValueStatistics,
+)
+
+
+@dataclass(frozen=True)
+class RunPair:
+    """Values of two runs with equal inputs."""
+
+    place: str
+    """Case and inputs in words."""
+    here: dict[str, float]
+    there: dict[str, float]
+    """Quantities of this campaign and of the other one, by column."""
+
+
+def pair_runs(store: CampaignStore, other: CampaignStore, values: Sequence[EvaluatedValue]) -> list[RunPair]:
+    """Pair the finished runs of two campaigns that have the same case, inputs and system, with some of their values.
+
+    The system does not count if the campaigns have no system in common: then their systems are compared.
+
+    Raises:
+        InputError: No run of one campaign has the inputs of a run of the other.
+    """
+    systems = [{row.run.system for row in each.rows()} for each in (store, other)]
+    with_system = bool(systems[0] & systems[1])
+    columns = [value.column for value in values]
+    there = {key: quantities for key, _, quantities in _list_runs(other, with_system, columns)}
+    pairs = [
+        RunPair(place, quantities, there[key])
+        for key, place, quantities in _list_runs(store, with_system, columns)
+        if key in there
+    ]
+    if not pairs:
+        hint = "Compare campaigns of the same cases with equal inputs."
+        raise InputError("option --compare", "no run has the inputs of a run of the other campaign", hint)
+    return pairs
+
+
+def compare_values(pairs: Sequence[RunPair], values: Sequence[EvaluatedValue]) -> Iterator[ValueComparison]:
+    """Differences of each value, this campaign minus the other one."""
+    for value in values:
+        common = [pair for pair in pairs if value.column in pair.here and value.column in pair.there]
+        if common:
+            difference = np.array([pair.here[value.column] - pair.there[value.column] for pair in common])
+            largest = int(np.argmax(np.abs(difference)))
+            yield ValueComparison(
+                label=value.title,
+                runs=len(common),
+                mean=float(difference.mean()),
+                rms=float(np.sqrt(np.mean(difference**2))),
+                largest=float(difference[largest]),
+                place=common[largest].place,
+            )
+
+
+def _list_runs(
+    store: CampaignStore, with_system: bool, columns: Sequence[str]
+) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """Key, place in words and some quantities of the runs that have a result."""
+    for row in store.rows():
+        if row.quantities:
+            run = row.run
+            key = json.dumps([run.case_id, run.system if with_system else None, run.inputs], sort_keys=True)
+            place = ", ".join([run.case_id, *(f"{name} = {value}" for name, value in run.inputs.items())])
+            yield key, place, {name: row.quantities[name] for name in columns if name in row.quantities}
+
 
 SEED = ".seed"
 """End of the keys of seeds. Their values have no order: runs that differ in them are random designs."""
@@ -40,14 +112,7 @@ SEED = ".seed"
 def evaluate_campaign(
     prepared: PreparedCampaign, store: CampaignStore, ending: CampaignEnding, pairs: Sequence[RunPair] = ()
 ) -> CampaignResults:
-    """Evaluate the finished runs of a campaign.
-
-    Args:
-        prepared: The campaign.
-        store: Its finished runs.
-        ending: Reason of its end.
-        pairs: Runs beside those of another campaign.
-    """
+    """Evaluate the finished runs of a campaign, alone and in pairs with those of another campaign."""
     design = prepared.design
     varied = [key for axis in design.axes if not isinstance(axis, SampleAxis) for key in axis.keys]
     grid = [key for key in varied if not key.endswith(SEED)]
@@ -57,6 +122,9 @@ def evaluate_campaign(
     charted = drop_constant(values, columns)
     saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
     independent = select_independent(columns, saltelli[0]) if saltelli else columns
+    inputs = {key: _describe_axis(axis, key) for axis in design.axes for key in axis.keys}
+    for link in design.links:
+        inputs[link.key] = f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
     maps = list(build_maps(columns, charted, grid))
     verdicts, reasons = count_reasons(store)
     finished, failed = store.count()
@@ -66,7 +134,7 @@ def evaluate_campaign(
         ending=ending,
         cases=list(design.case_ids),
         systems=list(design.systems),
-        inputs=dict(_describe_inputs(prepared)),
+        inputs=inputs,
         sources=dict(_list_sources(prepared)),
         total=design.count_runs(),
         finished=finished,
@@ -85,14 +153,6 @@ def evaluate_campaign(
     )
 
 
-def _describe_inputs(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
-    """Varied inputs with their ranges, distributions or links."""
-    for axis in prepared.design.axes:
-        yield from ((key, _describe_axis(axis, key)) for key in axis.keys)
-    for link in prepared.design.links:
-        yield link.key, f"{format_stated(link.factor)} x {link.follows} + {format_stated(link.offset)}"
-
-
 def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
     """Cases from outside, and varied inputs whose source is stated, with their source."""
     for case_id, origin in prepared.origins.items():
@@ -108,6 +168,7 @@ def _list_sources(prepared: PreparedCampaign) -> Iterator[tuple[str, str]]:
 
 
 def _describe_axis(axis: DesignAxis, key: str) -> str:
+    """Range or distribution of a varied input."""
     if isinstance(axis, SampleAxis):
         distribution = next(item.distribution for item in axis.sampling.input if item.key == key)
         facts = ", ".join(f"{name} {value}" for name, value in distribution if name != "kind" and value is not None)

@@ -229,14 +229,7 @@ _RANGE = re.compile(f"{_NUMBER}:{_NUMBER}:{_NUMBER}")
 
 
 def parse_variation(text: str) -> dict[str, Any]:
-    """Parse a variation of the command line into a [[vary]] table of a campaign file.
-
-    Args:
-        text: `KEY=START:STOP:STEP` or `KEY=VALUE,VALUE,...`.
-
-    Raises:
-        InputError: The text is no variation.
-    """
+    """Table [[vary]] of a campaign file from `KEY=START:STOP:STEP` or `KEY=VALUE,VALUE,...` of the command line."""
     key, equals, values = (part.strip() for part in text.partition("="))
     where = f"{VARY_OPTION} {text[:80]!r}"
     if not equals or not key or not values:
@@ -251,10 +244,6 @@ def parse_variation(text: str) -> dict[str, Any]:
 
 
 def check_variation(variation: dict[str, Any]) -> None:
-    """Check the key of a variation of the command line, with its first value.
-
-    Raises:
-        InputError: The key does not exist, or cannot be changed.
-    """
+    """Refuse a variation of the command line whose key does not exist or whose first value is not possible."""
     values = variation["values"] if "values" in variation else [variation["range"]["start"]]
     build_change(variation["key"], next(iter(values), None), VARY_OPTION)

@@ -1,16 +1,24 @@
 """Preparation of a campaign: its files are read and checked before the first run."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, parse_condition
+from pantocheck.conformance.campaigns.campaign_design import (
+    CampaignDesign,
+    build_axis,
+    list_identifying_rows,
+    parse_condition,
+    sample_inputs,
+)
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, name_column, vary_inputs
-from pantocheck.conformance.campaigns.design_axes import build_axis, sample_inputs
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore
+from pantocheck.conformance.campaigns.run_executors import RunExecutor
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
 from pantocheck.conformance.cases.case_source import repeated_id
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
@@ -25,6 +33,7 @@ from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.execution.plan import place_cases, place_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.results.campaign_format import CampaignEnding
 from pantocheck.conformance.runs.system_choice import choose_system
 
 OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
@@ -50,6 +59,12 @@ class PreparedCampaign:
     origins: dict[str, CaseOrigin]
     """Source of each case from outside, by its id."""
 
+    def drive(
+        self, store: CampaignStore, executor: RunExecutor, report: Callable[[CampaignProgress], None] = lambda _: None
+    ) -> CampaignEnding:
+        """Execute the runs that the store does not hold; parameters as in `drive_campaign`."""
+        return drive_campaign(self.design, self.execute, store, executor, self.file.execution, report)
+
 
 def find_campaign_file(name: str) -> Path | None:
     """File of a campaign of the library, such as `campaigns/ac-simple-speed`; None: the name is that of no campaign."""
@@ -58,20 +73,12 @@ def find_campaign_file(name: str) -> Path | None:
 
 
 def read_campaign(path: Path) -> PreparedCampaign:
-    """Read and prepare a campaign file; paths in it are relative to the file.
-
-    Raises:
-        InputError: The file, or a file that it names, cannot be read or is wrong.
-    """
+    """Read and prepare a campaign file; paths in it are relative to the file."""
     return prepare_campaign(read_model(path, CampaignFile, "campaign"), path.parent)
 
 
 def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
-    """Prepare a campaign.
-
-    Args:
-        file: Content of a campaign file.
-        folder: Folder to which its paths are relative.
+    """Prepare a campaign, whose paths are relative to a folder.
 
     Raises:
         InputError: A case, table, key, condition, limit or system is wrong.
@@ -80,7 +87,10 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     catalogue = open_catalogue([folder / name for name in file.case_folders])
     cases = _read_cases(place_cases(file.cases, folder), catalogue)
     limits = () if file.limits is None else read_limits(folder / file.limits)
-    profile = _read_profile(file, folder)
+    profile = None
+    if file.profile is not None:
+        name = str(folder / file.profile) if file.profile.endswith(".toml") else file.profile
+        profile = ProfileLimits(load_profile(name), file.uplift_space_mm)
     design = _build_design(file, folder, tuple(cases))
     files = {case_id: str(path) for case_id, (path, _) in cases.items()}
     timeout, stored = file.execution.timeout_s, file.execution.traces
@@ -91,7 +101,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     identity = {
         "campaign": drop_keys(file.model_dump(mode="json", exclude=OUTSIDE_IDENTITY), PROVENANCE),
         "cases": {case.id: [case.digest, limits_digest(case.limits)] for case in limited},
-        "designs": json_digest([_describe_axis(design) for design in design.axes]),
+        "designs": json_digest([list_identifying_rows(axis) for axis in design.axes]),
         "profile": None if profile is None else profile.profile.model_dump(mode="json"),
         "suite": suite_digest(),
     }
@@ -106,14 +116,6 @@ def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float |
         column = name_column(str(limit.owner), limit.quantity, limit.item)
         bounds.setdefault(column, set()).add((limit.lower, limit.upper))
     return {column: pairs.pop() for column, pairs in bounds.items() if len(pairs) == 1}
-
-
-def _read_profile(file: CampaignFile, folder: Path) -> ProfileLimits | None:
-    """Profile of a campaign; a file is relative to the campaign."""
-    if file.profile is None:
-        return None
-    name = str(folder / file.profile) if file.profile.endswith(".toml") else file.profile
-    return ProfileLimits(load_profile(name), file.uplift_space_mm)
 
 
 def _read_cases(patterns: Sequence[str], catalogue: Catalogue) -> dict[str, tuple[Path, Case]]:
@@ -135,7 +137,8 @@ def _build_design(file: CampaignFile, folder: Path, case_ids: tuple[str, ...]) -
         if link.follows not in keys:
             where = f"campaign, key link[{i}].follows"
             raise InputError(where, f"{link.follows!r} is not a varied input", suggest_names(link.follows, keys))
-        if any(not isinstance(value, int | float) for value in _first_values(axes, link.follows)):
+        first = [axis.row(0)[link.follows] for axis in axes if link.follows in axis.keys]
+        if any(not isinstance(value, int | float) for value in first):
             raise InputError(f"campaign, key link[{i}].follows", "is not a number", "Vary the linked input itself.")
     keys += [link.key for link in file.link]
     repeated = [key for key, count in Counter(keys).items() if count > 1]
@@ -144,12 +147,6 @@ def _build_design(file: CampaignFile, folder: Path, case_ids: tuple[str, ...]) -
     conditions = tuple(parse_condition(text, keys) for text in file.conditions)
     systems = tuple(place_system(system, folder) for system in file.systems)
     return CampaignDesign(case_ids, axes, file.link, conditions, systems)
-
-
-def _first_values(axes: Sequence[Any], key: str) -> Iterator[object]:
-    for axis in axes:
-        if key in axis.keys:
-            yield axis.row(0)[key]
 
 
 def _check_systems(systems: Sequence[str], execution: Execution) -> None:
@@ -184,9 +181,3 @@ def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> list[
 
 CHECKED_DESIGNS = 5
 """Number of designs whose case is read before the first run."""
-
-
-def _describe_axis(axis: Any) -> Any:
-    """First and last rows of a range or sample; all rows of a list or table."""
-    rows = range(len(axis)) if hasattr(axis, "columns") else (0, len(axis) - 1)
-    return [list(axis.keys), len(axis), *(axis.row(i) for i in rows)]

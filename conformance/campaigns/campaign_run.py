@@ -6,8 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from pantocheck.conformance.campaigns.campaign_design import PlannedRun
-from pantocheck.conformance.campaigns.design_axes import Inputs
+from pantocheck.conformance.campaigns.campaign_design import Inputs, PlannedRun
 from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
@@ -126,11 +125,7 @@ class RunExecution:
         return replace(row, traces=pack_traces(result, row.verdicts["verdict"], self.stored_traces))
 
     def read_case(self, run: PlannedRun) -> Case:
-        """Case of a run, with its inputs and the limits of the user.
-
-        Raises:
-            InputError: A file cannot be read, or the inputs are invalid.
-        """
+        """Case of a run, with its inputs and the limits of the user."""
         case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *vary_inputs(run.inputs)))
         rules = () if self.profile is None else self.profile.resolve(case)[0]
         (limited,) = overlay_limits([case.with_limits(rules)], self.limits)
@@ -138,11 +133,7 @@ class RunExecution:
 
 
 def vary_inputs(inputs: Inputs) -> tuple[InputChange, ...]:
-    """Changes of a case that set its varied inputs.
-
-    Raises:
-        InputError: A key does not exist.
-    """
+    """Changes of a case that set its varied inputs."""
     return tuple(build_change(key, value, CAMPAIGN) for key, value in inputs.items())
 
 

@@ -36,11 +36,7 @@ CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT N
 
 
 class CampaignStore:
-    """Rows of the finished runs of one campaign. One process at a time writes them.
-
-    Args:
-        connection: Open database.
-    """
+    """Rows of the finished runs of one campaign in an open database. One process at a time writes them."""
 
     def __init__(self, connection: sqlite3.Connection) -> None:
         self._connection = connection
@@ -96,11 +92,7 @@ class CampaignStore:
         yield from self._connection.execute("SELECT verdict, reason FROM run ORDER BY number")
 
     def check_identity(self, identity: Mapping[str, Any], folder: Path) -> None:
-        """Compare the campaign of the store with this one, or write its identity into a new store.
-
-        Raises:
-            InputError: The store holds the runs of another campaign.
-        """
+        """Refuse a store with the runs of another campaign; write the identity into a new store."""
         stored = dict(self._connection.execute("SELECT name, content FROM campaign").fetchall())
         contents = {name: json.dumps(content, sort_keys=True, default=str) for name, content in identity.items()}
         if not stored:
@@ -118,11 +110,7 @@ class CampaignStore:
 
 @contextmanager
 def read_store(folder: Path) -> Iterator[CampaignStore]:
-    """Open the store of another campaign for reading.
-
-    Raises:
-        InputError: The folder holds no campaign, or its store is damaged.
-    """
+    """Open the store of another campaign for reading."""
     where = f"folder '{folder}'"
     path = folder / STORE_NAME
     if not path.is_file():
@@ -138,9 +126,7 @@ def read_store(folder: Path) -> Iterator[CampaignStore]:
 def open_store(folder: Path, identity: Mapping[str, Any]) -> Iterator[CampaignStore]:
     """Open the store of a campaign, or create it; no other process can write it meanwhile.
 
-    Args:
-        folder: Folder of the campaign.
-        identity: Parts of the campaign on which its results depend.
+    `identity` has the parts of the campaign on which its results depend.
 
     Raises:
         InputError: The folder cannot be written, another process runs the campaign, or the store is damaged or that of

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.core.extras import is_installed
@@ -21,11 +19,7 @@ VERDICT_COLUMNS = ("verdict", "criteria_verdict", "verification_verdict", "reaso
 
 
 def write_campaign_table(store: CampaignStore, path: Path) -> None:
-    """Write the finished runs as CSV, by their numbers; the same runs give the same bytes.
-
-    Raises:
-        InputError: The file cannot be written.
-    """
+    """Write the finished runs as CSV, by their numbers; the same runs give the same bytes."""
     produce_atomically(path, lambda temporary: _write(store, temporary))
 
 
@@ -66,8 +60,8 @@ def write_parquet(table: Path) -> Path | None:
     return path
 
 
-def collect_columns(store: CampaignStore) -> dict[str, np.ndarray[Any, Any]]:
-    """Columns of the CSV table as arrays: numbers where all cells are numbers or missing, otherwise texts and lists."""
+def collect_columns(store: CampaignStore) -> dict[str, list[Any]]:
+    """Columns of the CSV table; None: a missing cell."""
     columns: dict[str, list[Any]] = {}
     for place, row in enumerate(store.rows()):
         run = row.run
@@ -78,17 +72,7 @@ def collect_columns(store: CampaignStore) -> dict[str, np.ndarray[Any, Any]]:
             column += [None] * (place - len(column))  # cells of earlier runs without this value
             column.append(value)
     length = len(columns.get("run", ()))
-    return {name: _build_array([*column, *[None] * (length - len(column))]) for name, column in columns.items()}
-
-
-def _build_array(values: list[Any]) -> np.ndarray[Any, Any]:
-    if all(value is None or (isinstance(value, int | float) and not isinstance(value, bool)) for value in values):
-        if all(isinstance(value, int) for value in values):
-            return np.array(values)
-        return np.array([np.nan if value is None else float(value) for value in values])
-    array = np.empty(len(values), object)
-    array[:] = values
-    return array
+    return {name: [*column, *[None] * (length - len(column))] for name, column in columns.items()}
 
 
 def _list_cells(row: RunRow, inputs: list[str]) -> Iterator[object]:

@@ -38,15 +38,9 @@ INTERVAL_NOTE = "; shaded: 95 % interval of each run"
 def build_input_charts(
     columns: CampaignColumns, values: Sequence[EvaluatedValue], grid_keys: Sequence[str]
 ) -> Iterator[Chart]:
-    """Charts of each quantity against each numeric input of the grid.
+    """Charts of each quantity against each numeric input of the grid, with limits; values of a quantity share a chart.
 
-    Args:
-        columns: Runs with a result.
-        values: Evaluated values; those of one quantity share a chart.
-        grid_keys: Inputs of the grid. Several runs at one value of the input give their mean and their range.
-
-    Yields:
-        Chart with the limits of the quantity.
+    Several runs at one value of the input give their mean and their range.
     """
     for key in _list_curve_keys(columns, grid_keys):
         for quantity in dict.fromkeys(value.quantity for value in values):

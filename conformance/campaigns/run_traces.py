@@ -27,16 +27,7 @@ class RunTraces(ResultsPart):
 
 
 def pack_traces(result: CaseResult, verdict: Verdict | None, stored: StoredTraces) -> bytes:
-    """Compress the traces of a run.
-
-    Args:
-        result: Result of the run.
-        verdict: Verdict of its row.
-        stored: Runs whose traces are stored.
-
-    Returns:
-        Compressed traces; empty if they are not stored, or if the run has none.
-    """
+    """Traces of a run in compressed form; empty if they are not stored for its verdict, or if the run has none."""
     verdicts = _STORED[stored]
     if not result.traces or (verdicts is not None and verdict not in verdicts):
         return b""

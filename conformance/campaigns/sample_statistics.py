@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue
-from pantocheck.conformance.campaigns.design_axes import SampleAxis
+from pantocheck.conformance.campaigns.campaign_design import SampleAxis
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.results.campaign_format import Estimate, InputShare, SobolIndices
 

@@ -97,11 +97,7 @@ class PreparedPlan:
     """Cases that are not named themselves, each with the cases that require it."""
 
     def start_system(self) -> System:
-        """System under test; a program is started once to learn its name.
-
-        Raises:
-            InputError: There is no such system, or the folder of the results cannot be written.
-        """
+        """System under test; a program is started once to learn its name. The folder of the results can be written."""
         system = choose_system(self.plan.system, self.plan.timeout_s)
         check_writable(self.out)
         return system
@@ -114,11 +110,7 @@ class PreparedPlan:
 
 
 def prepare_plan(plan: Plan) -> PreparedPlan:
-    """Select and read the cases of a plan, and check its options.
-
-    Raises:
-        InputError: A case, the limits, the baseline or a format is wrong.
-    """
+    """Select and read the cases of a plan, and check its options."""
     if plan.set and not plan.cases:
         raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
     catalogue = open_catalogue(plan.case_folders)
@@ -174,11 +166,7 @@ def _list_information(cases: Sequence[Case], plan: Plan, selection: CaseSelectio
 
 
 def read_plan(path: Path) -> Plan:
-    """Read a plan; paths in it are relative to its file.
-
-    Raises:
-        InputError: The file cannot be read or is wrong.
-    """
+    """Read a plan; paths in it are relative to its file."""
     plan, folder = read_model(path, Plan, "plan"), path.parent
     if "system" not in plan.model_fields_set:
         raise InputError(
@@ -196,6 +184,11 @@ def read_plan(path: Path) -> Plan:
             "limits": None if plan.limits is None else str(folder / plan.limits),
         }
     )
+
+
+def split_names(text: str) -> tuple[str, ...]:
+    """Names that are separated by commas."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def place_cases(names: Sequence[str], folder: Path) -> tuple[str, ...]:
@@ -219,17 +212,9 @@ def _find_record_folder(folder: Path, name: str) -> Path:
 
 # Places of cases and limits in the files of the user, for annotations of a change.
 def locate_plan(plan: Plan, file: Path | None) -> ReportPlaces:
-    """Places of the cases and limits of a plan that is read and checked.
+    """Places of the cases and limits of a plan that is read and checked; without a file, of the command line.
 
-    Args:
-        plan: Options of a run.
-        file: File of the plan; None: the options come from the command line.
-
-    Returns:
-        A limit lies in the limits file or in the case file; an installed case, and a drift, in the plan.
-
-    Raises:
-        InputError: A file cannot be read.
+    A limit lies in the limits file or in the case file; an installed case, and a drift, in the plan.
     """
     default = None if file is None else _locate_key(file, "cases")
     baseline = None if file is None or plan.baseline is None else _locate_key(file, "baseline")
@@ -247,19 +232,7 @@ def locate_plan(plan: Plan, file: Path | None) -> ReportPlaces:
 
 
 def locate_record(record: Path, profile: str, limits: Path | None) -> ReportPlaces:
-    """Places of an assessment: limits in the limits file or in the user's profile; anything else in the record.
-
-    Args:
-        record: Assessed record.
-        profile: Name of a profile of the library, or path of the user's own.
-        limits: Limits file.
-
-    Returns:
-        Places for the only case of the results.
-
-    Raises:
-        InputError: A file cannot be read.
-    """
+    """Places of an assessment: limits in the limits file or in the user's profile; anything else in the record."""
     own = [] if limits is None else [limit for _, limit in _list_limits(limits, "limit")]
     rules = [limit for _, limit in _list_limits(Path(profile), "rule")] if profile.endswith(".toml") else []
     return ReportPlaces(FilePlace(record), limits=(*_sort_limits(own), *_sort_limits(rules)))

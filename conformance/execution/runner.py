@@ -39,11 +39,9 @@ Progress = Callable[[CaseResult], None]
 
 
 class RunInterrupted(Exception):
-    """The user stopped a run; the results of the finished cases are kept.
+    """The user stopped a run; the results hold the finished cases, and skip the others with this reason.
 
-    Args:
-        results: Results of all cases; unfinished cases are skipped with this reason.
-        exit_code: 128 and the number of the signal.
+    `exit_code` is 128 and the number of the signal.
     """
 
     def __init__(self, results: Results, exit_code: int) -> None:
@@ -59,18 +57,13 @@ def run_cases(
     progress: Progress | None = None,
     participation: Participation = EVERY_CASE,
 ) -> Results:
-    """Run cases on a system and grade them.
+    """Run cases with unique ids on a system and grade them.
 
     Args:
-        cases: Cases with unique ids.
-        system: System under test.
         trust: Lowest trust of the limits that count.
         jobs: Number of parallel processes; 1 runs all cases in this process.
         progress: Callback for each result.
         participation: Cases shown for information, and accepted unverified records.
-
-    Returns:
-        Results in the order of `cases`.
 
     Raises:
         RunInterrupted: Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results.
@@ -225,14 +218,9 @@ def _start_pool(jobs: int) -> Executor:
 
 # Merging of the values of the reference simulator into the results of another system.
 def merge_reference(results: Results, reference: Results) -> Results:
-    """Results with the values of the reference simulator; no verdict changes.
+    """Results with the values of the reference simulator under the key `reference`; no verdict changes.
 
-    Args:
-        results: Results of the system under test.
-        reference: Results of the reference simulator on the same cases.
-
-    Returns:
-        Results whose cases have the key `reference`; a case that the reference did not run keeps its content.
+    A case that the reference simulator did not run keeps its content.
     """
     by_id = {case.id: case for case in reference.cases}
     cases = [
@@ -271,12 +259,6 @@ def _place_force(trace: Traces, reference: Traces) -> list[float]:
 # Run of the reference simulator beside a system under test, for information.
 def add_reference(results: Results, cases: Sequence[Case], jobs: int, progress: Progress | None = None) -> Results:
     """Run the cases on the reference simulator, and add its values to the results of another system.
-
-    Args:
-        results: Results of the system under test; their verdicts stay.
-        cases: The cases of these results.
-        jobs: Number of parallel processes.
-        progress: Callback for each result of the reference simulator.
 
     Raises:
         RunInterrupted: The user stopped the run; the exception holds the results of the system, with the values of the

@@ -17,13 +17,7 @@ ONLY_BUILTIN = "only the reference simulator can run this study"
 def run_study(case: Case, system: System) -> Outcome:
     """Run a case on a system: a single run, a study with all its runs, or a mass drop with its identification.
 
-    Args:
-        case: Case to run.
-        system: System under test. Any system can run the studies of changed damping. The others need the reference
-            simulator.
-
-    Returns:
-        Delivered run or study, or the reason why there is none.
+    Any system can run the studies of changed damping. The others need the reference simulator.
     """
     match case.file.study:
         case None if case.file.mass_drop is None or system.kind != "builtin":

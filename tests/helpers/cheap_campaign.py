@@ -7,14 +7,13 @@ import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
 
-from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
+from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun, RangeAxis
 from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution, ValueRange
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
-from pantocheck.conformance.campaigns.campaign_store import open_store
+from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.design_axes import RangeAxis
-from pantocheck.conformance.campaigns.local_workers import Execute, LocalWorkers
+from pantocheck.conformance.campaigns.run_executors import Execute, LocalWorkers
 
 
 def speed_design(runs: int) -> CampaignDesign:
@@ -68,6 +67,19 @@ class ThisProcess:
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         for run in runs:
             yield execute(run)
+
+
+def fill_store(store: CampaignStore, design: CampaignDesign, execute: Execute = compute_row) -> None:
+    """Execute a campaign in this process."""
+    drive_campaign(design, execute, store, ThisProcess(), Execution(), lambda _: None)
+
+
+def build_table(folder: Path, runs: int) -> bytes:
+    """Table of an undisturbed cheap campaign in this process."""
+    with open_store(folder, {"runs": runs}) as store:
+        fill_store(store, speed_design(runs))
+        write_campaign_table(store, folder / "campaign.csv")
+    return (folder / "campaign.csv").read_bytes()
 
 
 def main(folder: Path, runs: int) -> None:

@@ -12,7 +12,7 @@ from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, d
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.dask_executor import connect_scheduler
+from pantocheck.conformance.campaigns.run_executors import connect_scheduler
 
 
 def main(folder: Path, runs: int) -> None:

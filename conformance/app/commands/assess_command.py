@@ -1,11 +1,9 @@
 """`pantocheck assess`: grading of a record by the rules of a profile."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from pydantic import ValidationError
 
 from pantocheck.conformance.app.commands.command_execution import receive_signals
 from pantocheck.conformance.app.commands.command_output import CommandOutput
@@ -23,12 +21,12 @@ from pantocheck.conformance.app.commands.options import (
 )
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES, build_results_output
 from pantocheck.conformance.cases.library import read_limits
-from pantocheck.conformance.cases.limits import Limit, spread_limits
+from pantocheck.conformance.cases.limits import spread_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.validation_messages import build_input_error
+from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.execution.plan import locate_record
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
@@ -86,12 +84,18 @@ def assess_command(
     report_formats = check_formats(options.formats)
     rules = load_profile(profile)
     own_limits = () if limits is None else read_limits(limits)
-    line = _build_line_table(wave_speed_m_s=wave_speed_m_s, uplift_space_mm=uplift_space_mm)
+    facts = {"wave_speed_m_s": wave_speed_m_s, "uplift_space_mm": uplift_space_mm}
+    given = {key: value for key, value in facts.items() if value is not None}
+    line = validate_model(given, LineTable, "command line")
     earlier = None if baseline is None else read_baseline(baseline)
     assessed = load_assessed_record(record, rules, line)
     reference = None if measured is None else load_assessed_record(measured, rules, LineTable())
-    _check_pantographs(own_limits, len(assessed.pantographs))
-    own_limits = spread_limits(own_limits, len(assessed.pantographs))
+    pantographs = len(assessed.pantographs)
+    for i, limit in enumerate(own_limits, 1):
+        if limit.owner > pantographs:
+            hint = f"The record has {pantographs}, numbered from 1 at the front."
+            raise InputError(f"limits, key limit[{i}].pantograph", f"there is no pantograph {limit.owner}", hint)
+    own_limits = spread_limits(own_limits, pantographs)
     check_writable(folder)
     places = locate_record(record, profile, limits)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
@@ -104,21 +108,3 @@ def assess_command(
         files = write_all(results, folder, report_formats, places)
         remarks = remark_missing_formats(options.formats)
         return build_results_output(results, files, interruption.exit_code or EXIT_CODES[results.verdict], remarks)
-
-
-def _build_line_table(**values: float | None) -> LineTable:
-    """Facts about the line from the command line, checked like those of a sidecar."""
-    try:
-        return LineTable.model_validate({key: value for key, value in values.items() if value is not None})
-    except ValidationError as error:
-        raise build_input_error(error, LineTable, "command line") from None
-
-
-def _check_pantographs(limits: Sequence[Limit], pantographs: int) -> None:
-    for i, limit in enumerate(limits, 1):
-        if limit.owner > pantographs:
-            raise InputError(
-                f"limits, key limit[{i}].pantograph",
-                f"there is no pantograph {limit.owner}",
-                f"The record has {pantographs}, numbered from 1 at the front.",
-            )

@@ -12,9 +12,7 @@ from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.options import CasesOption, SetOption, TrustOption, complete_case
 from pantocheck.conformance.app.commands.progress_display import report_campaign
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
-from pantocheck.conformance.campaigns.campaign_comparison import RunPair, pair_runs
-from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
-from pantocheck.conformance.campaigns.campaign_evaluation import evaluate_campaign
+from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation
 from pantocheck.conformance.campaigns.campaign_preparation import (
     PreparedCampaign,
@@ -23,7 +21,7 @@ from pantocheck.conformance.campaigns.campaign_preparation import (
 )
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.processes import interruption_exit_code
@@ -135,10 +133,16 @@ def campaign_command(
         if retry_failed:
             store.forget_failed()
         try:
-            ending = _drive(prepared, store)
+            with choose_executor(prepared.file.execution) as executor:
+                typer.echo(f"Runs in {executor.description}.", err=True)
+                with report_campaign() as report:
+                    ending = prepared.drive(store, executor, report)
         except KeyboardInterrupt as interruption:
             ending, interrupted = "interrupted", interruption_exit_code(interruption)
-        pairs = () if compare is None else _pair_runs(prepared, store, compare)
+        pairs: list[RunPair] = []
+        if compare is not None:
+            with read_store(compare) as other:
+                pairs = pair_runs(store, other, choose_values(store, prepared.limits))
         results = evaluate_campaign(prepared, store, ending, pairs)
         files = _write_results(results, store, out)
     counts = f"{results.finished} of {results.total} runs finished, {results.failed} failed"
@@ -183,20 +187,6 @@ def _prepare(
     return prepare_campaign(
         file.model_copy(update={"execution": changed, "case_folders": (*file.case_folders, *folders)}), path.parent
     )
-
-
-def _drive(prepared: PreparedCampaign, store: CampaignStore) -> CampaignEnding:
-    """Execute the open runs, and show the progress."""
-    execution = prepared.file.execution
-    with choose_executor(execution) as executor:
-        typer.echo(f"Runs in {executor.description}.", err=True)
-        with report_campaign() as report:
-            return drive_campaign(prepared.design, prepared.execute, store, executor, execution, report)
-
-
-def _pair_runs(prepared: PreparedCampaign, store: CampaignStore, folder: Path) -> list[RunPair]:
-    with read_store(folder) as other:
-        return pair_runs(store, other, choose_values(store, prepared.limits))
 
 
 def _write_results(results: CampaignResults, store: CampaignStore, folder: Path) -> list[Path]:

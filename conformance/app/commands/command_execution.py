@@ -1,4 +1,4 @@
-"""Signals that end a run: a signal after the last case waits until the reports are written.
+"""Execution of a command, and the signals that end a run.
 
 =========================  ==================================================
 time of the signal         effect
@@ -44,14 +44,7 @@ WAITING = b"Interrupted: the reports are still written. A second signal ends the
 
 
 class Interruption:
-    """Signals of a run.
-
-    Args:
-        open_cases: Number of cases that are not finished; with none, a first signal waits.
-
-    Attributes:
-        exit_code: Exit code after a signal that waits until the reports are written; 0 without one.
-    """
+    """Signals of a run with a number of unfinished cases; with none, a first signal waits and sets `exit_code`."""
 
     def __init__(self, open_cases: int) -> None:
         self.exit_code = 0
@@ -59,12 +52,7 @@ class Interruption:
         self._first_s: float | None = None
 
     def follow(self, progress: Progress, cases: int) -> Progress:
-        """Callback of the runner that counts the finished cases.
-
-        Args:
-            progress: Callback that receives each result, too.
-            cases: Number of cases; after the last one, a first signal waits.
-        """
+        """Callback of the runner that counts the finished cases, and passes each result on."""
         self._open_cases = cases
 
         def keep(result: CaseResult) -> None:
@@ -74,11 +62,7 @@ class Interruption:
         return keep
 
     def receive(self, number: int, frame: FrameType | None) -> None:
-        """Handler of the signals.
-
-        Raises:
-            KeyboardInterrupt: A case is open, or the signal is the second one.
-        """
+        """Handler of the signals: KeyboardInterrupt if a case is open, or at the second signal."""
         now, first = time.monotonic(), self._first_s
         if first is None:
             self._first_s = now
@@ -93,12 +77,7 @@ class Interruption:
 
 @contextmanager
 def receive_signals(results: Path, open_cases: int) -> Iterator[Interruption]:
-    """Receive the signals of a run; if it ends early, state whether its results are written.
-
-    Args:
-        results: File of the results.
-        open_cases: Number of cases that are not finished.
-    """
+    """Receive the signals of a run; if it ends early, state whether the file of its results is written."""
     interruption, before = Interruption(open_cases), _identify(results)
     names = SIGNALS if threading.current_thread() is threading.main_thread() else ()
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
@@ -136,12 +115,7 @@ def _describe_results(results: Path, before: tuple[int, int] | None) -> str:
 def build_executable(name: str, command: Callable[..., CommandOutput]) -> Callable[..., None]:
     """Function for typer that runs a command, prints its output and ends with its exit code.
 
-    Args:
-        name: Name of the command.
-        command: Function of the command.
-
-    Returns:
-        Function with the parameters of the command and the options of the output, which count before the command, too.
+    It has the parameters of the command and the options of the output, which count before the command, too.
     """
 
     def run(context: typer.Context, **arguments: object) -> None:

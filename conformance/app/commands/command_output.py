@@ -46,12 +46,7 @@ class CommandOutput:
 
 
 def print_output(output: CommandOutput, command: str) -> None:
-    """Print the output of a command in the form and amount of the current settings.
-
-    Args:
-        output: Output.
-        command: Name of the command.
-    """
+    """Print the output of a command in the form and amount of the current settings."""
     settings = current_settings()
     for remark in () if settings.detail == "quiet" else output.remarks:
         error_console().print(escape_text(f"remark: {remark}"), soft_wrap=True)  # holds a command to be copied
@@ -71,14 +66,7 @@ def print_output(output: CommandOutput, command: str) -> None:
 
 
 def print_failure(command: str, message: str, error: Exception | None, exit_code: int) -> None:
-    """Print a failure as JSON, if the current settings ask for it; the message itself goes to standard error.
-
-    Args:
-        command: Name of the command.
-        message: Text of the failure.
-        error: Failure; the problems of an `InputError` are listed.
-        exit_code: Exit code of the command.
-    """
+    """Print a failure as JSON, if the current settings ask for it; the message itself goes to standard error."""
     if current_settings().form == "json":
         problems = list_problems(error) if isinstance(error, InputError) else []
         _print_json(command, exit_code, {"conclusion": message, "files": [], "problems": problems})
@@ -114,11 +102,7 @@ STANDING_REMARKS = ("20-50 Hz: lumped models",)
 
 
 def list_footnotes(cases: Sequence[CaseResult]) -> list[str]:
-    """Remarks that are printed once, in their order: standing ones, and those that several cases have in common.
-
-    Args:
-        cases: All cases of a run.
-    """
+    """Remarks that are printed once, in their order: standing ones, and those that several cases have in common."""
     counts = Counter(warning for case in cases for warning in dict.fromkeys(case.warnings))
     return [text for text, count in counts.items() if count > 1 or text.startswith(STANDING_REMARKS)]
 

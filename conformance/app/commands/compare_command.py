@@ -10,9 +10,9 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
-from pantocheck.conformance.app.commands.options import SetOption, choose_case, complete_case
+from pantocheck.conformance.app.commands.options import SetOption, choose_train_case, complete_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.compared_runs import write_comparison
+from pantocheck.conformance.app.notebook.opened_run import write_comparison
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.comparison.compared_run import (
@@ -90,7 +90,7 @@ def _choose_simulated_case(subjects: list[str], case: str | None, changed: list[
         return None
     if case is None:
         raise InputError("compare", "a system without a case", "Name the case that it runs with --case.")
-    return choose_case(case, lambda each: not each.is_static, "with a train", parse_changes(changed or ()))
+    return choose_train_case(case, parse_changes(changed or ()))
 
 
 def _load_subject(text: str, case: Case | None) -> list[ComparedRun]:

@@ -23,18 +23,7 @@ from pantocheck.conformance.results.comparison_format import ComparisonCriterion
 
 
 def write_comparison_files(comparison: ModelComparison, stem: Path) -> list[Path]:
-    """Write the JSON file and the pages of a comparison.
-
-    Args:
-        comparison: The comparison.
-        stem: Path of the files without their suffix.
-
-    Returns:
-        The written files.
-
-    Raises:
-        InputError: A file cannot be written.
-    """
+    """Write the JSON file and the pages of a comparison to a path without suffix; returns the written files."""
     data = stem.with_name(f"{stem.name}.json")
     write_model(data, comparison)
     return [data, *write_document(build_comparison(comparison), stem)]
@@ -43,20 +32,15 @@ def write_comparison_files(comparison: ModelComparison, stem: Path) -> list[Path
 def build_comparison_output(
     comparison: ModelComparison, tables: Iterable[RenderableType], files: list[Path]
 ) -> CommandOutput:
-    """Verdict, tables, criteria and remarks of a comparison; the exit code follows the verdict.
-
-    Args:
-        comparison: The comparison.
-        tables: Differences of its kind.
-        files: Written files.
-
-    Returns:
-        Output of the command.
-    """
+    """Verdict, tables, criteria and remarks of a comparison; the exit code follows the verdict."""
     return CommandOutput(
         style_verdict(comparison.verdict) + escape_text(f" {find_headline(comparison)}"),
         comparison,
-        [*tables, *_list_criteria(comparison.criteria), *_list_remarks(comparison)],
+        [
+            *tables,
+            *_list_criteria(comparison.criteria),
+            *(indent_text(remark, "warning: ") for remark in list_remarks(comparison)),
+        ],
         files=files,
         remarks=remark_missing_formats(),
         exit_code=EXIT_CODES[comparison.verdict],
@@ -75,8 +59,3 @@ def _list_criteria(criteria: tuple[ComparisonCriterion, ...]) -> Iterator[Render
     for item in criteria:
         if item.reason:
             yield indent_text(f"{name_criterion(item)}: {item.reason}")
-
-
-def _list_remarks(comparison: ModelComparison) -> Iterator[RenderableType]:
-    for remark in list_remarks(comparison):
-        yield indent_text(remark, "warning: ")

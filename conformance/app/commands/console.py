@@ -1,6 +1,6 @@
-"""Paragraph with a mark, whose further lines begin below its text."""
+"""Terminal output: paragraphs, tables for any width, verdicts and numbers."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.padding import Padding
@@ -15,12 +15,7 @@ from pantocheck.conformance.results.incomplete_uncertainty import mark_half_widt
 
 
 class HangingText:
-    """Paragraph that wraps below its text, not below its mark.
-
-    Args:
-        mark: Begin of the first line, such as two spaces or a bullet.
-        text: Text after the mark.
-    """
+    """Paragraph that wraps below its text, not below its mark, such as two spaces or a bullet."""
 
     def __init__(self, mark: str, text: Text) -> None:
         self.mark, self.text = mark, text
@@ -148,7 +143,6 @@ def _cells(text: str) -> int:
     return Text(text).cell_len
 
 
-# Terminal output: width, tables, verdicts and numbers.
 _STYLES: dict[Verdict, str] = {
     "pass": "bold green",
     "fail": "bold red",
@@ -176,10 +170,17 @@ def _open_console(stderr: bool) -> Console:
 
 
 def build_table(
-    *headings: str, title: str | None = None, unbroken: Collection[str] = (), right: Collection[str] = ()
+    *headings: str,
+    title: str | None = None,
+    unbroken: Collection[str] = (),
+    right: Collection[str] = (),
+    rows: Iterable[Sequence[str | Text]] = (),
 ) -> FittedTable:
     """Table that fits the width of the output; parameters as in `FittedTable`."""
-    return FittedTable(headings, title, unbroken, right)
+    table = FittedTable(headings, title, unbroken, right)
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 def style_verdict(verdict: Verdict) -> Text:
@@ -218,10 +219,7 @@ def build_quantities_table(
 ) -> FittedTable:
     """Table of quantities that are single numbers; those of the line come last.
 
-    Args:
-        values, uncertainty: Values and their uncertainties.
-        names: Quantities of the table, in its order.
-        missing: Components that the uncertainties lack.
+    `names` chooses and orders the quantities; `missing` are the components that the uncertainties lack.
     """
     numbers = ("value", "+-") if uncertainty else ("value",)
     headings = ("quantity", *numbers, "unit")

@@ -8,7 +8,7 @@ import typer
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped
-from pantocheck.conformance.app.commands.console import FittedTable, HangingText, build_table, escape_text, indent_text
+from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, indent_text
 from pantocheck.conformance.app.new_files import write_new_file
 from pantocheck.conformance.app.sidecar_draft import draft_drop_sidecar, draft_record_sidecar
 from pantocheck.conformance.core.csv_table import open_text_table
@@ -75,7 +75,7 @@ def describe_command(
         escape_text(f"{file.name}: {file.stat().st_size / 1e6:.3g} MB"),
         {"time": None if time is None else _list_facts(time), "channels": [_list_facts(fact) for fact in facts]},
         [
-            *(HangingText(*_split_indent(line)) for line in lines),
+            *(indent_text(line.lstrip(" "), line[: len(line) - len(line.lstrip(" "))]) for line in lines),
             Text(),
             _build_channel_table(facts),
             *(indent_text(remark, f"{fact.column.label}: ") for fact in facts for remark in fact.remarks),
@@ -90,12 +90,6 @@ def _list_facts(facts: ChannelFacts | TimeFacts) -> dict[str, object]:
     """Facts for a program; a column is given by its name."""
     column = None if facts.column is None else facts.column.label
     return {"column": column, **{key: value for key, value in vars(facts).items() if key != "column"}}
-
-
-def _split_indent(line: str) -> tuple[str, Text]:
-    """Indent and text of a line."""
-    text = line.lstrip(" ")
-    return line[: len(line) - len(text)], escape_text(text)
 
 
 def _read(file: Path, layout: TextSettings) -> list[MeasuredTable]:

@@ -1,4 +1,4 @@
-"""Facts on the environment: versions, extras, cache of the compiled kernels, threads, fonts and folders."""
+"""`pantocheck doctor`: versions, extras, cache of the compiled kernels, threads, fonts and folders."""
 
 import os
 import platform
@@ -61,18 +61,15 @@ def list_requirements() -> tuple[DeclaredPackage, ...]:
     return tuple(sorted(requirements, key=lambda requirement: requirement.extra))
 
 
-def list_environment() -> dict[str, str]:
-    """Facts by name, in the order of the report."""
-    return dict(_list_facts(os.environ))
-
-
-def _list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Facts on the environment by name, in the order of the report."""
     yield "Pantocheck", version("pantocheck")
     yield "digest of the suite", suite_digest() or "not known"
     yield "commit of the suite", find_suite_commit() or "not known"
     yield "Python", f"{platform.python_version()} ({platform.python_implementation()}), {sys.executable}"
     yield "system", f"{platform.system()} {platform.release()}, {platform.machine()}"
-    yield "processors", f"{_count_processors()} usable of {os.cpu_count()}"
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    yield "processors", f"{usable} usable of {os.cpu_count()}"
     yield (
         "thread limits",
         ", ".join(f"{name}={environment[name]}" for name in _THREADS if name in environment) or "none",
@@ -89,18 +86,12 @@ def _list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
 _THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def _count_processors() -> int:
-    """Number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def _parse_version(text: str) -> tuple[int, ...]:
     """Leading numbers of a version: `2.10.0rc1` gives (2, 10, 0)."""
     match = re.match(r"\d+(?:\.\d+)*", text)
     return tuple(map(int, match[0].split("."))) if match else ()
 
 
-# `pantocheck doctor`: report on the installation.
 def doctor_command() -> CommandOutput:
     """Show versions, extras, caches and folders.
 
@@ -109,20 +100,12 @@ def doctor_command() -> CommandOutput:
 
     Example: pantocheck doctor --json > environment.json
     """
-    facts, requirements = list_environment(), list_requirements()
+    facts, requirements = dict(list_facts(os.environ)), list_requirements()
     faulty = [requirement for requirement in requirements if not requirement.extra and requirement.state != "installed"]
-    packages = [
-        {
-            "name": requirement.name,
-            "extra": requirement.extra,
-            "lowest": requirement.lowest,
-            "installed": requirement.installed,
-            "state": requirement.state,
-        }
-        for requirement in requirements
-    ]
-    names = ", ".join(requirement.name for requirement in faulty)
-    conclusion = Text(f"Missing or too old: {names}" if faulty else "Every dependency is installed.")
+    names = ("name", "extra", "lowest", "installed", "state")
+    packages = [{name: getattr(requirement, name) for name in names} for requirement in requirements]
+    listed = ", ".join(requirement.name for requirement in faulty)
+    conclusion = Text(f"Missing or too old: {listed}" if faulty else "Every dependency is installed.")
     return CommandOutput(
         conclusion,
         {"environment": facts, "packages": packages},
@@ -132,22 +115,13 @@ def doctor_command() -> CommandOutput:
 
 
 def _build_tables(facts: dict[str, str], requirements: tuple[DeclaredPackage, ...]) -> Iterator[RenderableType]:
-    table = build_table("fact", "value", unbroken=("fact",))
-    for name, value in facts.items():
-        table.add_row(name, escape_text(value))
-    yield table
+    rows = ((name, escape_text(value)) for name, value in facts.items())
+    yield build_table("fact", "value", unbroken=("fact",), rows=rows)
     for extra, group in groupby(requirements, lambda requirement: requirement.extra):
         members = list(group)
-        title = f"extra {extra}: {_describe_extra(extra, members)}" if extra else "packages of every installation"
+        complete = all(member.state == "installed" for member in members)
+        state = "complete" if complete else f"not complete; pip install 'pantocheck[{extra}]'"
+        title = f"extra {extra}: {state}" if extra else "packages of every installation"
         yield Padding(escape_text(title), (1, 0, 0, 0))
-        table = build_table("package", "installed", "lowest", "state")
-        for member in members:
-            table.add_row(member.name, member.installed or "-", member.lowest, member.state)
-        yield table
-
-
-def _describe_extra(extra: str, members: list[DeclaredPackage]) -> str:
-    """State of an extra, with the line that installs it."""
-    if all(member.state == "installed" for member in members):
-        return "complete"
-    return f"not complete; pip install 'pantocheck[{extra}]'"
+        packages = ((member.name, member.installed or "-", member.lowest, member.state) for member in members)
+        yield build_table("package", "installed", "lowest", "state", rows=packages)

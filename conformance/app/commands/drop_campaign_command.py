@@ -10,7 +10,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.drop_simulate_command import begin_drop
-from pantocheck.conformance.app.commands.options import choose_case, complete_case
+from pantocheck.conformance.app.commands.options import DropCaseArgument, choose_drop_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.cases.study_tables import WireName
 from pantocheck.conformance.core.files import check_writable
@@ -34,7 +34,7 @@ TENSION_HELP = "Tension of {} [N]; repeat the option for several. Default: that 
 
 
 def drop_campaign_command(
-    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)],
+    case: DropCaseArgument,
     out: Annotated[
         Path, typer.Option(help="Records to write: NAME.csv, .uff or .h5 gives NAME-01.csv, NAME-02.csv, ...")
     ],
@@ -72,10 +72,7 @@ def drop_campaign_command(
         messenger_tensions=tuple(messenger_tension or ()),
         repeats=repeats,
     )
-    cases = [
-        choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table", changes)
-        for changes in list_tension_changes(campaign)
-    ]
+    cases = [choose_drop_case(case, changes) for changes in list_tension_changes(campaign)]
     rms = require_mass_drop(cases[0]).noise_rms if noise is None else noise
     sensors = SensorChain(_parse_axes(axes), rms, seed)
     require_axes(cases[0], sensors.axes)

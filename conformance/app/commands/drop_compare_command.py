@@ -12,8 +12,9 @@ from rich.console import RenderableType
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.comparison_output import build_comparison_output, write_comparison_files
 from pantocheck.conformance.app.commands.console import build_table, escape_text, format_number
-from pantocheck.conformance.app.commands.options import complete_case, read_line
+from pantocheck.conformance.app.commands.options import ElementOption, LineOption, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.app.notebook.opened_drop import read_drop_run
 from pantocheck.conformance.comparison.comparison_limits import DROPS, read_comparison_limits
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop
 from pantocheck.conformance.comparison.drop_motion import GRAPHIC_BAND
@@ -22,8 +23,6 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.step_log import StepSequence
 from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.drops.drop_reading import read_drop_records
-from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.line.elements.damping import DampingFile
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.drop_comparison_format import DropComparison
@@ -41,12 +40,7 @@ def drop_compare_command(
     record: Annotated[
         Path, typer.Argument(help=f"Record of a mass drop, with its sidecar: {DocumentationPage.IDENTIFICATION}.")
     ],
-    line: Annotated[
-        str,
-        typer.Option(
-            help="Line of the record: id of a case, or path of a case or line file.", autocompletion=complete_case
-        ),
-    ],
+    line: LineOption,
     out: Annotated[Path, typer.Option(help="Folder for drop_comparison.json, .html and .pdf.")],
     damping: Annotated[
         list[Path] | None,
@@ -63,7 +57,7 @@ def drop_compare_command(
     release_duration: Annotated[
         float, typer.Option("--release-s", help="Time in which the weight decreases to zero [s].", min=0.0, max=5.0)
     ] = 0.0,
-    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    element: ElementOption = 0.5,
     time_step: Annotated[float, typer.Option(help="Time step [s].", min=1e-5, max=0.005)] = 0.001,
 ) -> CommandOutput:
     """Compare a recorded mass drop with its simulation.
@@ -83,7 +77,7 @@ def drop_compare_command(
         release_duration=release_duration,
         limits=read_comparison_limits(limits, DROPS),
     )
-    drop = _choose_run(record, run)
+    drop = read_drop_run(record, run, "--run")
     check_writable(out)
     with follow_steps("comparison of the drop"):
         steps = StepSequence(_LOGGER, drop.name, {"simulation": 0.95, "report": 0.05})
@@ -105,11 +99,7 @@ def _read_models(paths: list[Path], line: LineFile) -> dict[str, DampingChoice]:
 
 
 def name_damping_files(paths: Sequence[Path]) -> list[str]:
-    """Stems of the files; with the name of the folder in front where several files have the same stem.
-
-    Raises:
-        InputError: Two files have the same stem in folders of the same name.
-    """
+    """Stems of the files; with the name of the folder in front where several files have the same stem."""
     stems = [path.stem for path in paths]
     names = [
         f"{path.absolute().parent.name}/{path.stem}" if stems.count(path.stem) > 1 else path.stem for path in paths
@@ -135,14 +125,6 @@ def _parse_window(text: str) -> tuple[float, float]:
             f"Give START:END in seconds, e.g. 0:10; at least {SHORTEST_WINDOW_S:g} s, up to {LATEST_WINDOW_S:g} s.",
         )
     return start, end
-
-
-def _choose_run(path: Path, number: int) -> DropRecord:
-    """Run of a record, from 1."""
-    records = read_drop_records(path)
-    if number > len(records):
-        raise InputError("--run", f"there is no run {number}", f"'{path.name}' has {len(records)}, numbered from 1.")
-    return records[number - 1]
 
 
 def _describe_agreement(comparison: DropComparison) -> Iterator[RenderableType]:

@@ -7,9 +7,9 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
-from pantocheck.conformance.app.commands.options import complete_case, read_line
+from pantocheck.conformance.app.commands.options import ElementOption, LineOption, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.fitted_damping import write_damping_fit
+from pantocheck.conformance.app.notebook.identified_lines import refuse_other_modes, write_damping_fit
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.drops.damping_model import MODAL_GROUPS
 from pantocheck.conformance.drops.damping_results import (
@@ -18,8 +18,6 @@ from pantocheck.conformance.drops.damping_results import (
     build_damping_results,
     write_damping_toml,
 )
-from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
-from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
 from pantocheck.conformance.results.identified_modes import read_modes
@@ -27,14 +25,11 @@ from pantocheck.conformance.results.identified_modes import read_modes
 
 def drop_fit_command(
     modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck drop identify`.")],
-    line: Annotated[
-        str,
-        typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
-    ],
+    line: LineOption,
     out: Annotated[
         Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],
-    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    element: ElementOption = 0.5,
     wires: Annotated[
         WireCoefficients,
         typer.Option(help="separate: each wire has its own coefficients; common: both wires have the same."),
@@ -60,7 +55,7 @@ def drop_fit_command(
     """
     identified, catenary = read_modes(modes), build_catenary(read_line(line))
     if not other_line:
-        refuse_other_line(compare_line(select_usable(identified, modes.name), catenary), modes.name)
+        refuse_other_modes(identified, catenary, modes.name)
     check_writable(out)
     with follow_steps("damping fit", 2) as progress:
         progress.begin_task("modes of the line")

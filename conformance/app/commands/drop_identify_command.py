@@ -116,15 +116,7 @@ def _list_groups(lines: Sequence[IdentifiedLine]) -> Iterator[RenderableType]:
 
 # Output of `pantocheck drop identify --each`: population.json, its pages, and lines for the terminal.
 def write_population(population: Population, out: Path) -> tuple[tuple[str, ...], list[Path]]:
-    """Write population.json, .html and .pdf to a folder.
-
-    Returns:
-        Lines for the terminal.
-        Written files.
-
-    Raises:
-        InputError: A file cannot be written.
-    """
+    """Write population.json, .html and .pdf to a folder; returns lines for the terminal, and the written files."""
     content = analyse_population(population)
     document = build_population_document(content)
     write_model(out / "population.json", content)

@@ -8,7 +8,7 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
-from pantocheck.conformance.app.commands.options import choose_case, complete_case
+from pantocheck.conformance.app.commands.options import DropCaseArgument, choose_drop_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
@@ -21,7 +21,7 @@ _LOGGER = logging.getLogger(__name__)
 
 
 def drop_simulate_command(
-    case: Annotated[str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)],
+    case: DropCaseArgument,
     out: Annotated[Path, typer.Option(help="Record to write: NAME.uff, NAME.csv or NAME.h5.")],
     number: Annotated[
         int | None,
@@ -35,7 +35,7 @@ def drop_simulate_command(
     Then: pantocheck drop identify drop.uff --out modes
     """
     write = select_drop_writer(out)
-    drop_case = choose_case(case, lambda each: each.file.mass_drop is not None, "with a [mass_drop] table")
+    drop_case = choose_drop_case(case)
     drops = len(require_mass_drop(drop_case).drop)
     if number is not None and number > drops:
         raise InputError("--drop", f"there is no drop {number}", f"Case {drop_case.id} has {drops}, numbered from 1.")

@@ -8,8 +8,7 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
-from pantocheck.conformance.app.commands.options import CasesOption, complete_case
-from pantocheck.conformance.app.commands.show_command import leave_out_required
+from pantocheck.conformance.app.commands.options import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
@@ -51,13 +50,10 @@ def line_draw_command(
     if out.suffix.lower() not in DRAWING_FORMATS:
         raise InputError(str(out), f"format '{out.suffix}' cannot be written", f"Write {' or '.join(DRAWING_FORMATS)}.")
     check_writable(out.parent)
-    drawing = _build_line(line) if _is_line(line) else _build_case(line, folders)
+    is_line = line.endswith(".toml") and recognise_named_file(read_toml(Path(line), "file").keys()) == "line"
+    drawing = _build_line(line) if is_line else _build_case(line, folders)
     write_atomically(out, DRAWING_FORMATS[out.suffix.lower()](drawing))
     return CommandOutput(escape_text(drawing.title), {"title": drawing.title}, files=(out,))
-
-
-def _is_line(name: str) -> bool:
-    return name.endswith(".toml") and recognise_named_file(read_toml(Path(name), "file").keys()) == "line"
 
 
 def _build_line(name: str) -> LineDrawing:

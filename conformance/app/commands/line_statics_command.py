@@ -10,7 +10,7 @@ from rich.console import RenderableType
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.comparison_output import build_comparison_output, write_comparison_files
 from pantocheck.conformance.app.commands.console import build_table, format_number
-from pantocheck.conformance.app.commands.options import complete_case, read_line
+from pantocheck.conformance.app.commands.options import ElementOption, LineOption, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
 from pantocheck.conformance.comparison.static_record import read_static_record
@@ -26,10 +26,7 @@ def line_statics_command(
     table: Annotated[
         Path, typer.Argument(help=f"Table of the measured values, or its sidecar: {DocumentationPage.LINE_TABLES}.")
     ],
-    line: Annotated[
-        str,
-        typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
-    ],
+    line: LineOption,
     out: Annotated[Path, typer.Option(help="Folder for static_comparison.json, .html and .pdf, and a CSV per value.")],
     elasticity_tolerance: Annotated[
         ToleranceOption,
@@ -43,7 +40,7 @@ def line_statics_command(
         ToleranceOption,
         typer.Option("--height-tolerance-mm", help="Largest accepted difference of the contact wire height.", min=0.0),
     ] = None,
-    element: Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)] = 0.5,
+    element: ElementOption = 0.5,
 ) -> CommandOutput:
     """Compare measured static values with those of a line.
 
@@ -80,14 +77,13 @@ def _write_differences(values: ComparedValues, path: Path) -> Path:
 def _tabulate_differences(comparison: StaticComparison) -> RenderableType:
     """Differences of all values."""
     numbers = ("mean", "RMS", "outliers", "missing")
-    table = build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers)
-    for values in comparison.values:
-        table.add_row(
+    rows = (
+        (
             values.name.replace("_", " "),
             values.unit,
-            format_number(values.mean_difference, 3),
-            format_number(values.rms_difference, 3),
-            str(len(values.outlier_rows)),
-            str(len(values.missing_rows)),
+            *(format_number(difference, 3) for difference in (values.mean_difference, values.rms_difference)),
+            *(str(len(numbered)) for numbered in (values.outlier_rows, values.missing_rows)),
         )
-    return table
+        for values in comparison.values
+    )
+    return build_table("model - measured", "unit", *numbers, title="Evaluated section", right=numbers, rows=rows)

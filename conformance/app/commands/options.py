@@ -1,4 +1,4 @@
-"""Shell completion of the ids of cases."""
+"""Options that several commands share, and the choice of the case or line that they name."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -13,9 +13,10 @@ from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.validation_messages import build_input_error
-from pantocheck.conformance.execution.plan import Plan, read_plan
+from pantocheck.conformance.execution.plan import Plan, read_plan, split_names
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.administration import read_administration
@@ -27,7 +28,6 @@ def complete_case(incomplete: str) -> list[str]:
     return [name for name in list_library(library_folder()) if name.startswith(incomplete)]
 
 
-# Option `--cases` of every command that takes cases, without the imports of a run.
 CasesOption = Annotated[
     list[Path] | None,
     typer.Option(
@@ -37,8 +37,6 @@ CasesOption = Annotated[
     ),
 ]
 
-
-# Options, and the choice of a case or line, that several commands share.
 SetOption = Annotated[
     list[str] | None,
     typer.Option(
@@ -46,6 +44,18 @@ SetOption = Annotated[
         metavar="KEY=VALUE",
         help="Change an input of the case, its line or its pantographs; repeat the option for several.",
     ),
+]
+LineOption = Annotated[
+    str,
+    typer.Option(help="Measured line: id of a case, or path of a case or line file.", autocompletion=complete_case),
+]
+ElementOption = Annotated[float, typer.Option(help="Element length [m].", min=0.05, max=5.0)]
+ResponsesArgument = Annotated[
+    list[Path],
+    typer.Argument(help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."),
+]
+DropCaseArgument = Annotated[
+    str, typer.Argument(help="Id or path of one case with a mass drop.", autocompletion=complete_case)
 ]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for the results.", show_default="report")]
 FormatsOption = Annotated[
@@ -86,11 +96,7 @@ DriftOption = Annotated[
 
 
 def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
-    """Administrative data from a file, with the number of the report from the command line in place of its own.
-
-    Raises:
-        InputError: The file cannot be read or is wrong.
-    """
+    """Administrative data from a file, with the number of the report from the command line in place of its own."""
     stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
     return stated if report_number is None else {**stated, "report_number": report_number}
 
@@ -100,21 +106,15 @@ OPTIONS = {"drift_pct": "--drift", "jobs": "--jobs", "timeout_s": "--timeout", "
 
 
 def build_options(plan: Path | None = None, formats: str | None = None, **options: object) -> Plan:
-    """Combine the options of the command line with those of a plan.
+    """Combine the options of the command line, by their key in a plan, with those of a plan.
 
-    Administrative data replace those of the plan key by key.
-
-    Args:
-        plan: File of the plan.
-        formats: Names of formats, separated by commas.
-        options: Other options of the command line by their key in a plan; they replace those of the plan unless they
-            are None.
+    An option that is not None replaces that of the plan; administrative data do so key by key.
 
     Raises:
         InputError: The plan cannot be read, or a value of the plan or of the command line is wrong.
     """
     if formats is not None:
-        options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
+        options["formats"] = split_names(formats)
     texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
     base = {} if plan is None else read_plan(plan).model_dump(exclude_none=True)
     given = {key: value for key, value in texts.items() if value is not None}
@@ -140,14 +140,10 @@ def choose_case(
     changes: Sequence[InputChange] = (),
     catalogue: Catalogue = LIBRARY,
 ) -> Case:
-    """Find the only case of a kind.
+    """Find the only case that a name, glob or path selects and that is acceptable.
 
     Args:
-        name: Id, glob or path.
-        accept: Condition on a case.
-        kind: Condition in words, for the message.
-        changes: Changes of the inputs of the case.
-        catalogue: Cases that have an id.
+        accept, kind: Condition on a case, and the same in words for the message.
 
     Raises:
         InputError: No case, or several cases, meet the condition.
@@ -159,12 +155,25 @@ def choose_case(
     return cases[0]
 
 
-def read_line(name: str) -> LineFile:
-    """Read the line of a line file, or of the cases that an id or path selects.
+def choose_train_case(name: str, changes: Sequence[InputChange], catalogue: Catalogue = LIBRARY) -> Case:
+    """Find the only case with a train; parameters as in `choose_case`."""
+    return choose_case(name, lambda case: not case.is_static, "with a train", changes, catalogue)
 
-    Raises:
-        InputError: The file is invalid, or the cases have different lines.
-    """
+
+def choose_drop_case(name: str, changes: Sequence[InputChange] = ()) -> Case:
+    """Find the only case with a mass drop; parameters as in `choose_case`."""
+    return choose_case(name, lambda case: case.file.mass_drop is not None, "with a [mass_drop] table", changes)
+
+
+def leave_out_required(pattern: str, cases: list[Case]) -> list[Case]:
+    """Cases that the pattern selects itself, without the cases that they require."""
+    exact = [case for case in cases if case.id == pattern]
+    required = {name for case in cases for name in case.file.requires}
+    return exact or [case for case in cases if case.id not in required] or cases
+
+
+def read_line(name: str) -> LineFile:
+    """Read the line of a line file, or the common line of the cases that an id or path selects."""
     if name.endswith(".toml") and "geometry" in read_toml(Path(name), "line"):
         return read_model(Path(name), LineFile, "line")
     cases = select_cases([name])

@@ -1,14 +1,4 @@
-"""Settings of the output of every command: amount, form and colour.
-
-=================  ===================================================================================
-option             meaning
-=================  ===================================================================================
-`-v`, `--verbose`  further details on standard output, and the steps of the computation on standard error
-`-q`, `--quiet`    errors and the verdict line, without progress
-`--json`           one JSON object on standard output, and nothing else there
-`--no-color`       no colour and no bold text, as with the variable `NO_COLOR`
-=================  ===================================================================================
-"""
+"""Settings of the output of every command: amount, form and colour."""
 
 import codecs
 import inspect
@@ -65,14 +55,7 @@ def use_settings(settings: OutputSettings) -> Iterator[None]:
 
 
 def combine_flags(given: Collection[str]) -> OutputSettings:
-    """Settings of the given options.
-
-    Args:
-        given: Names of options of `FLAGS`.
-
-    Raises:
-        typer.BadParameter: More and less output are requested at once.
-    """
+    """Settings of the given options of `FLAGS`; more and less output at once are refused."""
     if {"verbose", "quiet"} <= set(given):
         raise typer.BadParameter("-v and -q contradict each other. Give one of them.")
     return OutputSettings(
@@ -90,9 +73,7 @@ def list_given(flags: Mapping[str, bool]) -> frozenset[str]:
 def add_flags(function: Callable[..., None], visibility: Literal["shown", "hidden"]) -> Callable[..., None]:
     """Let a function with `**flags` declare the options of the output to typer.
 
-    Args:
-        function: Function that receives the options as `flags`.
-        visibility: Whether the help lists the options: the help of `pantocheck` does, that of a command refers to it.
+    The help of `pantocheck` lists them, that of a command refers to it.
     """
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
@@ -138,18 +119,7 @@ ERROR_HANDLER = "pantocheck.symbols"
 
 
 def replace_symbols(error: UnicodeError) -> tuple[str, int]:
-    """Replacement of characters that an encoding lacks, as an error handler of `codecs`.
-
-    Args:
-        error: Error with the text and the range of the characters.
-
-    Returns:
-        Replacement.
-        Position at which encoding continues.
-
-    Raises:
-        UnicodeError: The error is not one of encoding.
-    """
+    """Replacement of characters that an encoding lacks, as an error handler of `codecs`."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end]

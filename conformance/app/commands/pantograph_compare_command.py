@@ -9,6 +9,7 @@ from rich.console import RenderableType
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.comparison_output import build_comparison_output, write_comparison_files
 from pantocheck.conformance.app.commands.console import build_table, escape_text, format_number
+from pantocheck.conformance.app.commands.options import ResponsesArgument
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.comparison.comparison_limits import RESPONSES, read_comparison_limits
 from pantocheck.conformance.comparison.response_comparison import compare_responses
@@ -27,12 +28,7 @@ PRINTED_DEVIATIONS: tuple[ResponseQuantity, ...] = (
 
 
 def pantograph_compare_command(
-    responses: Annotated[
-        list[Path],
-        typer.Argument(
-            help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."
-        ),
-    ],
+    responses: ResponsesArgument,
     pantograph: Annotated[Path, typer.Option(help="Pantograph file.")],
     out: Annotated[Path, typer.Option(help="Folder for response_comparison.json, .html and .pdf.")],
     limits: Annotated[

@@ -13,13 +13,14 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, format_number, indent_text
+from pantocheck.conformance.app.commands.options import ResponsesArgument
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.notebook.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
 from pantocheck.conformance.comparison.pantograph_fit import CHAIN_KEYS, name_parameter
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.texts import DocumentationPage, count_noun
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
 from pantocheck.conformance.pantograph.chain_fit import MASS_COUNTS, FitTask, fit_chains
 from pantocheck.conformance.pantograph.response_record import read_response
@@ -27,12 +28,7 @@ from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 
 def pantograph_fit_command(
-    responses: Annotated[
-        list[Path],
-        typer.Argument(
-            help=f"Tables of measured responses, or their sidecars: {DocumentationPage.PANTOGRAPH_RESPONSE}."
-        ),
-    ],
+    responses: ResponsesArgument,
     out: Annotated[Path, typer.Option(help="Pantograph file to write; the reports stand beside it.")],
     masses: Annotated[
         int | None,
@@ -60,7 +56,8 @@ def pantograph_fit_command(
     Example: pantocheck pantograph fit at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
     """
     records = tuple(read_response(path) for path in responses)
-    _refuse_other_suffix(out)
+    if out.suffix != ".toml":
+        raise InputError("--out", f"{out.name!r} is no TOML file", "Give a name that ends in .toml .")
     check_writable(out.parent)
     task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
     with follow_steps("fitting"):
@@ -71,11 +68,6 @@ def pantograph_fit_command(
     conclusion = f"{chain} fitted to {count_noun(len(records), 'response')}"
     details = [*_describe_fit(fit.report)]
     return CommandOutput(Text(conclusion), fit.report, details, files=files, remarks=remark_missing_formats())
-
-
-def _refuse_other_suffix(path: Path) -> None:
-    if path.suffix != ".toml":
-        raise InputError("--out", f"{path.name!r} is no TOML file", "Give a name that ends in .toml .")
 
 
 def _parse_band(text: str | None) -> tuple[float, float]:

@@ -41,11 +41,7 @@ SMALLEST_SHARE = 0.1
 
 @contextmanager
 def show_line(describe: Callable[[], str]) -> Iterator[None]:
-    """Show a line of progress while a computation runs.
-
-    Args:
-        describe: Function that gives the current line; an empty line is not shown.
-    """
+    """Show a line of progress while a computation runs; an empty line is not shown."""
     errors = error_console()
     if current_settings().detail == "quiet":
         yield
@@ -126,11 +122,7 @@ class TaskProgress(logging.Handler):
             self._steps[step.task] = step
 
     def finish_task(self, name: str = "") -> None:
-        """Count a finished task.
-
-        Args:
-            name: Begin of the names of its steps; empty: no other task runs.
-        """
+        """Count a finished task; its steps begin with `name`, which is empty if no other task runs."""
         self._finished += 1
         self._steps = {task: step for task, step in self._steps.items() if not task.startswith(name)}
 
@@ -167,12 +159,7 @@ class TaskProgress(logging.Handler):
 
 @contextmanager
 def follow_steps(title: str, total: int = 1) -> Iterator[TaskProgress]:
-    """Show the progress of tasks while they run.
-
-    Args:
-        title: Purpose of the tasks.
-        total: Number of tasks.
-    """
+    """Show the progress of tasks, whose purpose is the title, while they run."""
     progress, logger = TaskProgress(title, total), logging.getLogger(ROOT_LOGGER)
     if current_settings().detail == "quiet":
         yield progress

@@ -46,14 +46,7 @@ LEGEND = (
 def build_results_output(
     results: Results, files: Sequence[Path], exit_code: int, remarks: Sequence[str] = ()
 ) -> CommandOutput:
-    """Verdict, criteria and values of each case, and remarks.
-
-    Args:
-        results: Results of a run.
-        files: Written files.
-        exit_code: Exit code of the command.
-        remarks: Remarks on the files.
-    """
+    """Verdict, criteria and values of each case, and remarks on the cases and on the files."""
     system = f"{results.system.name} {results.system.version}".strip()
     headline = f"{build_headline(results)} System: {system}"
     parts: list[RenderableType] = [
@@ -66,7 +59,8 @@ def build_results_output(
     for case in results.cases:
         parts += [Text(), *_describe_case(case, footnotes)]
     parts.append(Text())
-    rows = [row for case in results.cases for row in _list_rows(case)]
+    rows = [row for case in results.cases for row in case.criteria]
+    rows += [row for case in results.cases if case.verification is not None for row in case.verification.criteria]
     if rows:
         shift = SHIFT_LEGEND if any(row.spread is not None for row in rows) else ""
         parts.append(Text(LEGEND.format(shift=shift), "dim"))
@@ -110,11 +104,6 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         yield Text("  Drift from the baseline: ") + style_verdict(case.baseline.verdict)
         yield indent_text(describe_comparison(case.baseline))
         yield from _list_criteria([item for item in case.criteria if item.is_drift])
-
-
-def _list_rows(case: CaseResult) -> list[Criterion]:
-    """Criteria in the tables of a case."""
-    return [*case.criteria, *(() if case.verification is None else case.verification.criteria)]
 
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:

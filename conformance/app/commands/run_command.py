@@ -120,8 +120,9 @@ def run_command(
         damping_study=damping_study or None,
         timeout_s=timeout,
     )
-    if with_reference:
-        _refuse_reference_beside_itself(options.system)
+    if with_reference and options.system == "builtin":
+        found = "the system under test is the reference simulator"
+        raise InputError("--with-reference", found, "Name another system by --system.")
     prepared = prepare_plan(options)
     places = locate_plan(options, plan)
     with receive_signals(prepared.out / FILES["json"], len(prepared.cases)) as interruption:
@@ -141,7 +142,9 @@ def run_command(
 def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Interruption) -> tuple[Results, int]:
     """Results of the finished cases, and the exit code of an interruption or 0."""
     system, cases, plan = prepared.start_system(), prepared.cases, prepared.plan
-    _state_added_cases(prepared)
+    if prepared.added and current_settings().detail != "quiet":
+        parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
+        error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
     jobs = min(plan.jobs, len(cases))
     try:
         with report_cases(len(cases)) as progress:
@@ -158,17 +161,3 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
         return interrupted.results, interrupted.exit_code
     except KeyboardInterrupt as interrupted:  # before the first case of the reference simulator
         return results, interruption_exit_code(interrupted)
-
-
-def _state_added_cases(prepared: PreparedPlan) -> None:
-    """One line on standard error, before the run, on the cases that run only because others require them."""
-    if prepared.added and current_settings().detail != "quiet":
-        parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
-        error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
-
-
-def _refuse_reference_beside_itself(system: str) -> None:
-    if system == "builtin":
-        raise InputError(
-            "--with-reference", "the system under test is the reference simulator", "Name another system by --system."
-        )

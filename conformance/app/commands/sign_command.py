@@ -1,4 +1,4 @@
-"""Passphrase of a key: from a file, from the environment, or typed. It is never an argument, which other users see."""
+"""`pantocheck sign`: a signature for a certificate or for results."""
 
 import getpass
 import os
@@ -23,10 +23,9 @@ MAX_PASSPHRASE_BYTES = 4096
 
 
 def read_passphrase(file: Path | None) -> bytes:
-    """Passphrase from a file without the end of its first line, else from the environment, else typed by the user.
+    """Passphrase from the first line of a file, else from the variable `PANTOCHECK_PASSPHRASE`, else typed by the user.
 
-    Args:
-        file: File of the passphrase; None to read the variable `PANTOCHECK_PASSPHRASE` or to ask.
+    It is never an argument, which other users see.
 
     Raises:
         InputError: The file cannot be read, or there is neither a file, nor the variable, nor a terminal.
@@ -45,7 +44,6 @@ def read_passphrase(file: Path | None) -> bytes:
     return getpass.getpass("Passphrase of the key: ").encode("utf-8")
 
 
-# `pantocheck sign`: a signature for a certificate or for results.
 def sign_command(
     document: Annotated[Path, typer.Argument(metavar="FILE", help="Document to sign: PDF, HTML or JSON.")],
     key: Annotated[Path, typer.Option(help="Private key: PKCS#12 (.p12, .pfx) or PEM.")],

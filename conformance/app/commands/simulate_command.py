@@ -7,7 +7,7 @@ import typer
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_quantities_table, escape_text, list_names, select_main
-from pantocheck.conformance.app.commands.options import CasesOption, SetOption, choose_case, complete_case
+from pantocheck.conformance.app.commands.options import CasesOption, SetOption, choose_train_case, complete_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
@@ -41,7 +41,7 @@ def simulate_command(
     """
     check_record_path(out)
     catalogue, changes = open_catalogue(folders or ()), parse_changes(changed or ())
-    chosen = choose_case(case, lambda each: not each.is_static, "with a train", changes, catalogue)
+    chosen = choose_train_case(case, changes, catalogue)
     simulator = choose_system(system)
     check_writable(out.parent)
     # A record holds one run, so the refined run of the reference simulator is not needed.

@@ -16,7 +16,6 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages.report_writers import write_pages, write_report
 from pantocheck.conformance.pages.site_pages import (
-    PublishedResults,
     build_case_page,
     build_site_index,
     name_file,
@@ -51,10 +50,13 @@ def site_command(
             results = read_results(path)
             contents.append((results, tuple(find_discrepancies(results))))
     published = publish_results(contents)
-    pages = _name_case_pages(published)
+    ids = sorted({case.id for run in published for case in run.results.cases})
+    # A number keeps names apart that differ in signs only.
+    pages = {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
     for run in published:
         with follow_steps(run.folder):
-            _write_run(run, out)
+            write_pages(run.results, out / run.folder, ("html",))
+            write_atomically(out / run.folder / FILES["json"], run.results.to_json())
     for case, page in pages.items():
         write_report(build_case_page(case, published), out / page)
     write_report(build_site_index(title, published, pages), out / "index.html")
@@ -73,9 +75,8 @@ def _find_results(folders: list[Path], out: Path) -> list[Path]:
     for folder in folders:
         own = {path.resolve(): path for path in _walk_results(folder, out)}
         if not own:
-            raise InputError(
-                f"folder '{folder}'", "no results.json in it", "Write results with pantocheck run --out DIR."
-            )
+            hint = "Write results with pantocheck run --out DIR."
+            raise InputError(f"folder '{folder}'", "no results.json in it", hint)
         paths |= {place: path for place, path in own.items() if place not in paths}
     if len(paths) > MOST_RESULTS:
         raise InputError("folders of results", f"more than {MOST_RESULTS} results", "Give folders with fewer results.")
@@ -96,15 +97,3 @@ def _walk_results(folder: Path, out: Path) -> Iterator[Path]:
                 found = f"more than {MOST_RESULTS} results"
                 raise InputError(f"folder '{folder}'", found, "Give a folder with fewer results.")
             yield path
-
-
-def _name_case_pages(published: list[PublishedResults]) -> dict[str, str]:
-    """Page of each case, by id; a number keeps names apart that differ in signs only."""
-    ids = sorted({case.id for run in published for case in run.results.cases})
-    return {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
-
-
-def _write_run(run: PublishedResults, out: Path) -> None:
-    """Write the certificate and the results of a run."""
-    write_pages(run.results, out / run.folder, ("html",))
-    write_atomically(out / run.folder / FILES["json"], run.results.to_json())

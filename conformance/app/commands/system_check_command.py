@@ -45,14 +45,12 @@ def system_check_command(
 
 
 def _build_tables(check: AdapterCheck) -> Iterator[RenderableType]:
-    table = build_table("", "subject", "finding", unbroken=("", "subject"))
-    for finding in check.findings:
-        table.add_row(finding.state, finding.subject, escape_text(finding.text))
-    yield table
+    findings = ((finding.state, finding.subject, escape_text(finding.text)) for finding in check.findings)
+    yield build_table("", "subject", "finding", unbroken=("", "subject"), rows=findings)
     if check.values:
-        values = build_table(
-            "quantity", "adapter", "reference", "difference", right=("adapter", "reference", "difference")
+        numbers = ("adapter", "reference", "difference")
+        values = (
+            (value.name, f"{value.value:.4g}", f"{value.reference:.4g}", f"{value.difference:+.1%}")
+            for value in check.values
         )
-        for value in check.values:
-            values.add_row(value.name, f"{value.value:.4g}", f"{value.reference:.4g}", f"{value.difference:+.1%}")
-        yield values
+        yield build_table("quantity", *numbers, right=numbers, rows=values)

@@ -67,19 +67,15 @@ def verify_command(
     pantocheck verify report/results.json --record run.csv
     """
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
-    word = "authentic" if report.authentic else "consistent"
+    verification = report.verification
+    facts = {name: getattr(verification, name) for name in ("state", "verdict", "cases", "criteria")}
+    exit_code = 1 if not verification.consistent else 0 if any_verdict else EXIT_CODES[verification.verdict]
     return CommandOutput(
-        escape_text(_conclude(report.verification, word)),
-        _describe_verification(report.verification),
-        [*_list_checks(report.verification)],
-        exit_code=_exit_code(report.verification, any_verdict),
+        escape_text(_conclude(verification, "authentic" if report.authentic else "consistent")),
+        {**facts, "checks": [asdict(check) for check in verification.checks]},
+        [*_list_checks(verification)],
+        exit_code=exit_code,
     )
-
-
-def _exit_code(verification: Verification, any_verdict: bool) -> int:
-    if not verification.consistent:
-        return 1
-    return 0 if any_verdict else EXIT_CODES[verification.verdict]
 
 
 def _conclude(verification: Verification, word: str) -> str:
@@ -105,14 +101,3 @@ def _list_checks(verification: Verification) -> Iterator[RenderableType]:
         for check in checks:
             yield indent_text(check.statement.strip(), "  * ")
             yield from (indent_text(line.strip(), "    - ") for line in check.details)
-
-
-def _describe_verification(verification: Verification) -> dict[str, object]:
-    """State and checks for a program."""
-    return {
-        "state": verification.state,
-        "verdict": verification.verdict,
-        "cases": verification.cases,
-        "criteria": verification.criteria,
-        "checks": [asdict(check) for check in verification.checks],
-    }

@@ -4,18 +4,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.app.notebook.display import tabulate_columns
-from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
+from pantocheck.conformance.app.notebook.display import build_column, tabulate_columns
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import (
-    PreparedCampaign,
     find_campaign_file,
     prepare_campaign,
     read_campaign,
 )
 from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.campaigns.run_traces import RunTraces, unpack_traces
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import validate_model
@@ -37,14 +35,17 @@ def run_campaign(campaign: str | Path | Mapping[str, Any], out: str | Path) -> A
     Raises:
         InputError: The campaign is wrong, or the folder cannot be used.
     """
-    prepared, folder = _prepare(campaign), Path(out)
-    execution = prepared.file.execution
+    if isinstance(campaign, Mapping):
+        prepared = prepare_campaign(validate_model(dict(campaign), CampaignFile, "campaign"), Path())
+    else:
+        prepared = read_campaign(find_campaign_file(str(campaign)) or Path(campaign))
+    folder = Path(out)
     with open_store(folder, prepared.identity) as store:
-        with choose_executor(execution) as executor:
-            drive_campaign(prepared.design, prepared.execute, store, executor, execution, _ignore)
+        with choose_executor(prepared.file.execution) as executor:
+            prepared.drive(store, executor)
         write_campaign_table(store, folder / "campaign.csv")
         columns = collect_columns(store)
-    return tabulate_columns(columns)
+    return tabulate_columns({name: build_column(values) for name, values in columns.items()})
 
 
 def read_traces(folder: str | Path, run: int) -> RunTraces:
@@ -66,13 +67,3 @@ def read_traces(folder: str | Path, run: int) -> RunTraces:
         hint = 'Run a campaign with traces = "all" in [execution] in a new folder; finished runs are not repeated.'
         raise InputError(f"folder '{folder}'", f"has no traces of run {run}", hint)
     return unpack_traces(content)
-
-
-def _prepare(campaign: str | Path | Mapping[str, Any]) -> PreparedCampaign:
-    if isinstance(campaign, Mapping):
-        return prepare_campaign(validate_model(dict(campaign), CampaignFile, "campaign"), Path())
-    return read_campaign(find_campaign_file(str(campaign)) or Path(campaign))
-
-
-def _ignore(progress: CampaignProgress) -> None:
-    """Leave the progress unseen."""

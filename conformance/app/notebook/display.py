@@ -1,4 +1,4 @@
-"""Values of the Python interface in one line, for the prompt of an interpreter and for notebooks."""
+"""Display of the Python interface: values in one line, tables, and warnings of missing formats."""
 
 import importlib.util
 import textwrap
@@ -20,16 +20,8 @@ def describe_in_one_line(value: object, *facts: str) -> str:
     return f"<{type(value).__name__} {textwrap.shorten(', '.join(facts), LONGEST_DESCRIPTION, placeholder=' ...')}>"
 
 
-# Tables of the Python interface: pandas if it is installed, otherwise columns of numpy.
 def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
-    """Table of equally long columns.
-
-    Args:
-        columns: Columns by name.
-
-    Returns:
-        A table of pandas if that is installed, otherwise the columns.
-    """
+    """Table of equally long columns: of pandas if that is installed, otherwise the columns themselves."""
     if importlib.util.find_spec("pandas") is None:
         return dict(columns)
     import pandas
@@ -39,22 +31,20 @@ def tabulate_columns(columns: Mapping[str, NDArray[Any]]) -> Any:
 
 def tabulate_rows(rows: Sequence[Mapping[str, object]], names: Sequence[str]) -> Any:
     """Table of rows with the same keys; see `tabulate_columns`. A number that is missing is NaN."""
-    return tabulate_columns({name: _build_column([row[name] for row in rows]) for name in names})
+    return tabulate_columns({name: build_column([row[name] for row in rows]) for name in names})
 
 
-def _build_column(values: Sequence[object]) -> NDArray[Any]:
+def build_column(values: Sequence[object]) -> NDArray[Any]:
     """Array of numbers if every value is a number or missing, otherwise of objects."""
     if all(value is None or (isinstance(value, float | int) and not isinstance(value, bool)) for value in values):
         return np.array([np.nan if value is None else value for value in values])
-    return np.array(values, dtype=object)
+    column = np.empty(len(values), object)
+    for place, value in enumerate(values):  # a list stays the value of one cell
+        column[place] = value
+    return column
 
 
-# Warning of a report in Python that is written without PDF.
 def warn_missing_formats(stated: Sequence[str] | None = None) -> None:
-    """Warn the caller of a method of the interface of default formats whose extra is not installed.
-
-    Args:
-        stated: Formats that the caller states; None: the default formats.
-    """
+    """Warn the caller of a method of the interface of formats, stated or default, whose extra is not installed."""
     for remark in remark_missing_formats(stated):
         warnings.warn(remark, stacklevel=3)

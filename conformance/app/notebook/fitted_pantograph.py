@@ -143,15 +143,7 @@ def fit_pantograph(
 def build_fitted_pantograph(
     records: tuple[ResponseRecord, ...], selection: ChainSelection, masses: int, title: str, contact_stiffness: float
 ) -> FittedPantograph:
-    """Pantograph file and report of the chain with one number of masses.
-
-    Args:
-        records: Measured responses.
-        selection: Fitted chains.
-        masses: Number of masses.
-        title: Title of the pantograph.
-        contact_stiffness: Stiffness of the contact [N/m].
-    """
+    """Pantograph file and report of the fitted chain with one number of masses; contact stiffness in [N/m]."""
     names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
     texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
     tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)

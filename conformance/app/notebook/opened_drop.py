@@ -82,7 +82,13 @@ def open_drop(path: str | Path, run: int = 1) -> OpenedDrop:
     Raises:
         InputError: The record cannot be read, or has no such run.
     """
-    records = read_drop_records(Path(path))
-    if not 1 <= run <= len(records):
-        raise InputError(f"record '{Path(path).name}'", f"there is no run {run}", f"It has {len(records)}, from 1.")
-    return OpenedDrop(records[run - 1])
+    return OpenedDrop(read_drop_run(Path(path), run, f"record '{Path(path).name}'"))
+
+
+def read_drop_run(path: Path, number: int, where: str) -> DropRecord:
+    """Run of a record, from 1; `where` names its number in a message."""
+    records = read_drop_records(path)
+    if not 1 <= number <= len(records):
+        found = f"'{path.name}' has {len(records)}, numbered from 1."
+        raise InputError(where, f"there is no run {number}", found)
+    return records[number - 1]

@@ -6,7 +6,8 @@ from typing import Any, NoReturn
 
 import pytest
 
-from pantocheck.conformance.app.pytest_plugin.session import PlanSession, list_registered, shared_folder
+from pantocheck.conformance.app.pytest_plugin.session import PlanSession, list_registered
+from pantocheck.conformance.app.pytest_plugin.shared_folder import shared_folder
 from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
     criterion_line,
     is_unverified,
@@ -16,7 +17,7 @@ from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.execution.plan import locate_plan, prepare_plan, read_plan
+from pantocheck.conformance.execution.plan import locate_plan, prepare_plan, read_plan, split_names
 from pantocheck.conformance.grading.case_verification import build_requirements, find_obstacle
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_all
@@ -35,15 +36,12 @@ class CriterionNotMet(Exception):
 
 def _open_session(config: pytest.Config, path: Path, folder: Path) -> PlanSession:
     """Read and prepare a plan; the options of the session replace those of the plan."""
-    options: dict[str, object] = {}
-    if (out := config.getoption("pantocheck_out")) is not None:
-        options["out"] = str(config.invocation_params.dir / out)
-    if (formats := config.getoption("pantocheck_formats")) is not None:
-        options["formats"] = tuple(name.strip() for name in formats.split(",") if name.strip())
-    if (trust := config.getoption("pantocheck_trust")) is not None:
-        options["trust"] = trust
-    if (verdicts := config.getoption("pantocheck_verdicts")) is not None:
-        options["verdicts"] = verdicts
+    stated = {name: config.getoption(f"pantocheck_{name}") for name in ("out", "formats", "trust", "verdicts")}
+    options: dict[str, object] = {name: value for name, value in stated.items() if value is not None}
+    if stated["out"] is not None:
+        options["out"] = str(config.invocation_params.dir / stated["out"])
+    if stated["formats"] is not None:
+        options["formats"] = split_names(stated["formats"])
     plan = read_plan(path)
     further = [str(config.invocation_params.dir / name) for name in config.getoption("pantocheck_cases")]
     options["case_folders"] = (*plan.case_folders, *further)
@@ -90,11 +88,7 @@ class CaseNode(pytest.Collector):
             yield BaselineItem.from_parent(self, name="baseline")
 
     def result(self) -> CaseResult:
-        """Result of the case, computed once per session.
-
-        Raises:
-            CriterionNotMet: The case ended in error.
-        """
+        """Result of the case, computed once per session; an error fails the test, and a reason skips it."""
         result = self.campaign.result(self.case)
         if result.verdict == "error":
             self.report(f"error: {result.reason}")
@@ -228,9 +222,6 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
     Returns:
         Lines for the summary of the session.
         Whether the cases of a plan that ran in this session do not pass.
-
-    Raises:
-        InputError: A file cannot be written.
     """
     lines, not_passed = [], False
     for path in list_registered(folder):

@@ -3,13 +3,14 @@
 Every pytest session imports this module, so it imports only pytest until a plan is named.
 """
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from pantocheck.conformance.app.pytest_plugin.session import FOLDER_KEY, created_folder, remove_folder, shared_folder
+from pantocheck.conformance.app.pytest_plugin.shared_folder import FOLDER_KEY, created_folder, shared_folder
 
 if TYPE_CHECKING:
     from pantocheck.conformance.app.pytest_plugin.user_fixtures import GradedCase
@@ -87,8 +88,9 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Remove the shared folder."""
-    remove_folder(config)
+    """Remove the shared folder if this process created it."""
+    if (folder := created_folder(config)) is not None:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 @pytest.fixture(scope="session")

@@ -1,15 +1,11 @@
-"""Folder that all processes of a pytest session share; like the plugin, this module imports only pytest."""
+"""Run of a plan in a pytest session: each case runs once, in the first process that needs it."""
 
 import hashlib
 import json
-import shutil
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import pytest
 from filelock import FileLock
 
 from pantocheck.conformance.cases.case import Case
@@ -22,34 +18,7 @@ from pantocheck.conformance.grading.results_building import build_results, utc_n
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.runs.system import System
 
-FOLDER_KEY = "pantocheck_folder"
-"""Key of the shared folder in the input of a worker of pytest-xdist."""
 
-_FOLDER = pytest.StashKey[Path]()
-
-
-def shared_folder(config: pytest.Config) -> Path:
-    """Folder of the session for the results of cases, the same in all workers of pytest-xdist."""
-    worker: dict[str, Any] | None = getattr(config, "workerinput", None)
-    if worker is not None:
-        return Path(worker[FOLDER_KEY])
-    if _FOLDER not in config.stash:
-        config.stash[_FOLDER] = Path(tempfile.mkdtemp(prefix="pantocheck-"))
-    return config.stash[_FOLDER]
-
-
-def created_folder(config: pytest.Config) -> Path | None:
-    """Shared folder if this process created it; None in a worker, and if no plan was collected."""
-    return config.stash.get(_FOLDER, None)
-
-
-def remove_folder(config: pytest.Config) -> None:
-    """Remove the shared folder if this process created it."""
-    if (folder := created_folder(config)) is not None:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-# Run of a plan in a pytest session: each case runs once, in the first process that needs it.
 @dataclass
 class PlanSession:
     """Run of a plan in a session."""

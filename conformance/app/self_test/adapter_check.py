@@ -1,4 +1,4 @@
-"""Finding of the check of an adapter."""
+"""Check of an adapter: short cases run on it, one of them on the reference simulator too, and gaps are named."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -83,19 +83,12 @@ def build_case_at_rest() -> Case:
 
 
 # Messages of a run that an adapter must answer beside those of one pantograph: the line at rest, two pantographs.
-REST_SUBJECT = "line at rest"
-"""Subject of the finding on a check of the line at rest."""
-
-TWIN_SUBJECT = "two pantographs"
-"""Subject of the finding on a passage with two pantographs."""
+REST_SUBJECT, TWIN_SUBJECT = "line at rest", "two pantographs"
+"""Subjects of the findings."""
 
 
 def check_line_at_rest(system: System) -> AdapterFinding:
-    """Send a check of the line at rest, and name the answer: values, a refusal or an error.
-
-    Args:
-        system: The adapter.
-    """
+    """Send a check of the line at rest, and name the answer: values, a refusal or an error."""
     case = build_case_at_rest()
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
@@ -116,11 +109,7 @@ def check_line_at_rest(system: System) -> AdapterFinding:
 
 
 def check_two_pantographs(system: System) -> AdapterFinding:
-    """Send the short case with two pantographs, and name the answer: a record of both, a refusal or an error.
-
-    Args:
-        system: The adapter.
-    """
+    """Send the short case with two pantographs, and name the answer: a record of both, a refusal or an error."""
     case = build_twin_case()
     outcome = system.run(case)
     if not isinstance(outcome, Delivered):
@@ -130,20 +119,9 @@ def check_two_pantographs(system: System) -> AdapterFinding:
             "Cases with several pantographs are skipped.",
             "Answer with a record of all pantographs, or 'skipped'",
         )
-    return _check_twin_record(case, outcome)
-
-
-def _describe_no_delivery(subject: str, outcome: Skipped | Errored, consequence: str, remedy: str) -> AdapterFinding:
-    """Finding on an answer without a delivery; a refusal is no fault of an adapter."""
-    if isinstance(outcome, Skipped):
-        return AdapterFinding("note", subject, f"refused: {outcome.reason}. {consequence}")
-    return AdapterFinding("wrong", subject, f"error: {outcome.reason}. {remedy}.")
-
-
-def _check_twin_record(case: Case, delivered: Delivered) -> AdapterFinding:
-    if delivered.record is None:
+    if outcome.record is None:
         return AdapterFinding("missing", TWIN_SUBJECT, "'delivered' without a record. Write one, or answer 'skipped'.")
-    result = grade_case(case, delivered, "secondary")
+    result = grade_case(case, outcome, "secondary")
     if result.record is None:
         text = (
             f"{result.reason}. Write position, force and contact height of every pantograph, in running order, or "
@@ -155,7 +133,14 @@ def _check_twin_record(case: Case, delivered: Delivered) -> AdapterFinding:
     return AdapterFinding("ok", TWIN_SUBJECT, "a record of both pantographs was delivered.")
 
 
-# Check of an adapter: short cases run on it, one of them on the reference simulator too, and gaps are named.
+def _describe_no_delivery(subject: str, outcome: Skipped | Errored, consequence: str, remedy: str) -> AdapterFinding:
+    """Finding on an answer without a delivery; a refusal is no fault of an adapter."""
+    if isinstance(outcome, Skipped):
+        return AdapterFinding("note", subject, f"refused: {outcome.reason}. {consequence}")
+    return AdapterFinding("wrong", subject, f"error: {outcome.reason}. {remedy}.")
+
+
+# Delivery of the short case, beside that of the reference simulator.
 USUAL_DIFFERENCE = 0.1
 """Relative difference from the reference simulator that needs no explanation: the string example differs by less."""
 
@@ -206,9 +191,6 @@ def check_adapter(system: System) -> AdapterCheck:
     """Run short cases on an adapter and list all that is missing or wrong.
 
     The line at rest and two pantographs follow a short case that ended without an error.
-
-    Args:
-        system: The adapter.
     """
     case, simulator = build_short_case(), ReferenceSimulator()
     outcome = system.run(case)
@@ -334,13 +316,7 @@ The contact height of the short case varies by 0.05 m. Usual other zeros, the ra
 
 
 def describe_other_position(case: Case, record: Record, stated: StartTable | None) -> str | None:
-    """Text on positions that begin before the start; None if they do not.
-
-    Args:
-        case: Case with a speed.
-        record: Delivered record.
-        stated: Start that the sidecar states; None stands for that of the case.
-    """
+    """Text on positions that begin before the stated start, or that of the case; None if they do not."""
     first, place = float(record.position[-1, 0]), (stated or case.start_table).place_m
     if first >= place - PLACE_TOLERANCE_M:
         return None
@@ -352,12 +328,7 @@ def describe_other_position(case: Case, record: Record, stated: StartTable | Non
 
 
 def describe_other_height(case: Case, record: Record) -> str | None:
-    """Text on a contact height with another zero than that of the case; None for the same zero or without a height.
-
-    Args:
-        case: Case with a speed and one tension section.
-        record: Delivered record.
-    """
+    """Text on a contact height with another zero than that of the case; None for the same zero or without a height."""
     train = build_derived(case).train
     if record.contact_height is None or train is None:
         return None

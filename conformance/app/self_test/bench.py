@@ -61,11 +61,7 @@ class SelfTest:
 
 
 def run_self_test(cases: Sequence[Case], progress: Callable[[str], None]) -> SelfTest:
-    """Run the reference simulator and all mutants on cases.
-
-    Args:
-        cases: Cases that the reference simulator passes.
-        progress: Function that receives the name of each mutant before it runs.
+    """Run the reference simulator and all mutants on cases that it passes; `progress` receives the name of each first.
 
     Raises:
         RuntimeError: The reference simulator delivers no record of a case, so that there is nothing to mutate.

@@ -1,20 +1,20 @@
 """Check of input files: the kind is recognised, valid files give one line, and all problems of all files are listed."""
 
 import shutil
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
+from helpers.command_line import pantocheck
 from helpers.drop_records import build_drop_record
 from helpers.line_table_files import change_cell, export_tables
 from helpers.listed_spans import list_spans
 from helpers.static_records import read_unequal_line, write_static_record
 from helpers.toml_edit import edit_toml, write_toml
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.file_check import recognise_json, recognise_toml
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_toml
@@ -23,10 +23,7 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 
-
-def check(*arguments: object) -> Result:
-    """Result on a terminal that is wider than the paths of temporary folders."""
-    return CliRunner(env={"COLUMNS": "400"}).invoke(app, ["check", *map(str, arguments)])
+check = partial(pantocheck, "check", COLUMNS="400")
 
 
 @pytest.mark.parametrize(
@@ -239,16 +236,6 @@ def test_folders_of_tools_are_skipped(name: str, tmp_path: Path) -> None:
     assert check(tmp_path / name).exit_code == 2
 
 
-def test_tables_of_a_line_are_found_in_a_folder(tmp_path: Path) -> None:
-    supports, _ = export_tables(tmp_path, read_unequal_line())
-    result = check(tmp_path)
-    assert result.exit_code == 0, result.output
-    assert "table of 7 supports and ends" in result.stdout
-    assert "table of 53 droppers" in result.stdout
-    change_cell(supports, 3, "span_m", "58 m")
-    assert "row 3, column 'span_m'" in check(tmp_path).stderr
-
-
 @pytest.mark.parametrize("suffix", [".csv", ".toml"])
 def test_static_record_is_checked_with_its_table(tmp_path: Path, suffix: str) -> None:
     columns = {"position_m": np.array([1.0, 2.0]), "elasticity_mm_N": np.array([0.4, 0.5])}
@@ -262,16 +249,18 @@ def test_static_record_is_checked_with_its_table(tmp_path: Path, suffix: str) ->
     assert "2 problems in 1 of 1 file" in result.output
 
 
-def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path) -> None:
+@pytest.mark.parametrize("names", [(".",), ("supports.csv", "droppers.csv")])
+def test_tables_of_a_line_are_recognised_and_checked(tmp_path: Path, names: tuple[str, ...]) -> None:
+    """By their names, and in a folder."""
     supports, droppers = export_tables(tmp_path, read_unequal_line())
-    result = check(supports, droppers)
+    result = check(*(tmp_path / name for name in names))
     assert result.exit_code == 0, result.output
     assert "table of 7 supports and ends" in result.output
     assert "table of 53 droppers" in result.output
     change_cell(supports, 3, "span_m", "58 m")
     change_cell(supports, 4, "encumbrance_m", "?")
     change_cell(droppers, 9, "x_m", "x")
-    result = check(supports, droppers)
+    result = check(*(tmp_path / name for name in names))
     assert result.exit_code == 2
     for place in ("row 3, column 'span_m'", "row 4, column 'encumbrance_m'", "row 9, column 'x_m'"):
         assert place in result.output

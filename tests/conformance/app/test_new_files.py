@@ -3,15 +3,15 @@
 import re
 import tomllib
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from pydantic import BaseModel
-from typer.testing import CliRunner, Result
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.file_check import check_input_file
 from pantocheck.conformance.app.new_files import NEW_KINDS, NewKind, read_template
 from pantocheck.conformance.cases.case_file import CaseFile
@@ -36,10 +36,7 @@ MODELS: dict[NewKind, type[BaseModel]] = {
     "dossier": DossierFile,
 }
 
-
-def new(*arguments: object) -> Result:
-    """Run `pantocheck new`."""
-    return CliRunner().invoke(app, ["new", *map(str, arguments)])
+new = partial(pantocheck, "new")
 
 
 @pytest.fixture

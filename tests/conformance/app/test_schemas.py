@@ -8,9 +8,8 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.schemas import FORMAT_NAMES, USER_FORMATS, build_schema, format_schema
 from pantocheck.conformance.line.library_folder import library_folder
 
@@ -31,7 +30,7 @@ def test_schema_is_valid_and_self_contained(name: str) -> None:
     assert json.loads(format_schema(schema)) == schema
     for reference in _references(schema):
         assert reference.removeprefix("#/$defs/") in schema["$defs"]
-    assert CliRunner().invoke(app, ["schema", name]).output == format_schema(schema)
+    assert pantocheck("schema", name).output == format_schema(schema)
 
 
 def test_kept_schemas_are_those_of_the_files_that_users_write() -> None:

@@ -7,21 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
+from helpers.campaign_columns import build_columns
+from helpers.cheap_campaign import compute_row, fill_store, speed_design
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
-from pantocheck.conformance.campaigns.campaign_comparison import compare_values, pair_runs
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
-from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
 from pantocheck.conformance.campaigns.campaign_evaluation import (
     build_sample_charts,
     build_statistics,
+    compare_values,
     evaluate_campaign,
+    pair_runs,
 )
-from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
+from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.campaigns.campaign_run import RunRow, build_failed_row
 from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.input_charts import build_input_charts, build_maps
+from pantocheck.conformance.campaigns.run_executors import Execute
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.pages.campaign_page import _join_sources, build_campaign_report
@@ -42,9 +44,7 @@ def columns() -> CampaignColumns:
     rear[-1] = np.nan
     speeds, spacings = zip(*designs, strict=True)
     inputs = {"speed_km_h": speeds, "spacing_m": spacings}
-    return CampaignColumns(
-        ("a",) * 9, ("builtin",) * 9, inputs, {FRONT.column: front, REAR.column: rear}, np.arange(1, 10)
-    )
+    return build_columns(inputs, {FRONT.column: front, REAR.column: rear})
 
 
 def test_chart_has_a_curve_per_pantograph_and_other_input_with_the_limit(columns: CampaignColumns) -> None:
@@ -89,10 +89,7 @@ def test_figures_of_many_runs_stay_small() -> None:
     speeds, forces = np.meshgrid(np.linspace(200.0, 300.0, 4000), np.linspace(100.0, 104.0, 5))
     inputs = {"speed_km_h": tuple(speeds.ravel().tolist()), "force": tuple(forces.ravel().tolist())}
     numbers = speeds.ravel() / 5 + forces.ravel()
-    count = numbers.size
-    columns = CampaignColumns(
-        ("a",) * count, ("builtin",) * count, inputs, {FRONT.column: numbers}, np.arange(1, count + 1)
-    )
+    columns = build_columns(inputs, {FRONT.column: numbers})
     chart, _ = build_input_charts(columns, [FRONT], ("speed_km_h", "force"))
     line, band = chart.series[:2]
     assert len(line.x) == len(band.x) == 500
@@ -109,13 +106,8 @@ def test_tornado_has_both_signs_of_every_input_the_largest_first() -> None:
     """A linear value: its changes by one standard deviation are the coefficients times the deviations."""
     inputs = np.random.default_rng(1).standard_normal((50, 2))
     numbers = 100 + inputs @ np.array([1.0, -3.0])
-    columns = CampaignColumns(
-        ("a",) * 50,
-        ("builtin",) * 50,
-        {key: tuple(column.tolist()) for key, column in zip("ab", inputs.T, strict=True)},
-        {FRONT.column: numbers},
-        np.arange(1, 51),
-    )
+    named = {key: tuple(column.tolist()) for key, column in zip("ab", inputs.T, strict=True)}
+    columns = build_columns(named, {FRONT.column: numbers})
     *_, tornado = build_sample_charts(columns, [EvaluatedValue(FRONT.column)], (), ("a", "b"))
     assert tornado.ticks == ["b", "a"]
     larger, smaller = tornado.series
@@ -152,7 +144,7 @@ def test_statistics_of_random_designs_are_those_of_each_point_of_the_grid() -> N
     numbers = np.arange(1.0, 201.0)
     inputs = {"speed_km_h": (200,) * 100 + (300,) * 100, "tension": tuple(numbers)}
     value = EvaluatedValue("1.mean_force_N", upper=150.0)
-    columns = CampaignColumns(("a",) * 200, ("builtin",) * 200, inputs, {value.column: numbers}, np.arange(1, 201))
+    columns = build_columns(inputs, {value.column: numbers})
     low, high = build_statistics(columns, [value], ["speed_km_h"])
     assert (low.group, high.group) == ("speed_km_h = 200", "speed_km_h = 300")
     assert (low.runs, low.mean.value, high.mean.value) == (100, 50.5, 150.5)
@@ -190,17 +182,18 @@ def test_report_has_facts_statistics_maps_and_charts(columns: CampaignColumns) -
     assert text.count("<figure") == 3
 
 
+def evaluate(folder: Path, content: dict[str, object], execute: Execute) -> CampaignResults:
+    """Evaluation of a campaign that runs in this process."""
+    prepared = prepare_campaign(CampaignFile.model_validate(content), Path())
+    with open_store(folder, {}) as store:
+        fill_store(store, prepared.design, execute)
+        return evaluate_campaign(prepared, store, "complete")
+
+
 def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
     """Its report has the reasons and no figure."""
     content = {"cases": ["en50318-2002/250"], "vary": [{"key": "speed_km_h", "values": [200, 210, 220]}]}
-    prepared = prepare_campaign(CampaignFile.model_validate(content), Path())
-
-    def fail(run: PlannedRun) -> RunRow:
-        return build_failed_row(run, "no power", 0.0)
-
-    with open_store(tmp_path, {}) as store:
-        drive_campaign(prepared.design, fail, store, ThisProcess(), Execution(), lambda _: None)
-        results = evaluate_campaign(prepared, store, "complete")
+    results = evaluate(tmp_path, content, lambda run: build_failed_row(run, "no power", 0.0))
     assert (results.total, results.finished, results.failed) == (3, 3, 3)
     assert results.reasons == {"no power": 3}
     assert (results.charts, results.maps, results.statistics) == ([], [], [])
@@ -212,14 +205,11 @@ def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:
     droppers = "line.variation.droppers"
     seeds = {"key": f"{droppers}.seed", "values": list(range(1, 11))}
     content = {"cases": ["en50318-2002/250"], "set": [f"{droppers}.tolerance_m=0.003"], "vary": [seeds]}
-    prepared = prepare_campaign(CampaignFile.model_validate(content), Path())
 
     def deliver(run: PlannedRun) -> RunRow:
         return RunRow(run, {"verdict": "info"}, None, {"1.mean_force_N": float(run.number)}, 0.0)
 
-    with open_store(tmp_path, {}) as store:
-        drive_campaign(prepared.design, deliver, store, ThisProcess(), Execution(), lambda _: None)
-        results = evaluate_campaign(prepared, store, "complete")
+    results = evaluate(tmp_path, content, deliver)
     (statistics,) = results.statistics
     assert (statistics.runs, statistics.mean.value) == (10, 5.5)
     assert [chart for chart in results.charts if chart.x_label.endswith("seed")] == []

@@ -7,12 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from helpers.cheap_campaign import ThisProcess, compute_row, speed_design
-from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
+from helpers.cheap_campaign import build_table
 from pantocheck.conformance.campaigns.campaign_file import Execution
-from pantocheck.conformance.campaigns.campaign_store import open_store
-from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.executor_choice import choose_executor
+from pantocheck.conformance.campaigns.run_executors import choose_executor
 from pantocheck.conformance.core.input_error import InputError
 
 RUNS = 80
@@ -26,13 +23,6 @@ echo "Submitted batch job 7"
 
 LONGEST_S = 600
 """Longest duration of a helper [s]: it ends one that hangs. On a loaded machine, 120 s were too short for a cluster."""
-
-
-def build_table(folder: Path, runs: int) -> bytes:
-    with open_store(folder, {"runs": runs}) as store:
-        drive_campaign(speed_design(runs), compute_row, store, ThisProcess(), Execution(), lambda _: None)
-        write_campaign_table(store, folder / "campaign.csv")
-    return (folder / "campaign.csv").read_bytes()
 
 
 def run_helper(module: str, *arguments: str, **environment: str) -> None:

@@ -5,9 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import stats
 
+from helpers.campaign_columns import build_columns
 from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue
+from pantocheck.conformance.campaigns.campaign_design import sample_inputs
 from pantocheck.conformance.campaigns.campaign_file import InputSampling
-from pantocheck.conformance.campaigns.design_axes import sample_inputs
 from pantocheck.conformance.campaigns.sample_statistics import build_indices, estimate_sobol_indices, select_independent
 
 KEYS = ("x1", "x2", "x3")
@@ -22,7 +23,7 @@ def ishigami(x: np.ndarray) -> np.ndarray:
     return np.sin(x[..., 0]) + A * np.sin(x[..., 1]) ** 2 + B * x[..., 2] ** 4 * np.sin(x[..., 0])
 
 
-def build_columns(runs: int) -> tuple[CampaignColumns, list[EvaluatedValue], object]:
+def sample_ishigami(runs: int) -> tuple[CampaignColumns, list[EvaluatedValue], object]:
     """Finished campaign of Saltelli designs of the function."""
     uniform = {"kind": "uniform", "lower": -np.pi, "upper": np.pi}
     table = [{"key": key, "distribution": uniform} for key in KEYS]
@@ -31,16 +32,12 @@ def build_columns(runs: int) -> tuple[CampaignColumns, list[EvaluatedValue], obj
     inputs = {key: tuple(row[key] for row in rows) for key in KEYS}
     value = EvaluatedValue("1.mean_force_N")
     numbers = ishigami(np.column_stack([inputs[key] for key in KEYS]))
-    count = len(rows)
-    columns = CampaignColumns(
-        ("a",) * count, ("builtin",) * count, inputs, {value.column: numbers}, np.arange(1, count + 1)
-    )
-    return columns, [value], axis
+    return build_columns(inputs, {value.column: numbers}), [value], axis
 
 
 def test_indices_of_the_ishigami_function() -> None:
     """With 2048 designs per set, the estimates of a Sobol sequence are within 0.02 of the exact indices."""
-    columns, values, axis = build_columns(2048)
+    columns, values, axis = sample_ishigami(2048)
     (indices,) = build_indices(columns, values, (), axis)
     assert [share.input for share in indices.shares] == list(KEYS)
     assert_allclose([share.first.value for share in indices.shares], FIRST, atol=0.02)
@@ -52,14 +49,14 @@ def test_indices_of_the_ishigami_function() -> None:
 
 def test_designs_that_are_not_finished_are_left_out() -> None:
     """A set of 64 designs of three inputs has 320 runs; without runs 6 to 10 the second design is missing."""
-    columns, values, axis = build_columns(64)
+    columns, values, axis = sample_ishigami(64)
     some = columns.select(np.array([i for i in range(len(columns.cases)) if i // 5 != 1]))
     (indices,) = build_indices(some, values, (), axis)
     assert indices.runs == 63
 
 
 def test_independent_designs_are_those_of_the_first_two_sets() -> None:
-    columns, _, axis = build_columns(64)
+    columns, _, axis = sample_ishigami(64)
     independent = select_independent(columns, axis)
     assert len(independent.cases) == 128
     assert len(set(independent.inputs["x1"])) == 128
@@ -67,7 +64,7 @@ def test_independent_designs_are_those_of_the_first_two_sets() -> None:
 
 def test_estimates_are_those_of_scipy() -> None:
     """The same estimators; scipy centres and normalises in the same way."""
-    columns, values, _ = build_columns(256)
+    columns, values, _ = sample_ishigami(256)
     table = columns.values[values[0].column].reshape(256, 5)
     shares = estimate_sobol_indices(table[:, 0], table[:, 1], table[:, 2:])
     expected = stats.sobol_indices(
@@ -83,7 +80,7 @@ def test_estimates_are_those_of_salib() -> None:
     With 500 bootstrap samples the half-widths of both scatter by 5 %.
     """
     sobol = pytest.importorskip("SALib.analyze.sobol", reason="SALib is optional: pip install 'pantocheck[peers]'")
-    columns, values, _ = build_columns(1024)
+    columns, values, _ = sample_ishigami(1024)
     table = columns.values[values[0].column].reshape(1024, 5)
     shares = estimate_sobol_indices(table[:, 0], table[:, 1], table[:, 2:])
     problem = {"num_vars": 3, "names": list(KEYS), "bounds": [[-np.pi, np.pi]] * 3}

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.trust import limit_counts
 from pantocheck.conformance.core.verdicts import Verdict
@@ -36,7 +35,7 @@ def test_plan_without_a_system_is_refused(tmp_path: Path, text: str) -> None:
     path.write_text(text)
     with pytest.raises(InputError, match=r"plan 'conformance\.toml', key system: missing"):
         read_plan(path)
-    result = CliRunner().invoke(app, ["run", "--plan", str(path), "--out", str(tmp_path / "out")])
+    result = pantocheck("run", "--plan", str(path), "--out", str(tmp_path / "out"))
     assert (result.exit_code, (tmp_path / "out").exists()) == (2, False)
 
 

@@ -1,15 +1,15 @@
 """Reference simulator beside a system under test: its values are added, and no verdict changes."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
 import pytest
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.app.commands import run_command as command_module
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -80,8 +80,7 @@ def test_case_that_the_reference_did_not_run_states_why(both: tuple[Results, Res
     assert result.quantities == both[0].cases[0].quantities
 
 
-def run_command(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["run", "en50318-2002/250", "--with-reference", *arguments])
+run_command = partial(pantocheck, "run", "en50318-2002/250", "--with-reference")
 
 
 def test_reference_beside_itself_is_refused() -> None:

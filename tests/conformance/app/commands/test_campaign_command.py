@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
-from typer.testing import CliRunner, Result
 
-from helpers.cheap_campaign import ThisProcess
-from pantocheck.conformance.app.commands import campaign_command
-from pantocheck.conformance.app.commands.command_list import app
-from pantocheck.conformance.campaigns.campaign_driver import drive_campaign
-from pantocheck.conformance.campaigns.campaign_file import Execution
+from helpers.cheap_campaign import fill_store
+from helpers.command_line import pantocheck
+from pantocheck.conformance.campaigns import campaign_preparation
 from pantocheck.conformance.campaigns.campaign_preparation import read_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
@@ -40,10 +37,6 @@ source = "test"
 """
 
 
-def call(*arguments: object) -> Result:
-    return CliRunner().invoke(app, list(map(str, arguments)))
-
-
 @pytest.fixture
 def campaign(tmp_path: Path) -> Path:
     (tmp_path / "limits.toml").write_text(LIMITS)
@@ -54,7 +47,7 @@ def campaign(tmp_path: Path) -> Path:
 def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_path: Path) -> None:
     """The mean force of a passage is its uplift force within a few newtons, so the limit of 120 N divides them."""
     out, folder = tmp_path / "out", tmp_path / "one"
-    result = call("campaign", campaign, "--out", out, "--workers", 2)
+    result = pantocheck("campaign", campaign, "--out", out, "--workers", 2)
     assert result.exit_code == 1, result.output
     assert "3 of 3 runs finished, 1 failed\n  1 run: " in result.output
     assert "must be greater than 0" in " ".join(result.output.split())
@@ -68,12 +61,12 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
 
     prepared = read_campaign(campaign)
     with open_store(folder, prepared.identity) as store:
-        drive_campaign(prepared.design, prepared.execute, store, ThisProcess(), Execution(), lambda _: None)
+        fill_store(store, prepared.design, prepared.execute)
         write_campaign_table(store, folder / "campaign.csv")
     assert (folder / "campaign.csv").read_bytes() == (out / "campaign.csv").read_bytes()
 
     campaign.write_text(CAMPAIGN.replace("130.0", "131.0"))
-    result = call("campaign", campaign, "--out", out)
+    result = pantocheck("campaign", campaign, "--out", out)
     assert result.exit_code == 2
     assert "holds the runs of another campaign (changed: campaign, designs)" in result.output
 
@@ -86,8 +79,8 @@ def test_interrupted_campaign_writes_its_finished_runs(
     def interrupt(*_: object) -> NoReturn:
         raise KeyboardInterrupt(signal.SIGTERM)
 
-    monkeypatch.setattr(campaign_command, "drive_campaign", interrupt)
-    result = call("campaign", campaign, "--out", tmp_path / "out")
+    monkeypatch.setattr(campaign_preparation, "drive_campaign", interrupt)
+    result = pantocheck("campaign", campaign, "--out", tmp_path / "out")
     assert result.exit_code == 143
     output = " ".join(result.output.split())
     assert "Interrupted: the same command resumes the campaign. 0 of 3 runs finished, 0 failed" in output
@@ -108,7 +101,7 @@ def test_wrong_options_end_with_a_message(
     campaign: Path, arguments: list[str], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(campaign.parent)
-    result = call("campaign", *arguments, "--out", "out")
+    result = pantocheck("campaign", *arguments, "--out", "out")
     assert result.exit_code == 2
     assert message in result.output
     assert not Path("out").exists()

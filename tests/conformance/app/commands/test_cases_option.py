@@ -5,13 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.fake_distribution import write_distribution
 from helpers.outside_cases import outside_case, write_case
 from helpers.wave_system import Wave
 from pantocheck.conformance import grade_cases
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.cases.catalogue import LIBRARY, open_catalogue
@@ -22,10 +21,6 @@ from pantocheck.conformance.results.results_format import Results
 
 NAME = "own/acme/fast"
 AUTHOR = "Inputs, limits and their trust are stated by the author of this source."
-
-
-def pantocheck(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.fixture

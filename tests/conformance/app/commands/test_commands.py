@@ -12,11 +12,11 @@ from typing import Any
 import jsonschema
 import pytest
 import typer
-from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
+from helpers.command_line import SKIPPER, pantocheck
 from pantocheck.conformance.app.commands import line_draw_command, run_command, system_self_test_command
-from pantocheck.conformance.app.commands.command_list import COMMANDS, app
+from pantocheck.conformance.app.commands.command_list import COMMANDS
 from pantocheck.conformance.app.commands.guard import guard_command
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.app.self_test.bench import SelfTest
@@ -33,12 +33,7 @@ from pantocheck.model.description.failures import (
     ImpossiblePassage,
     NoEquilibrium,
     NoInitialState,
-    SimulationError,
 )
-
-
-def pantocheck(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.fixture
@@ -71,22 +66,14 @@ def test_run_grades_records_and_writes_results(records: Path, tmp_path: Path) ->
     assert [path.name for path in out.iterdir()] == ["results.json"]
 
 
-def test_run_passes_with_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
-    result = pantocheck(
-        "run", "en50318-2002/250", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json",
-        "--limits", lenient, "--verdicts", "criteria",
-    )  # fmt: skip
-    assert (result.exit_code, result.output.split()[0]) == (0, "PASS")
-
-
-def test_skipped_case_gives_exit_code_1(records: Path, lenient: Path, tmp_path: Path) -> None:
+def test_only_a_run_without_a_skipped_case_has_exit_code_0(records: Path, lenient: Path, tmp_path: Path) -> None:
     (records / "300.toml").unlink()
-    result = pantocheck(
-        "run", "--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient,
-        "--verdicts", "criteria", "en50318-2002/250", "en50318-2002/300",
-    )  # fmt: skip
-    assert (result.exit_code, result.output.split()[0]) == (1, "SKIP")
-    assert "there is no record of this case" in result.output
+    options = ("--system", f"record:{records}", "--out", tmp_path / "out", "--formats", "json", "--limits", lenient)
+    command = ("run", *options, "--verdicts", "criteria", "en50318-2002/250")
+    passed, skipped = pantocheck(*command), pantocheck(*command, "en50318-2002/300")
+    assert (passed.exit_code, passed.output.split()[0]) == (0, "PASS")
+    assert (skipped.exit_code, skipped.output.split()[0]) == (1, "SKIP")
+    assert "there is no record of this case" in skipped.output
 
 
 def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, lenient: Path, tmp_path: Path) -> None:
@@ -185,43 +172,39 @@ def fail_with(error: BaseException) -> Callable[[], None]:
     return guard_command(command)
 
 
-def test_internal_error_is_a_message_without_traceback(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(typer.Exit) as ended:
-        fail_with(ValueError("a mistake\x1b of the program"))()
-    assert ended.value.exit_code == 2
-    message = capsys.readouterr().err
-    assert message.startswith("internal error: ValueError: a mistake? of the program\n")
-    assert "PANTOCHECK_TRACEBACK=1" in message
-    assert "Traceback" not in message
-
-
-def test_traceback_of_an_internal_error_is_printed_on_request(
+def test_internal_error_is_a_message_with_a_traceback_on_request_only(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PANTOCHECK_TRACEBACK", "1")
-    with pytest.raises(typer.Exit):
-        fail_with(ValueError("a mistake"))()
-    assert "Traceback" in capsys.readouterr().err
+    for requested in (False, True):
+        if requested:
+            monkeypatch.setenv("PANTOCHECK_TRACEBACK", "1")
+        with pytest.raises(typer.Exit) as ended:
+            fail_with(ValueError("a mistake\x1b of the program"))()
+        assert ended.value.exit_code == 2
+        message = capsys.readouterr().err
+        assert "internal error: ValueError: a mistake? of the program\n" in message
+        assert "PANTOCHECK_TRACEBACK=1" in message
+        assert message.startswith("Traceback" if requested else "internal error")
+
+
+CHECK_DATA = "no state\n  Check the data of the line and of the pantographs.\n"
 
 
 @pytest.mark.parametrize(
-    "failure",
-    [NoInitialState, NoEquilibrium, ImpossiblePassage, DidNotConverge, TuningFailed],
+    ("error", "exit_code", "message"),
+    [
+        *((kind("no state"), 2, CHECK_DATA) for kind in (NoInitialState, NoEquilibrium, ImpossiblePassage)),
+        *((kind("no state"), 2, CHECK_DATA) for kind in (DidNotConverge, TuningFailed)),
+        (KeyboardInterrupt(), 130, "Interrupted.\n"),
+    ],
 )
-def test_every_failure_of_the_simulation_is_a_message(
-    failure: type[SimulationError], capsys: pytest.CaptureFixture[str]
+def test_failures_of_the_simulation_and_ctrl_c_are_messages(
+    error: BaseException, exit_code: int, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(typer.Exit) as ended:
-        fail_with(failure("no state"))()
-    assert ended.value.exit_code == 2
-    assert capsys.readouterr().err == "no state\n  Check the data of the line and of the pantographs.\n"
-
-
-def test_ctrl_c_ends_with_exit_code_130(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(typer.Exit) as ended:
-        fail_with(KeyboardInterrupt())()
-    assert ended.value.exit_code == 130
-    assert capsys.readouterr().err == "Interrupted.\n"
+        fail_with(error)()
+    assert ended.value.exit_code == exit_code
+    assert capsys.readouterr().err == message
 
 
 def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(
@@ -323,7 +306,8 @@ def test_show_states_requirements_start_and_section() -> None:
 
 def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
     """Only cases that no name selects are added, and the line precedes the results."""
-    program = f"command:{sys.executable} {write_refusal(tmp_path)}"
+    (tmp_path / "skipper.py").write_text(SKIPPER)
+    program = f"command:{sys.executable} {tmp_path / 'skipper.py'} {tmp_path / 'log'}"
     name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
     out = ("--system", program, "--out", tmp_path / "out", "--formats", "json")
     assert pantocheck("run", name, *out).stderr.startswith(f"cases added: {required} (required by {name})\n")
@@ -333,20 +317,6 @@ def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
 
 def write_refusal(folder: Path) -> Path:
     """Program that skips every case."""
-    path = folder / "refusal.py"
-    path.write_text(
-        "import json, sys\n"
-        "for line in sys.stdin:\n"
-        "    message = json.loads(line)\n"
-        "    started = {'message': 'started', 'protocol': 'pantocheck.command/1', 'name': 'none', 'version': ''}\n"
-        "    started['features'] = 'bending_stiffness chain droppers presag rayleigh_damping steady_arms'.split()\n"
-        "    skipped = {'message': 'skipped', 'id': message.get('id'), 'reason': 'no solver'}\n"
-        "    answer = {'start': started, 'run': skipped}.get(message['message'])\n"
-        "    if answer is None:\n"
-        "        break\n"
-        "    print(json.dumps(answer), flush=True)\n"
-    )
-    return path
 
 
 def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
@@ -368,11 +338,20 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: Edi
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_of_a_command_fits_80_columns(name: str) -> None:
-    result = pantocheck(*name.split(), "--help")
-    assert result.exit_code == 0
+    """It takes the options of the output, and refers to the help of `pantocheck`, which lists them."""
+    result = pantocheck(*name.split(), "-q", "--json", "--no-color", "--help")
+    assert (result.exit_code, "see `pantocheck --help`" in result.stdout) == (0, True)
     assert max(map(len, result.output.splitlines())) <= 80
     assert COMMANDS[name] in " ".join(result.output.split()), "the summary is the first line of the docstring"
     assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), "an example on one line"
+
+
+def test_root_help_fits_60_lines_of_80_columns_and_names_every_command_in_one_line() -> None:
+    lines = pantocheck("--help", COLUMNS="80").output.splitlines()
+    assert len(lines) <= 60
+    assert max(map(len, lines)) <= 80
+    listed = [line.split("  ")[1] for line in lines if line.startswith("  ") and line.split("  ")[1] in COMMANDS]
+    assert sorted(listed) == sorted(COMMANDS)
 
 
 def test_help_imports_no_command_and_nothing_heavy() -> None:

@@ -4,6 +4,7 @@ import csv
 import json
 import tomllib
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,9 @@ import numpy as np
 import pytest
 import tomli_w
 from jsonschema import validate
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.wave_system import SIGMA, Wave
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.comparison.compared_run import ComparedRun, simulate_run
@@ -43,8 +43,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, two_pantograph_case:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["compare", *arguments])
+run = partial(pantocheck, "compare")
 
 
 def read(folder: Path) -> dict[str, Any]:
@@ -129,7 +128,7 @@ def test_repeated_comparison_gives_the_same_bytes(folder: Path, monkeypatch: pyt
     ],
 )
 def test_message_names_the_fault(folder: Path, arguments: list[str], message: str) -> None:
-    done = CliRunner().invoke(app, ["compare", *arguments])
+    done = pantocheck("compare", *arguments)
     assert done.exit_code == 2
     assert message in " ".join(done.output.split())
 

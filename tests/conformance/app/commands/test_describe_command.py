@@ -1,14 +1,14 @@
 """`pantocheck describe`: the facts about a file at 80 columns, and a sidecar that leads to a readable record."""
 
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.foreign_tables import FOREIGN_WRITERS
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
 from pantocheck.conformance.drops.drop_reading import read_drop_records
@@ -20,9 +20,7 @@ RATE, SPEED = 500.0, 70.0
 TIME = np.arange(12_000) / RATE
 PLACE = SPEED * TIME
 
-
-def describe(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["describe", *map(str, arguments)])
+describe = partial(pantocheck, "describe")
 
 
 @pytest.fixture
@@ -33,12 +31,8 @@ def logger(tmp_path: Path) -> Path:
         f"10:00:{t:06.3f};{t:.3f};{87.25 - x / 1000:.5f};252,0;{a:.6f};{b:.6f};12,5"
         for t, x, a, b in zip(TIME, PLACE, *force, strict=True)
     ]
-    head = [
-        "Messzug;707",
-        "Strecke;Süd",
-        "",
-        "Uhr;Messzeit;Kilometer;Geschwindigkeit;Kraft vorn;Kraft hinten;Temperatur",
-    ]
+    names = "Uhr;Messzeit;Kilometer;Geschwindigkeit;Kraft vorn;Kraft hinten;Temperatur"
+    head = ["Messzug;707", "Strecke;Süd", "", names]
     text = "\n".join([*head, ";s;km;km/h;kN;kN;°C", *rows]).replace(".", ",")
     (tmp_path / "m.csv").write_text(text, encoding="cp1252")
     return tmp_path / "m.csv"
@@ -119,23 +113,29 @@ def test_force_record_of_every_format_is_described(name: str, tmp_path: Path) ->
     assert re.search(r'force_2_N = \{ column = "(daq/)?Kraft_2" \}   # COMPLETE: unit', draft)
 
 
-def test_force_sensors_in_volts_are_proposed_with_a_scale(tmp_path: Path) -> None:
-    rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 2 + np.sin(PLACE), strict=True))
-    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;V;V\n" + rows)
-    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
-    draft = (tmp_path / "a.toml").read_text()
-    assert '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V' in draft
-    assert "the sum of several sensors" in draft
-
-
-def test_draft_of_several_forces_points_to_their_sum(tmp_path: Path) -> None:
-    """Two sensors of one pantograph have the same units as the forces of two pantographs."""
+@pytest.mark.parametrize(
+    ("unit", "texts"),
+    [
+        # A signal needs a scale.
+        (
+            "V",
+            (
+                '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V',
+                "the sum of several sensors",
+            ),
+        ),
+        # Two sensors of one pantograph have the same units as the forces of two pantographs.
+        ("N", ('force_2_N = { column = "Kraft rechts", unit = "N" }', "[columns.force_1_N] with sum = [...]")),
+    ],
+)
+def test_draft_of_several_force_sensors_points_to_scale_and_sum(
+    unit: str, texts: tuple[str, ...], tmp_path: Path
+) -> None:
     rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 60 + np.sin(PLACE), strict=True))
-    (tmp_path / "a.csv").write_text("Zeit;Kraft links;Kraft rechts\ns;N;N\n" + rows)
+    (tmp_path / "a.csv").write_text(f"Zeit;Kraft links;Kraft rechts\ns;{unit};{unit}\n{rows}")
     describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
     draft = (tmp_path / "a.toml").read_text()
-    assert 'force_2_N = { column = "Kraft rechts", unit = "N" }' in draft
-    assert "[columns.force_1_N] with sum = [...]" in draft
+    assert [text for text in texts if text not in draft] == []
 
 
 def test_suspicious_contents_are_named() -> None:

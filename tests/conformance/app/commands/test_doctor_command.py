@@ -4,10 +4,9 @@ import json
 from importlib.metadata import PackageNotFoundError
 
 import pytest
-from typer.testing import CliRunner
 
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.commands import doctor_command
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.doctor_command import DeclaredPackage, list_requirements
 
 
@@ -51,7 +50,7 @@ def test_a_missing_package_of_an_extra_is_named_with_its_installation(monkeypatc
     monkeypatch.setattr(doctor_command, "requires", lambda name: ["numpy>=2.0", 'nptdms>=1.9; extra == "tdms"'])
     provide_versions(monkeypatch, numpy="2.4", pantocheck="0.1.0")
     monkeypatch.setenv("COLUMNS", "80")
-    done = CliRunner().invoke(app, ["doctor"])
+    done = pantocheck("doctor")
     assert done.exit_code == 0, done.output
     assert "extra tdms: not complete; pip install 'pantocheck[tdms]'" in done.output
     assert max(map(len, done.output.splitlines())) <= 80
@@ -60,7 +59,7 @@ def test_a_missing_package_of_an_extra_is_named_with_its_installation(monkeypatc
 def test_a_package_that_is_too_old_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor_command, "requires", lambda name: ["numpy>=2.0"])
     provide_versions(monkeypatch, numpy="1.26", pantocheck="0.1.0")
-    done = CliRunner().invoke(app, ["doctor", "--json"])
+    done = pantocheck("doctor", "--json")
     assert done.exit_code == 1
     report = json.loads(done.output)["result"]
     assert report["packages"] == [

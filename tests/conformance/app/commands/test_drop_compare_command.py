@@ -2,15 +2,15 @@
 
 import json
 import logging
+from functools import partial
 from pathlib import Path
 
 import pytest
 import tomli_w
 from jsonschema import validate
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.recorded_drops import ELEMENT, damp_masses, read_short_line, record_drop
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.drop_compare_command import name_damping_files
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.core.step_log import TaskStep
@@ -42,9 +42,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    common = ["drop", "compare", "drop.h5", "--line", "line.toml", "--out", "out", "--element", f"{ELEMENT}"]
-    return CliRunner().invoke(app, [*common, "--window", "0:4", *arguments])
+FILES = ("drop.h5", "--line", "line.toml", "--out", "out")
+run = partial(pantocheck, "drop", "compare", *FILES, "--element", f"{ELEMENT}", "--window", "0:4")
 
 
 def test_two_damping_files_are_compared_and_the_first_is_graded(folder: Path) -> None:

@@ -24,36 +24,25 @@ def table() -> FittedTable:
     return table
 
 
-def test_columns_are_aligned_where_they_fit(table: FittedTable) -> None:
-    """29 + 5 + 14 columns and two spaces."""
-    assert shown(table, 50) == [
-        f"{'criterion':29} value limits",
-        f"{NAME} 41.52 40.28 to 42.83",
-        f"{'std_force_N':29}  26.6",
-    ]
-
-
-def test_names_stand_above_their_numbers_where_columns_do_not_fit(table: FittedTable) -> None:
-    assert shown(table, 49) == [
-        "criterion",
-        "  value limits",
-        NAME,
-        "  41.52 40.28 to 42.83",
-        "std_force_N",
-        "   26.6",
-    ]
-
-
-def test_rows_become_paragraphs_on_the_narrowest_terminal(table: FittedTable) -> None:
-    """An empty cell is left out."""
-    assert shown(table, 21) == [
-        "elasticity_non_unifor",
-        "mity_pct",
-        "  value 41.52, limits",
-        "  40.28 to 42.83",
-        "std_force_N",
-        "  value 26.6",
-    ]
+@pytest.mark.parametrize(
+    ("width", "lines"),
+    [
+        # Columns: 29 + 5 + 14 and two spaces.
+        (50, [f"{'criterion':29} value limits", f"{NAME} 41.52 40.28 to 42.83", f"{'std_force_N':29}  26.6"]),
+        # Names above their numbers.
+        (49, ["criterion", "  value limits", NAME, "  41.52 40.28 to 42.83", "std_force_N", "   26.6"]),
+        # Paragraphs without empty cells.
+        (
+            21,
+            [
+                *("elasticity_non_unifor", "mity_pct", "  value 41.52, limits", "  40.28 to 42.83"),
+                *("std_force_N", "  value 26.6"),
+            ],
+        ),
+    ],
+)
+def test_layout_follows_the_width(table: FittedTable, width: int, lines: list[str]) -> None:
+    assert shown(table, width) == lines
 
 
 def test_sentences_wrap_beside_whole_names() -> None:

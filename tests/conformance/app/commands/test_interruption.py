@@ -10,10 +10,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
+from helpers.command_line import pantocheck
 from helpers.wave_system import Wave
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.execution.runner import run_cases
@@ -89,7 +88,7 @@ def test_signal_after_the_last_case_waits_until_all_reports_are_written(
 ) -> None:
     """A second signal at once is the same interruption: `timeout` of GNU sends its signal twice."""
     interrupt(place, signals)
-    assert CliRunner().invoke(app, arguments).exit_code == 130
+    assert pantocheck(*arguments).exit_code == 130
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["junit.xml", "results.json", "summary.md"]
     assert [case.verdict for case in read_results(tmp_path / "out" / "results.json").cases] == ["fail", "fail"]
 
@@ -108,7 +107,7 @@ def test_second_signal_ends_at_once_and_names_an_earlier_report(
     results.parent.mkdir()
     results.write_bytes(run_cases([], Wave(), TRUST).to_json())
     interrupt(place, signals=2, pause_s=1.1)
-    ended = CliRunner().invoke(app, arguments)
+    ended = pantocheck(*arguments)
     assert ended.exit_code == 130
     assert remark.format(results) in ended.stderr
     assert not (tmp_path / "out" / "junit.xml").exists()
@@ -118,7 +117,7 @@ def test_signal_before_the_first_case_states_that_no_results_are_written(
     arguments: list[str], interrupt: Interrupt
 ) -> None:
     interrupt("app.commands.run_command.run_cases")
-    ended = CliRunner().invoke(app, arguments)
+    ended = pantocheck(*arguments)
     assert ended.exit_code == 130
     assert ended.stderr == "No results are written.\nInterrupted.\n"
 
@@ -128,5 +127,5 @@ def test_signal_while_an_assessment_is_written_waits(wave: type[Wave], interrupt
     write_record(tmp_path / "record.csv", wave().record(case), case.id)
     interrupt(WRITING)
     command = ["assess", str(tmp_path / "record.csv"), "--profile", "acceptance-ac", "--out", str(tmp_path / "out")]
-    assert CliRunner().invoke(app, [*command, "--formats", "json,junit"]).exit_code == 130
+    assert pantocheck(*command, "--formats", "json,junit").exit_code == 130
     assert (tmp_path / "out" / "junit.xml").is_file()

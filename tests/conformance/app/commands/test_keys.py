@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
+from helpers.command_line import pantocheck
 from helpers.signer_fixtures import Signers
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.sign_command import PASSPHRASE_VARIABLE, read_passphrase
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.key_files import read_signing_key
@@ -143,20 +142,15 @@ def test_sources_of_the_passphrase(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_passphrase_is_no_option() -> None:
     """Arguments are visible to other users of the machine."""
-    text = CliRunner().invoke(app, ["sign", "--help"], env={"COLUMNS": "200"}).output
+    text = pantocheck("sign", "--help", COLUMNS="200").output
     assert "--passphrase-file" in text
     assert "--passphrase " not in text
-
-
-def invoke(*arguments: Any, **settings: Any) -> Any:
-    return CliRunner().invoke(app, list(map(str, arguments)), **settings)
 
 
 def test_failures_of_the_command(signers: Signers, tmp_path: Path) -> None:
     """Exit code 2 and one message; no file is written."""
     document = write_text(tmp_path / "results.json", b"{}")
     key = signers.author.write_pkcs12(tmp_path / "key.p12", b"secret")
-    settings = {"env": {PASSPHRASE_VARIABLE: "secret"}}
     for arguments, message in [
         (("--key", tmp_path / "none"), "cannot be read"),
         (("--key", key, "--visible", "top-left"), "Only a PDF can show a signature"),
@@ -167,10 +161,10 @@ def test_failures_of_the_command(signers: Signers, tmp_path: Path) -> None:
         (("--key", key, "--timestamp-url", "file:///etc/passwd"), "not an address of a server"),
         (("--key", key, "--timestamp-url", "http://127.0.0.1:1/"), "gave no time stamp"),
     ]:
-        result = invoke("sign", document, *arguments, **settings)
+        result = pantocheck("sign", document, *arguments, **{PASSPHRASE_VARIABLE: "secret"})
         assert (result.exit_code, result.stdout) == (2, "")
         assert message in result.stderr
-    wrong = invoke("sign", document, "--key", key, env={PASSPHRASE_VARIABLE: "wrong phrase"})
+    wrong = pantocheck("sign", document, "--key", key, **{PASSPHRASE_VARIABLE: "wrong phrase"})
     assert wrong.exit_code == 2
     assert "wrong phrase" not in wrong.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["key.p12", "results.json"]

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.commands.console import LONGEST_WORD
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -40,7 +39,7 @@ def workplace(wave: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
 @pytest.mark.parametrize("width", [60, 80])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_line_is_longer_than_the_terminal(command: str, width: int) -> None:
-    done = CliRunner(env={"COLUMNS": str(width)}).invoke(app, COMMANDS[command])
+    done = pantocheck(*COMMANDS[command], COLUMNS=str(width))
     assert done.exit_code in {0, 1}, done.output
     # Lines of the log are not wrapped outside a terminal, so that a search finds them.
     long = [line for line in done.stdout.splitlines() if len(line) > width]
@@ -53,9 +52,8 @@ def test_no_line_is_longer_than_the_terminal(command: str, width: int) -> None:
 @pytest.mark.parametrize("width", ["60", "80"])
 def test_names_are_whole(width: str) -> None:
     """Every graded quantity and case of a run is found by its name, which a cut or a break would hide."""
-    environment = {"COLUMNS": width}
-    shown = CliRunner(env=environment).invoke(app, COMMANDS["run"]).output
-    results = json.loads(CliRunner(env=environment).invoke(app, [*COMMANDS["run"][:-1], "--json"]).stdout)["result"]
+    shown = pantocheck(*COMMANDS["run"], COLUMNS=width).output
+    results = json.loads(pantocheck(*COMMANDS["run"][:-1], "--json", COLUMNS=width).stdout)["result"]
     names = {criterion["quantity"] for case in results["cases"] for criterion in case["criteria"]}
     assert len(names) > 5
     assert {name for name in names | {case["id"] for case in results["cases"]} if name not in shown} == set()
@@ -67,5 +65,5 @@ def test_no_name_is_longer_than_the_words_that_are_kept_whole() -> None:
 
 def test_output_to_a_file_has_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("COLUMNS", raising=False)
-    lines = CliRunner().invoke(app, ["cases"]).output.splitlines()
+    lines = pantocheck("cases").output.splitlines()
     assert max(map(len, lines)) == 80

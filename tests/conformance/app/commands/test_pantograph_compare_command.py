@@ -2,12 +2,13 @@
 
 import json
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
 from jsonschema import validate
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.response_records import (
     add_noise,
     apparent_mass_columns,
@@ -16,7 +17,6 @@ from helpers.response_records import (
     scale_head,
     write_response,
 )
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.line.library_folder import library_folder
 
@@ -53,10 +53,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(
-        app, ["pantograph", "compare", *arguments, "--pantograph", "pantograph.toml", "--out", "out"]
-    )
+run = partial(pantocheck, "pantograph", "compare", "--pantograph", "pantograph.toml", "--out", "out")
 
 
 def test_reports_are_written_and_the_exit_code_follows_the_verdict(folder: Path) -> None:
@@ -99,7 +96,7 @@ def test_missing_sidecar_is_named(folder: Path) -> None:
 
 
 def test_response_is_checked(folder: Path) -> None:
-    done = CliRunner(env={"COLUMNS": "140"}).invoke(app, ["check", "right.csv", "right.toml", "limits.toml"])
+    done = pantocheck("check", "right.csv", "right.toml", "limits.toml", COLUMNS="140")
     assert done.exit_code == 0, done.output
     valid = "valid response record: apparent mass at 120 frequencies, 0.5 to 50 Hz, in right.csv"
     _, *lines = done.output.splitlines()

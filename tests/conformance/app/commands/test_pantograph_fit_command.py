@@ -2,12 +2,13 @@
 
 import json
 import tomllib
+from functools import partial
 from pathlib import Path
 
 import pytest
 from jsonschema import validate
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.response_records import (
     add_noise,
     apparent_mass_columns,
@@ -15,7 +16,6 @@ from helpers.response_records import (
     read_pantograph,
     write_response,
 )
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.schemas import build_schema
 
 
@@ -29,8 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*arguments: str) -> Result:
-    return CliRunner().invoke(app, ["pantograph", "fit", "measured.csv", "--out", "fitted.toml", *arguments])
+run = partial(pantocheck, "pantograph", "fit", "measured.csv", "--out", "fitted.toml")
 
 
 def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
@@ -43,7 +42,7 @@ def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
     assert tables["chain"]["source"] == "pantocheck pantograph fit, from measured.csv (rig test 12)"
     assert "trust" not in tables["chain"]
     assert tables["contact"]["stiffness_N_m"] == 50e3
-    checked = CliRunner().invoke(app, ["check", "fitted.toml"])
+    checked = pantocheck("check", "fitted.toml")
     assert (checked.exit_code, "valid pantograph file" in checked.output) == (0, True), checked.output
     report = json.loads((folder / "fitted-fit.json").read_text())
     validate(report, build_schema("pantograph-fit"))

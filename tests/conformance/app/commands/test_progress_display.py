@@ -3,8 +3,8 @@
 import logging
 import threading
 import time
-from collections.abc import Callable
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 
 import pytest
 
@@ -34,18 +34,25 @@ class Clock:
         return self.now
 
 
+@contextmanager
+def follow(progress: TaskProgress) -> Iterator[None]:
+    """Pass the steps of the test on."""
+    LOGGER.addHandler(progress)
+    try:
+        yield
+    finally:
+        LOGGER.removeHandler(progress)
+
+
 def test_line_names_case_step_share_and_remaining_time() -> None:
     """One of two cases and half of the first of two equal steps take 50 s: 62.5 %, so 30 s remain."""
     clock = Clock()
     progress = TaskProgress("running cases", 2, clock)
     steps = StepSequence(LOGGER, "en50318-2002/300", {"mesh of the case": 1.0, "mesh halved": 1.0})
     LOGGER.setLevel(logging.DEBUG)
-    LOGGER.addHandler(progress)
-    try:
+    with follow(progress):
         progress.finish_task()
         steps.begin("mesh of the case")(0.5)
-    finally:
-        LOGGER.removeHandler(progress)
     clock.now = 50.0
     assert progress.describe() == (
         "running cases: 1 of 2 finished, en50318-2002/300: mesh of the case, 62 %, about 0:00:30 remaining"
@@ -72,12 +79,9 @@ def test_begin_of_a_task_ends_the_task_before_it() -> None:
 def test_cases_of_several_processes_are_all_named(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO, LOGGER.name)
     progress = TaskProgress("running cases", 4, Clock())
-    LOGGER.addHandler(progress)
-    try:
+    with follow(progress):
         for case in ("line/250", "line/300", "line/320"):
             report_remote(LOGGER, case)
-    finally:
-        LOGGER.removeHandler(progress)
     progress.finish_task("line/300")
     assert progress.describe().startswith(
         "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own, 25 %"
@@ -133,12 +137,8 @@ def test_long_lines_of_a_log_stay_whole(
 def test_single_task_shows_the_share_of_its_steps_or_none(caplog: pytest.LogCaptureFixture) -> None:
     progress = TaskProgress("running cases", 1, Clock())
     assert progress.describe() == "running cases, 0:00:00 elapsed"
-    LOGGER.addHandler(progress)
-    try:
-        with caplog.at_level(logging.DEBUG, "pantocheck"):
-            StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
-    finally:
-        LOGGER.removeHandler(progress)
+    with follow(progress), caplog.at_level(logging.DEBUG, "pantocheck"):
+        StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
     assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
 
 
@@ -183,8 +183,7 @@ def test_remaining_time_follows_the_durations_of_the_parts_of_this_run() -> None
 
 
 def test_no_remaining_time_before_a_tenth_is_done() -> None:
-    clock = Clock()
-    progress = TaskProgress("guide", 4, clock)
+    progress = TaskProgress("guide", 4, clock := Clock())
     progress.reach("", 0, 0.0)
     clock.now = 10.0
     progress.reach("library/short", 1, 0.09)
@@ -196,10 +195,7 @@ def test_steps_within_a_part_add_no_share_and_only_the_latest_is_named(caplog: p
     caplog.set_level(logging.INFO, LOGGER.name)
     progress = TaskProgress("guide", 4, Clock())
     progress.reach("", 0, 0.0)
-    LOGGER.addHandler(progress)
-    try:
+    with follow(progress):
         for case in ("line/250", "line/300"):
             StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
-    finally:
-        LOGGER.removeHandler(progress)
     assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"

@@ -4,13 +4,13 @@ import json
 import re
 import shutil
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.wave_system import SIGMA, Wave
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.results_building import build_results
@@ -41,26 +41,32 @@ def contents() -> dict[str, str]:
 @pytest.fixture
 def results(tmp_path: Path, contents: dict[str, str]) -> Path:
     """Folder with the results."""
+    return write_results(tmp_path / "results", contents)
+
+
+def write_results(folder: Path, contents: dict[str, str]) -> Path:
     for name, content in contents.items():
-        (tmp_path / "results" / name).mkdir(parents=True)
-        (tmp_path / "results" / name / "results.json").write_text(content, encoding="utf-8")
-    return tmp_path / "results"
+        (folder / name).mkdir(parents=True)
+        (folder / name / "results.json").write_text(content, encoding="utf-8")
+    return folder
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, contents: dict[str, str]) -> Path:
     """Site of the results, with a hostile title."""
     folder = tmp_path_factory.mktemp("site")
-    for name, content in contents.items():
-        (folder / "results" / name).mkdir(parents=True)
-        (folder / "results" / name / "results.json").write_text(content, encoding="utf-8")
-    done = build(folder / "results", "--out", str(folder / "site"), "--title", "<script>alert(1)</script>")
+    done = build(
+        write_results(folder / "results", contents),
+        "--out",
+        str(folder / "site"),
+        "--title",
+        "<script>alert(1)</script>",
+    )
     assert done.exit_code == 0, done.output
     return folder / "site"
 
 
-def build(folder: Path, *arguments: str) -> Result:
-    return CliRunner().invoke(app, ["site", str(folder), *arguments])
+build = partial(pantocheck, "site")
 
 
 def read_text(page: Path) -> str:
@@ -89,18 +95,15 @@ def test_every_link_leads_to_a_file_of_the_site(site: Path) -> None:
         assert (page.parent / link).is_file(), link
 
 
-def test_case_page_shows_the_values_of_every_version(site: Path) -> None:
+def test_case_page_shows_the_values_of_every_version_and_hostile_names_are_escaped(site: Path) -> None:
     (page,) = (site / "cases").iterdir()
     text = read_text(page)
     for sigma in (SIGMA, 1.3 * SIGMA):
         assert f"{sigma:.4g}"[:4] in text
     assert "Pantograph 2" in text
-
-
-def test_hostile_names_are_escaped(site: Path) -> None:
-    page = (site / "index.html").read_text("utf-8")
-    assert "<b>other" not in page
-    assert "<script>alert" not in page
+    index = (site / "index.html").read_text("utf-8")
+    assert "<b>other" not in index
+    assert "<script>alert" not in index
 
 
 def test_results_that_contradict_themselves_are_shown_as_errors(results: Path, tmp_path: Path) -> None:
@@ -109,7 +112,7 @@ def test_results_that_contradict_themselves_are_shown_as_errors(results: Path, t
     forged = json.loads(path.read_text("utf-8"))
     forged["verdict"] = forged["cases"][0]["verdict"] = "pass"
     path.write_text(json.dumps(forged), encoding="utf-8")
-    done = build(results, "--out", str(tmp_path / "site"))
+    done = build(results, "--out", tmp_path / "site")
     assert done.exit_code == 0
     assert "verdict 'pass' stated" in done.output
     text = read_text(tmp_path / "site" / "index.html")
@@ -127,7 +130,7 @@ def test_repeated_site_gives_the_same_bytes_and_ignores_itself(
     shutil.rmtree(results / "old")
     contents = []
     for _ in range(2):  # the site lies inside the folder of the results
-        assert build(results, "--out", str(results / "site")).exit_code == 0
+        assert build(results, "--out", results / "site").exit_code == 0
         contents.append({path: path.read_bytes() for path in (results / "site").rglob("*") if path.is_file()})
     assert contents[0] == contents[1]
 
@@ -137,7 +140,7 @@ def test_a_folder_without_results_is_named(tmp_path: Path, make: bool) -> None:
     folder = tmp_path / "empty"
     if make:
         folder.mkdir()
-    done = build(folder, "--out", str(tmp_path / "site"))
+    done = build(folder, "--out", tmp_path / "site")
     assert done.exit_code == 2
     assert ("no results.json in it" if make else "not a folder") in " ".join(done.output.split())
 
@@ -146,8 +149,8 @@ def test_several_folders_give_the_site_of_all_their_results(results: Path, tmp_p
     """A folder inside another one adds nothing: each file is taken once."""
     one, two = tmp_path / "one", tmp_path / "two"
     first, *_ = sorted(results.iterdir())
-    assert build(results, "--out", str(one)).exit_code == 0
-    assert build(first, str(results), str(first), "--out", str(two)).exit_code == 0
+    assert build(results, "--out", one).exit_code == 0
+    assert build(first, str(results), str(first), "--out", two).exit_code == 0
     assert read_text(two / "index.html") == read_text(one / "index.html")
 
 
@@ -155,7 +158,7 @@ def test_links_and_folders_named_as_results_are_left_out(results: Path, tmp_path
     (results / "copy").mkdir()
     (results / "copy" / "results.json").symlink_to(results / "old" / "results.json")
     (results / "folder" / "results.json").mkdir(parents=True)
-    done = build(results, "--out", str(tmp_path / "site"))
+    done = build(results, "--out", tmp_path / "site")
     assert "3 runs" in done.output
 
 

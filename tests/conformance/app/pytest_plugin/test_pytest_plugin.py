@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from _pytest.config import _iter_rewritable_modules
 
+from helpers.command_line import SKIPPER
 from helpers.converged_fixtures import StateConverged
 from helpers.outside_cases import write_case
 from helpers.toml_edit import edit_toml, write_toml
@@ -42,23 +43,6 @@ ROOT = Path(__file__).parents[4]
 def _load_compiler() -> None:
     """Load all of numba: pytester forgets what is loaded in one of its sessions, and numba cannot be loaded twice."""
     search(np.arange(7.0), 0, 7, 0.5)
-
-
-SKIPPER = """
-import json, sys
-for line in sys.stdin:
-    message = json.loads(line)
-    if message["message"] == "stop":
-        break
-    if message["message"] == "start":
-        answer = {"message": "started", "protocol": "pantocheck.command/1", "name": "skipper", "version": "1"}
-        answer["features"] = "bending_stiffness chain droppers presag rayleigh_damping steady_arms".split()
-    else:
-        with open(sys.argv[1], "a") as log:
-            print(message["case"]["id"], file=log)
-        answer = {"message": "skipped", "id": message["id"], "reason": "no such line"}
-    print(json.dumps(answer), flush=True)
-"""
 
 
 PUBLISHED = "record:en50318-2002/known-passing-code"
@@ -382,8 +366,9 @@ def test_loading_the_plugin_imports_nothing_heavy() -> None:
     assert "pantocheck.conformance.app.pytest_plugin.hooks" in loaded
     assert not loaded & {"numpy", "scipy", "numba", "pydantic", "typer", "rich", "h5py", "matplotlib", "filelock"}
     ours = {name for name in loaded if name.startswith("pantocheck")}
-    plugin = "pantocheck.conformance.app.pytest_plugin.hooks"
-    assert ours <= {"pantocheck", "pantocheck.conformance", plugin, f"{plugin}.session"}
+    plugin = "pantocheck.conformance.app.pytest_plugin"
+    packages = {"pantocheck", "pantocheck.conformance", "pantocheck.conformance.app", plugin}
+    assert ours == {*packages, f"{plugin}.hooks", f"{plugin}.shared_folder"}
 
 
 def test_fixtures_grade_records_and_arrays(pytester: pytest.Pytester, plan: Path) -> None:

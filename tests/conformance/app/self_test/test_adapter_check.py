@@ -7,9 +7,8 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.self_test.adapter_check import (
     AdapterCheck,
     AdapterFinding,
@@ -202,8 +201,8 @@ def test_other_values_are_a_note(delivered: Delivered) -> None:
 
 def test_command_names_a_program_that_does_not_answer(tmp_path: Path) -> None:
     (tmp_path / "silent.py").write_text("print('hello')")
-    result = CliRunner().invoke(app, ["system", "check", f"python3 {tmp_path / 'silent.py'}"])
+    result = pantocheck("system", "check", f"python3 {tmp_path / 'silent.py'}")
     assert result.exit_code == 1
     assert "its answer is not JSON: 'hello'" in " ".join(result.stdout.split())
-    missing = CliRunner().invoke(app, ["system", "check", "no-such-program"])
+    missing = pantocheck("system", "check", "no-such-program")
     assert missing.exit_code == 2

@@ -5,9 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.self_test import bench
 from pantocheck.conformance.app.self_test.bench import SelfTest, run_self_test
 from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, Mutant
@@ -75,7 +74,7 @@ def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch
     harmless = Mutant("harmless", "Nothing.", lambda case, record: Delivered(record), "limits")
     monkeypatch.setattr(bench, "MUTANTS", (harmless,))
     monkeypatch.setattr(bench, "MILD", ())
-    result = CliRunner(env={"COLUMNS": "80"}).invoke(app, ["system", "self-test", "en50318-2002/250"])
+    result = pantocheck("system", "self-test", "en50318-2002/250", COLUMNS="80")
     assert result.exit_code == 1
     assert result.output.startswith("FAIL 0 of 1 mutants detected by the expected check")
     assert "NOT DETECTED: harmless on en50318-2002/250, expected check: limits\n" in result.output

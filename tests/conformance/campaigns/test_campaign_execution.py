@@ -11,12 +11,19 @@ from pathlib import Path
 
 import pytest
 
-from helpers.cheap_campaign import ThisProcess, compute_row, compute_slowly, fail_even, misbehave, speed_design
+from helpers.cheap_campaign import (
+    ThisProcess,
+    build_table,
+    compute_slowly,
+    fail_even,
+    fill_store,
+    misbehave,
+    speed_design,
+)
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, open_store
-from pantocheck.conformance.campaigns.campaign_table import write_campaign_table
-from pantocheck.conformance.campaigns.local_workers import LocalWorkers
+from pantocheck.conformance.campaigns.run_executors import LocalWorkers
 from pantocheck.conformance.core.input_error import InputError
 
 RUNS = 200
@@ -50,13 +57,6 @@ def list_children(process: int) -> list[int]:
     return [int(text) for text in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
 
 
-def build_undisturbed_table(folder: Path) -> bytes:
-    with open_store(folder, {"runs": RUNS}) as store:
-        drive_campaign(speed_design(RUNS), compute_row, store, ThisProcess(), Execution(), lambda _: None)
-        write_campaign_table(store, folder / "campaign.csv")
-    return (folder / "campaign.csv").read_bytes()
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="the children of a process are listed in /proc")
 def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Path) -> None:
     """The driver is killed first, then a worker of the driver that resumes."""
@@ -69,7 +69,7 @@ def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Pa
         os.kill(list_children(driver.pid)[-1], signal.SIGKILL)
         (killed / GATE).touch()
         assert driver.wait(timeout=600) == 0
-    assert (killed / "campaign.csv").read_bytes() == build_undisturbed_table(tmp_path / "undisturbed")
+    assert (killed / "campaign.csv").read_bytes() == build_table(tmp_path / "undisturbed", RUNS)
 
 
 def test_failing_runs_become_rows_with_their_reason(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_failing_runs_become_rows_with_their_reason(tmp_path: Path) -> None:
         }
         store.forget_failed()
         assert store.count() == (2, 0)
-        drive_campaign(design, compute_row, store, ThisProcess(), Execution(), lambda _: None)
+        fill_store(store, design)
         assert store.count() == (5, 0)
 
 
