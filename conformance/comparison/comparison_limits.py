@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.comparison.drop_motion import MOTION_BANDS
+from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.near_limit import ValueErrors, grade_value
 from pantocheck.conformance.core.sourced_table import (
@@ -173,6 +174,12 @@ def unit_of_difference(quantity: str) -> str:
     return next((unit for end, unit in LIMIT_UNITS.items() if quantity.endswith(f"_{end}")), "")
 
 
+def describe_errors(discretisation: float | None, measurement: float | None) -> ValueErrors:
+    """Errors of a difference: that of the mesh widens the value, that of the measurement the limit."""
+    components: dict[ComponentName, float] = {} if discretisation is None else {"discretisation": discretisation}
+    return ValueErrors(components=components, limit_uncertainty=measurement or 0.0)
+
+
 def build_comparison_criterion(
     limit: ComparisonLimit,
     where: CriterionPlace,
@@ -199,10 +206,7 @@ def build_comparison_criterion(
     Returns:
         The criterion.
     """
-    errors = ValueErrors(
-        components={} if discretisation is None else {"discretisation": discretisation},
-        limit_uncertainty=measurement or 0.0,
-    )
+    errors = describe_errors(discretisation, measurement)
     unit = unit_of_difference(limit.quantity)
     grade = grade_value(value, (limit.lower, limit.upper), unit, errors, missing, place)
     return ComparisonCriterion(

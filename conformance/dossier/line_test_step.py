@@ -21,7 +21,7 @@ from pantocheck.conformance.dossier.run_reading import RunSide, find_copy, list_
 from pantocheck.conformance.dossier.step_result import StepInterrupted, StepResult, list_inputs
 from pantocheck.conformance.execution.runner import Progress
 from pantocheck.conformance.grading.case_verdict import judge_case
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.criterion_grading import skip_unlimited
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.procedure_format import Evidence, JoinedQuantity
@@ -157,9 +157,8 @@ class LineTests:
             for owner in owners:
                 value = simulated.record.values.values.get(owner, {}).get(quantity)
                 number = value if isinstance(value, float) else None
-                requirement = Requirement(quantity, owner, None, None, None, "primary", NEEDED_BY_LINE_TESTS)
                 reason = "the dossier states no tolerance"
-                yield build_criterion(requirement, number, reason, self.dossier.file.trust)
+                yield skip_unlimited(quantity, reason, NEEDED_BY_LINE_TESTS, owner=owner, value=number)
 
     def _describe(self, pair: PairTable, simulated: RunSide) -> Evidence:
         line, known = self.dossier.lines.get(simulated.line), self.dossier.pantographs
