@@ -57,7 +57,8 @@ def build_results(**changes: Any) -> DropComparison:
         "release_s": 3.001, "release_correlation": 0.999,
     }  # fmt: skip
     content = {
-        "suite": {"version": "1", "commit": None, "digest": None}, "model": {"name": "My line", "digest": "sha256:a"},
+        "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
+        "model": {"name": "My line", "digest": "sha256:a"},
         "record": {"name": "T1", "source": "T1.h5", "digest": None}, "verdict": "fail",
         "line_comparison": {"state": "verified", "differences": [], "missing": []}, "drop": drop, "rate_Hz": 200.0,
         "element_m": 0.5, "time_step_s": 0.001, "windows_s": WINDOWS, "bands_Hz": [[0.3, 20.0]],

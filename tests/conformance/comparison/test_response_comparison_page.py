@@ -72,7 +72,7 @@ def build_results(**changes: Any) -> ResponseComparison:
         "verdict": "skip", "reason": "no response", "margin": None, "measurement": None,
     }  # fmt: skip
     content = {
-        "suite": {"version": "1", "commit": None, "digest": None},
+        "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
         "model": {"name": "My pantograph", "digest": "sha256:b"}, "record_state": "unverified", "verdict": "fail",
         "responses": [build_response()], "criteria": [common | failed, common | skipped], "warnings": ["a caveat"],
         **changes,
