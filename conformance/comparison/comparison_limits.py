@@ -20,6 +20,7 @@ from pantocheck.conformance.core.sourced_table import (
     Positive,
     Problems,
     cross_check,
+    find_wrong_bounds,
     validation_problem,
 )
 from pantocheck.conformance.core.toml_file import read_model
@@ -114,12 +115,7 @@ class ComparisonLimit(InputTable):
 
     @cross_check
     def _check_bounds(self) -> Problems:
-        if self.lower is None and self.upper is None and self.kind is DROPS:
-            yield validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
-        if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            yield validation_problem(
-                "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
-            )
+        yield from find_wrong_bounds(self, needs_bound=self.kind is DROPS)
         if self.upper is not None and self.kind is RESPONSES and self.upper <= 0:
             yield validation_problem("upper", f"{self.upper:g} is not positive", "Give the largest accepted deviation.")
 
