@@ -14,6 +14,7 @@ from pantocheck.conformance.core.sourced_table import (
     Problems,
     cross_check,
     find_missing_source,
+    find_wrong_bounds,
     is_absent,
     validation_problem,
 )
@@ -66,12 +67,7 @@ class Limit(InputTable):
     @cross_check
     def _consistent(self) -> Problems:
         yield from find_missing_source(self.trust, self.source)
-        if self.lower is None and self.upper is None:
-            yield validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
-        if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            yield validation_problem(
-                "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
-            )
+        yield from find_wrong_bounds(self)
         if not is_per_pantograph(self.quantity) and self.pantograph is not None:
             yield validation_problem(
                 "pantograph", f"{self.quantity} is not a quantity of a pantograph", "Leave the key pantograph out."

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.comparison.drop_motion import MOTION_BANDS
+from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.near_limit import ValueErrors, grade_value
 from pantocheck.conformance.core.sourced_table import (
@@ -19,6 +20,7 @@ from pantocheck.conformance.core.sourced_table import (
     Positive,
     Problems,
     cross_check,
+    find_wrong_bounds,
     validation_problem,
 )
 from pantocheck.conformance.core.toml_file import read_model
@@ -113,12 +115,7 @@ class ComparisonLimit(InputTable):
 
     @cross_check
     def _check_bounds(self) -> Problems:
-        if self.lower is None and self.upper is None and self.kind is DROPS:
-            yield validation_problem("", f"the limit of {self.quantity} has no bound", "Give lower, upper or both.")
-        if self.lower is not None and self.upper is not None and self.lower > self.upper:
-            yield validation_problem(
-                "lower", f"{self.lower:g} is above upper = {self.upper:g}", "Give the smaller number as lower."
-            )
+        yield from find_wrong_bounds(self, needs_bound=self.kind is DROPS)
         if self.upper is not None and self.kind is RESPONSES and self.upper <= 0:
             yield validation_problem("upper", f"{self.upper:g} is not positive", "Give the largest accepted deviation.")
 
@@ -173,6 +170,12 @@ def unit_of_difference(quantity: str) -> str:
     return next((unit for end, unit in LIMIT_UNITS.items() if quantity.endswith(f"_{end}")), "")
 
 
+def describe_errors(discretisation: float | None, measurement: float | None) -> ValueErrors:
+    """Errors of a difference: that of the mesh widens the value, that of the measurement the limit."""
+    components: dict[ComponentName, float] = {} if discretisation is None else {"discretisation": discretisation}
+    return ValueErrors(components=components, limit_uncertainty=measurement or 0.0)
+
+
 def build_comparison_criterion(
     limit: ComparisonLimit,
     where: CriterionPlace,
@@ -199,10 +202,7 @@ def build_comparison_criterion(
     Returns:
         The criterion.
     """
-    errors = ValueErrors(
-        components={} if discretisation is None else {"discretisation": discretisation},
-        limit_uncertainty=measurement or 0.0,
-    )
+    errors = describe_errors(discretisation, measurement)
     unit = unit_of_difference(limit.quantity)
     grade = grade_value(value, (limit.lower, limit.upper), unit, errors, missing, place)
     return ComparisonCriterion(

@@ -33,29 +33,24 @@ def grade_drop(
     Returns:
         One criterion per limit and sensor. It is skipped if the record does not have what it needs.
     """
-    return tuple(_grade(limit, sensor, computed, fine, clipped) for limit in limits for sensor in limit.sensors or ())
-
-
-def _grade(
-    limit: ComparisonLimit,
-    sensor: int,
-    computed: GradedStatistics,
-    fine: GradedStatistics,
-    clipped: frozenset[tuple[int, TimeWindow]],
-) -> ComparisonCriterion:
-    window, band = limit.window_s or (0.0, 0.0), MotionBand(*limit.band_Hz or (0.0, 0.0))
-    key = (sensor, limit.motion or "acceleration", window, band)
-    value, fine_value = (_read_value(limit, statistics.get(key)) for statistics in (computed, fine))
-    missing = next(_list_missing(key, computed, (sensor, window) in clipped), None)
-    return build_comparison_criterion(
-        limit,
-        CriterionPlace(sensor=sensor, motion=key[1], window_s=window, band_Hz=band),
-        value,
-        missing=missing,
-        discretisation=None if value is None or fine_value is None else abs(value - fine_value),
-        measurement=0.0 if missing is not None else _noise_error(computed[key]),
-        source=None if limit.source == NO_SOURCE else limit.source,
-    )
+    criteria = []
+    for limit, sensor in [(each, number) for each in limits for number in each.sensors or ()]:
+        window, band = limit.window_s or (0.0, 0.0), MotionBand(*limit.band_Hz or (0.0, 0.0))
+        key = (sensor, limit.motion or "acceleration", window, band)
+        value, fine_value = (_read_value(limit, statistics.get(key)) for statistics in (computed, fine))
+        missing = next(_list_missing(key, computed, (sensor, window) in clipped), None)
+        criteria.append(
+            build_comparison_criterion(
+                limit,
+                CriterionPlace(sensor=sensor, motion=key[1], window_s=window, band_Hz=band),
+                value,
+                missing=missing,
+                discretisation=None if value is None or fine_value is None else abs(value - fine_value),
+                measurement=0.0 if missing is not None else _noise_error(computed[key]),
+                source=None if limit.source == NO_SOURCE else limit.source,
+            )
+        )
+    return tuple(criteria)
 
 
 def _read_value(limit: ComparisonLimit, statistics: WindowStatistics | None) -> float | None:

@@ -42,6 +42,11 @@ class PairedForces:
         """Second minus first force [N]."""
         return self.second - self.first
 
+    def select(self, start: float, end: float) -> "PairedForces":
+        """Forces from a position on, and up to another one [m]."""
+        inside = slice(*np.searchsorted(self.position, [start, end]))
+        return replace(self, position=self.position[inside], first=self.first[inside], second=self.second[inside])
+
 
 def pair_forces(
     first: PantographSignals, second: PantographSignals, cutoff_Hz: float = EXTENDED_CUTOFF_HZ
@@ -168,16 +173,15 @@ def compare_spans(forces: PairedForces, supports: Sequence[float]) -> tuple[Span
     """Differences in each span between two supports [m] inside the compared stretch."""
     compared = []
     for start, end in _find_spans(forces, supports):
-        inside = slice(*np.searchsorted(forces.position, [start, end]))
-        difference = forces.difference[inside]
+        span = forces.select(start, end)
         compared.append(
             SpanAgreement(
                 start_m=start,
                 end_m=end,
-                mean_difference_N=float(difference.mean()),
-                rms_difference_N=float(np.sqrt(np.mean(difference**2))),
-                first_std_N=float(forces.first[inside].std()),
-                other_std_N=float(forces.second[inside].std()),
+                mean_difference_N=float(span.difference.mean()),
+                rms_difference_N=float(np.sqrt(np.mean(span.difference**2))),
+                first_std_N=float(span.first.std()),
+                other_std_N=float(span.second.std()),
             )
         )
     return tuple(compared)
@@ -191,9 +195,9 @@ def span_profile(forces: PairedForces, supports: Sequence[float]) -> SpanProfile
     """
     places, differences = [np.zeros(0)], [np.zeros(0)]
     for start, end in _find_spans(forces, supports):
-        inside = slice(*np.searchsorted(forces.position, [start, end]))
-        places.append((forces.position[inside] - start) / (end - start))
-        differences.append(forces.difference[inside])
+        span = forces.select(start, end)
+        places.append((span.position - start) / (end - start))
+        differences.append(span.difference)
     place, difference = np.concatenate(places), np.concatenate(differences)
     if place.size < PARTS_OF_SPAN:
         return None

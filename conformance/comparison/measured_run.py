@@ -76,10 +76,11 @@ def _compare_forces(
             SpanStatistics(
                 start_m=float(start),
                 end_m=float(end),
-                simulated=_describe_force(forces.second[slice(*np.searchsorted(forces.position, [start, end]))]),
-                measured=_describe_force(forces.first[slice(*np.searchsorted(forces.position, [start, end]))]),
+                simulated=_describe_force(span.second),
+                measured=_describe_force(span.first),
             )
             for start, end in pairwise(within)
+            for span in [forces.select(start, end)]
         ],
     )
 

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Sequence
 
-from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
@@ -11,11 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
-from pantocheck.conformance.grading.case_identity import (
-    compare_profile_with_library,
-    limits_digest,
-    rules_digest,
-)
+from pantocheck.conformance.grading.case_identity import compare_profile_with_library, profile_limits_digest
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
 from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places
 from pantocheck.conformance.grading.results_building import (
@@ -93,8 +88,8 @@ def grade_record(
         warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],
         inputs=[group for record in records for group in record.inputs],
         input_digest=f"sha256:{digest}",
-        limits_digest=json_digest([rules_digest(profile), limits_digest(limits)]),
-        stated_limits_digest=json_digest([rules_digest(profile), limits_digest(())]),
+        limits_digest=profile_limits_digest(profile, limits),
+        stated_limits_digest=profile_limits_digest(profile),
         limit_changes=grading.list_limit_changes(profile, limits),
         library=compare_profile_with_library(profile),
         profile=profile.name,

@@ -115,7 +115,13 @@ def read_static_table(path: Path) -> StaticRecord:
         values["contact_wire_height"] = values["contact_wire_height"] - sidecar.datum_m
     if not values:
         raise InputError(where, "has no measured value", f"Store {' or '.join(USUAL_COLUMNS[1:])} beside the position.")
-    problems = [*_find_force_problems(sidecar_path, sidecar, values), *_find_row_problems(where, position, values)]
+    problems = list(_find_row_problems(where, position, values))
+    if "elasticity" in values and sidecar.force_N is None:
+        hint = (
+            "Give the force of the elasticities, e.g. force_N = [100.0], or both forces of a difference; droppers that "
+            "slacken make the elasticity depend on it."
+        )
+        problems.insert(0, InputError(f"sidecar '{sidecar_path.name}', key force_N", "missing", hint))
     if problems:
         raise join_errors(problems)
     order = np.argsort(position, kind="stable")
@@ -167,19 +173,6 @@ def _find_row_problems(where: str, position: RealArray, values: dict[StaticValue
             f"{where}, {name_rows(wrong + 1)}",
             "the elasticity is not positive",
             "A force lifts the wire: correct the value, or write nan for no value.",
-        )
-
-
-def _find_force_problems(
-    path: Path, sidecar: StaticSidecar, values: dict[StaticValue, RealArray]
-) -> Iterator[InputError]:
-    """Elasticities without the force that lifted the wire."""
-    if "elasticity" in values and sidecar.force_N is None:
-        yield InputError(
-            f"sidecar '{path.name}', key force_N",
-            "missing",
-            "Give the force of the elasticities, e.g. force_N = [100.0], or both forces of a difference; droppers that "
-            "slacken make the elasticity depend on it.",
         )
 
 

@@ -76,7 +76,6 @@ def _format(number: float, unit: str) -> str:
     return f"{number:.2g} {unit}".rstrip()
 
 
-# Grade of a value between limits: verdict, reason, margin, and remark near a limit.
 class ValueGrade(NamedTuple):
     """Verdict on a value, with its reason, its normalised margin and its remarks near a limit."""
 
@@ -93,26 +92,36 @@ def grade_value(
     errors: ValueErrors = NO_ERRORS,
     missing: str | None = None,
     place: str = "",
+    names_side: bool = False,
 ) -> ValueGrade:
     """Grade a value; it is skipped if data are missing, and a distance beyond a limit is stated all the same.
 
     Args:
         value: Graded value; None if there is none.
-        limits: Lower and upper limit; at least one is given.
+        limits: Lower and upper limit; a value without limits is skipped.
         unit: Unit of the value; empty for a ratio.
         errors: Errors of the value.
-        missing: Data that the value needs and the record does not have; None if it is complete.
+        missing: Missing data of the record, or reason why there is no limit; None if both are complete.
         place: Place of the value in words, behind the distance beyond a limit.
+        names_side: Whether the reason names the lower or the upper limit.
 
     Returns:
         The grade.
     """
-    if value is None:
+    if value is None or limits == (None, None):
         return ValueGrade("skip", missing, None, ())
     verdict = judge(value, *limits)
     reasons = [] if missing is None else [missing]
     if verdict == "fail":
-        distance = min(abs(value - limit) for limit in limits if limit is not None)
-        reasons.append(" ".join(filter(None, (f"{distance:.3g}", unit, "beyond the limit"))) + place)
+        reasons.append(_describe_distance(value, limits, unit, names_side) + place)
     close = tuple(near_limit_remarks(value, limits, unit, errors))
     return ValueGrade(verdict if missing is None else "skip", "; ".join(reasons) or None, margin(value, *limits), close)
+
+
+def _describe_distance(value: float, limits: tuple[float | None, float | None], unit: str, names_side: bool) -> str:
+    lower, upper = limits
+    if lower is not None and value < lower:
+        distance, side = lower - value, "below the lower limit"
+    else:
+        distance, side = value - (upper or 0.0), "above the upper limit"
+    return " ".join(filter(None, (f"{distance:.3g}", unit, side if names_side else "beyond the limit")))

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import Annotated, Any, Self, TypeVar, cast
+from typing import Annotated, Any, Protocol, Self, TypeVar, cast
 
 from pydantic import (
     BaseModel,
@@ -223,6 +223,27 @@ def find_missing_source(trust: Trust, source: str | list[str]) -> Problems:
     if trust != NO_TRUST and source == NO_SOURCE:
         yield validation_problem(
             "source", f"missing, although the trust is {trust!r}", "Name the source, or leave out the key trust."
+        )
+
+
+class BoundedTable(Protocol):
+    """Table with a lower and an upper bound of a quantity."""
+
+    @property
+    def quantity(self) -> str: ...
+    @property
+    def lower(self) -> float | None: ...
+    @property
+    def upper(self) -> float | None: ...
+
+
+def find_wrong_bounds(table: BoundedTable, needs_bound: bool = True) -> Problems:
+    """Problems of bounds: none is given although one is needed, or the lower one is above the upper one."""
+    if table.lower is None and table.upper is None and needs_bound:
+        yield validation_problem("", f"the limit of {table.quantity} has no bound", "Give lower, upper or both.")
+    if table.lower is not None and table.upper is not None and table.lower > table.upper:
+        yield validation_problem(
+            "lower", f"{table.lower:g} is above upper = {table.upper:g}", "Give the smaller number as lower."
         )
 
 

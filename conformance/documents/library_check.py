@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pantocheck.conformance.cases.case import Case, CaseOrigin, json_digest
+from pantocheck.conformance.cases.case import Case, CaseOrigin
 from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import CaseEntry, Catalogue
 from pantocheck.conformance.cases.converged_file import find_converged
@@ -15,7 +15,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
 from pantocheck.conformance.documents.version_differences import list_suite_differences
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest, rules_digest
+from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest, profile_limits_digest
 from pantocheck.conformance.grading.case_verification import (
     build_requirements,
     find_obstacle,
@@ -154,7 +154,7 @@ def compare_profile(profile: Profile, result: CaseResult) -> Iterator[str]:
 
     The bounds of most rules depend on the record, so that only `--record` recomputes them.
     """
-    if result.stated_limits_digest != json_digest([rules_digest(profile), limits_digest(())]):
+    if result.stated_limits_digest != profile_limits_digest(profile):
         yield "digest of the rules: another one in the library"
     if result.run.filter.model_dump() != profile.filter.model_dump():
         yield "the filter differs from that of the library"

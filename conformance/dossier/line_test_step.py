@@ -20,12 +20,13 @@ from pantocheck.conformance.dossier.dossier_reading import Dossier
 from pantocheck.conformance.dossier.run_reading import RunSide, find_copy, list_mismatches, make_run, read_run
 from pantocheck.conformance.dossier.step_result import StepInterrupted, StepResult, list_inputs
 from pantocheck.conformance.execution.runner import Progress
+from pantocheck.conformance.grading.case_identity import profile_limits_digest
 from pantocheck.conformance.grading.case_verdict import judge_case
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.criterion_grading import skip_unlimited
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.procedure_format import Evidence, JoinedQuantity
-from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.results_format import CaseResult, RunFacts
 from pantocheck.conformance.runs.system import System
 
 LINE_TEST_PROFILE = "line-test"
@@ -33,14 +34,6 @@ LINE_TEST_PROFILE = "line-test"
 
 NEEDED_BY_LINE_TESTS = "needed by the line tests of this suite"
 """Source of a criterion without a tolerance."""
-
-NO_RUN: dict[str, object] = dict.fromkeys(
-    ("simulated_s", "wall_s", "dt_s", "element_m", "speed_km_h", "rate_Hz", "evaluated_m")
-)
-NO_RESULT: dict[str, object] = {key: [] for key in ("notes", "warnings", "inputs", "criteria", "uplift")} | {
-    key: {} for key in ("quantities", "skipped", "traces")
-}
-"""Parts of the result of a pair that was not compared."""
 
 RECORDS_FOLDER = "records"
 """Folder below the results for the records of the simulated runs."""
@@ -157,9 +150,8 @@ class LineTests:
             for owner in owners:
                 value = simulated.record.values.values.get(owner, {}).get(quantity)
                 number = value if isinstance(value, float) else None
-                requirement = Requirement(quantity, owner, None, None, None, "primary", NEEDED_BY_LINE_TESTS)
                 reason = "the dossier states no tolerance"
-                yield build_criterion(requirement, number, reason, self.dossier.file.trust)
+                yield skip_unlimited(quantity, reason, NEEDED_BY_LINE_TESTS, owner=owner, value=number)
 
     def _describe(self, pair: PairTable, simulated: RunSide) -> Evidence:
         line, known = self.dossier.lines.get(simulated.line), self.dossier.pantographs
@@ -176,19 +168,42 @@ class LineTests:
     def _refuse(self, pair: PairTable, verdict: Verdict, reason: str) -> CaseResult:
         """Result of a pair that was not compared."""
         profile = build_line_test_profile(self.dossier.file.line_test)
-        return CaseResult.model_validate(
-            {
-                "id": _name_result(pair),
-                "title": f"Line test {pair.name}",
-                "verdict": verdict,
-                "reason": reason,
-                "input_digest": self.dossier.digest,
-                "profile": profile.name,
-                "library": "own",
-                "steps": ["line_test"],
-                "run": NO_RUN | {"filter": profile.filter.model_dump()},
-                **NO_RESULT,
-            }
+        digest = profile_limits_digest(profile)
+        return CaseResult(
+            id=_name_result(pair),
+            title=f"Line test {pair.name}",
+            verdict=verdict,
+            criteria_verdict=None,
+            reason=reason,
+            notes=[],
+            warnings=[],
+            inputs=[],
+            input_digest=self.dossier.digest,
+            limits_digest=digest,
+            stated_limits_digest=digest,
+            profile=profile.name,
+            library="own",
+            steps=["line_test"],
+            criteria=[],
+            quantities={},
+            skipped={},
+            spread={},
+            uncertainty={},
+            uncertainty_components={},
+            uncertainty_basis={},
+            places={},
+            run=RunFacts(
+                simulated_s=None,
+                wall_s=None,
+                dt_s=None,
+                element_m=None,
+                speed_km_h=None,
+                rate_Hz=None,
+                filter=profile.filter,
+                evaluated_m=None,
+            ),
+            traces={},
+            uplift=[],
         )
 
 

@@ -7,13 +7,12 @@ from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_file import PantographEntry, ParameterTable
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import StepResult
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.dossier.step_result import StepResult, convert_criterion
+from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion, skip_unlimited
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison
@@ -41,7 +40,7 @@ def check_pantographs(dossier: Dossier) -> StepResult:
     for number, entry in enumerate(entries, 1):
         if not entry.responses:
             reason = f"pantograph {entry.name!r} has no measured response (key pantograph[{number}].responses)"
-            criteria.append(_skip("complex_deviation_pct", number, dossier.file.trust, reason))
+            criteria.append(_skip("complex_deviation_pct", number, reason))
             continue
         try:
             responses.append(_compare(dossier, entry))
@@ -67,15 +66,13 @@ def _convert(row: ComparisonCriterion, entry: PantographEntry, number: int, trus
         f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
         number,
         None,
-        None,
+        row.lower,
         row.upper,
         entry.trust,
         source_text(row.source or NO_SOURCE),
         unit=row.unit,
     )
-    if row.verdict == "skip":
-        return build_criterion(requirement, None, row.reason, trust)
-    return build_criterion(requirement, row.value, None, trust, ValueErrors(limit_uncertainty=row.measurement or 0.0))
+    return convert_criterion(row, requirement, trust)
 
 
 def _skip_unlimited(dossier: Dossier, entry: PantographEntry, number: int) -> Iterator[Criterion]:
@@ -84,12 +81,11 @@ def _skip_unlimited(dossier: Dossier, entry: PantographEntry, number: int) -> It
     for low, high in RESPONSE_BANDS:
         if (low, high) not in limited and high <= dossier.file.line_test.filter.cutoff_Hz:
             name = f"complex_deviation_pct, {low:g} to {high:g} Hz"
-            yield _skip(name, number, dossier.file.trust, "the dossier states no limit of this band")
+            yield _skip(name, number, "the dossier states no limit of this band")
 
 
-def _skip(name: str, number: int, trust: Trust, reason: str) -> Criterion:
-    requirement = Requirement(name, number, None, None, None, "primary", NEEDED_BY_PANTOGRAPHS, unit="")
-    return build_criterion(requirement, None, reason, trust)
+def _skip(name: str, number: int, reason: str) -> Criterion:
+    return skip_unlimited(name, reason, NEEDED_BY_PANTOGRAPHS, owner=number, unit="")
 
 
 # Simulation parameters: those that the dossier declares against those that the runs state.

@@ -9,12 +9,11 @@ from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_file import LineEntry, StaticTolerance
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import StepResult
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.dossier.step_result import StepResult, convert_criterion
+from pantocheck.conformance.grading.criterion_grading import Requirement, skip_unlimited
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.comparison_format import ComparisonCriterion, StaticComparison, StaticQuantity
 
@@ -39,14 +38,14 @@ def check_statics(dossier: Dossier) -> StepResult:
         item = number if len(entries) > 1 else None
         if entry.statics is None:
             reason = f"line {entry.name!r} has no measured values (key line[{number}].statics)"
-            criteria += list(_skip_missing(entry.tolerance, item, dossier.file.trust, reason))
+            criteria += list(_skip_missing(entry.tolerance, item, reason))
             continue
         try:
             statics.append(_compare(dossier, entry, entry.statics))
         except InputError as error:
             return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
         criteria += [_convert(row, entry.tolerance, item, dossier.file.trust) for row in statics[-1].criteria]
-        criteria += _skip_ungraded(entry.tolerance, item, dossier.file.trust)
+        criteria += _skip_ungraded(entry.tolerance, item)
     notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)
     return StepResult("static_check", criteria=tuple(criteria), statics=tuple(statics), notes=notes)
 
@@ -68,35 +67,26 @@ def _list_tolerances(tolerance: StaticTolerance) -> dict[StaticQuantity, float]:
 
 
 def _convert(row: ComparisonCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
-    """Criterion of the procedure; a value of an incomplete record is left out, because it must not be graded."""
     requirement = Requirement(
-        row.quantity, LINE, item, None, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
+        row.quantity, LINE, item, row.lower, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
     )
-    if row.verdict == "skip":
-        return build_criterion(requirement, None, row.reason, trust)
-    errors = ValueErrors(
-        components={} if row.discretisation is None else {"discretisation": row.discretisation},
-        limit_uncertainty=row.measurement or 0.0,
-    )
-    return build_criterion(requirement, row.value, None, trust, errors)
+    return convert_criterion(row, requirement, trust)
 
 
-def _skip_ungraded(tolerance: StaticTolerance, item: int | None, trust: Trust) -> Iterator[Criterion]:
+def _skip_ungraded(tolerance: StaticTolerance, item: int | None) -> Iterator[Criterion]:
     """Skipped criteria of the values for which the dossier states no tolerance."""
     graded = {CRITERIA[name] for name in _list_tolerances(tolerance)}
     for value in STATIC_VALUES:
         if value not in graded:
             quantity = next(name for name, kind in CRITERIA.items() if kind == value)
-            yield _skip(quantity, item, trust, "the dossier states no tolerance")
+            yield _skip(quantity, item, "the dossier states no tolerance")
 
 
-def _skip_missing(tolerance: StaticTolerance, item: int | None, trust: Trust, reason: str) -> Iterator[Criterion]:
+def _skip_missing(tolerance: StaticTolerance, item: int | None, reason: str) -> Iterator[Criterion]:
     """Skipped criteria of a line without measured values."""
     for quantity in _list_tolerances(tolerance) or CRITERIA:
-        yield _skip(quantity, item, trust, reason)
+        yield _skip(quantity, item, reason)
 
 
-def _skip(quantity: StaticQuantity, item: int | None, trust: Trust, reason: str) -> Criterion:
-    unit = unit_of_difference(quantity)
-    requirement = Requirement(quantity, LINE, item, None, None, "primary", NEEDED_BY_STATIC_CHECK, unit=unit)
-    return build_criterion(requirement, None, reason, trust)
+def _skip(quantity: StaticQuantity, item: int | None, reason: str) -> Criterion:
+    return skip_unlimited(quantity, reason, NEEDED_BY_STATIC_CHECK, item=item, unit=unit_of_difference(quantity))

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.comparison.comparison_limits import describe_errors
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_reading import Dossier
+from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
+from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison, StaticComparison
 from pantocheck.conformance.results.procedure_format import (
     DeclaredParameter,
     Evidence,
@@ -63,6 +66,14 @@ class StepResult:
             criteria=list(self.criteria),
             notes=list(self.notes),
         )
+
+
+def convert_criterion(row: ComparisonCriterion, requirement: Requirement, trust: Trust) -> Criterion:
+    """Criterion of the procedure; a value of an incomplete record is left out, because it must not be graded."""
+    if row.verdict == "skip":
+        return build_criterion(requirement, None, row.reason, trust)
+    errors = describe_errors(row.discretisation, row.measurement)
+    return build_criterion(requirement, row.value, None, trust, errors)
 
 
 class StepInterrupted(Exception):

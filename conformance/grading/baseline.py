@@ -195,10 +195,10 @@ def _grade_drift(
     lower, upper = bound_drift(key.quantity, earlier, drift_pct)
     requirement = Requirement(key.quantity, int(key.owner), key.item, lower, upper, None, source, baseline=earlier)
     if now is None:
-        missing = case.skipped.get(key.owner, {}).get(key.quantity, "the system no longer delivers it")
-        reason = f"the baseline has {earlier:.6g} {unit}".rstrip() + f"; now: {missing}"
+        lost = case.skipped.get(key.owner, {}).get(key.quantity, "the system no longer delivers it")
+        reason = f"the baseline has {earlier:.6g} {unit}".rstrip() + f"; now: {lost}"
     else:
         drift = 100 * (now - earlier) / _scale(key.quantity, earlier)
         reason = f"drifted by {drift:+.3g} % from the baseline of {earlier:.6g} {unit}".rstrip()
-    criterion = build_criterion(requirement, now, reason, "primary")
+    criterion = build_criterion(requirement, now, None, "primary")
     return criterion.model_copy(update={"reason": reason})

@@ -68,6 +68,11 @@ def rules_digest(profile: Profile) -> str:
     return json_digest([rule.model_dump(mode="json", exclude={"note"}) for rule in profile.rule])
 
 
+def profile_limits_digest(profile: Profile, limits: Sequence[Limit] = ()) -> str:
+    """SHA-256 of the rules of a profile and of the user's own limits."""
+    return json_digest([rules_digest(profile), limits_digest(limits)])
+
+
 def list_limit_changes(case: Case) -> list[str]:
     """Sentences on the limits of the case file that the user's limits weaken, remove or give another trust."""
     limits = {limit.target: limit for limit in case.limits}

@@ -8,11 +8,10 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.findings import IMPOSED_REASON, PublishedFinding, count_verdict, grade_finding
-from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, grade_value
 from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
-from pantocheck.conformance.core.verdicts import Verdict, judge, margin
-from pantocheck.conformance.quantities.evaluation import Evaluation, Value
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
@@ -116,11 +115,8 @@ def build_criterion(
     """
     name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
     unit = unit_of(name) if requirement.unit is None else requirement.unit
-    verdict: Verdict = "skip"
-    reason, distance = missing, None
-    if value is not None and (lower is not None or upper is not None):
-        verdict, distance = judge(value, lower, upper), margin(value, lower, upper)
-        reason = _distance_outside(value, requirement, unit) if verdict == "fail" else None
+    grade = grade_value(value, (lower, upper), unit, errors, missing, names_side=True)
+    verdict, reason = grade.verdict, grade.reason
     finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
     if not limit_counts(requirement.trust, lowest_trust):
         hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
@@ -138,17 +134,42 @@ def build_criterion(
         verdict=verdict,
         trust=requirement.trust,
         source=requirement.source,
-        margin=distance,
+        margin=grade.margin,
         discretisation_error=errors.discretisation,
         spread=errors.spread,
         reason=reason,
         uncertainty=errors.uncertainty,
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
-        close=near_limit_remarks(value, (lower, upper), unit, errors),
+        close=list(grade.close),
         baseline=requirement.baseline,
         finding=finding,
     )
+
+
+def skip_unlimited(
+    quantity: str,
+    reason: str,
+    source: str,
+    *,
+    owner: int = LINE,
+    item: int | None = None,
+    unit: str | None = None,
+    value: float | None = None,
+) -> Criterion:
+    """Skipped criterion of a quantity that is demanded and has no limit or no record, so that its lack is noticed.
+
+    Args:
+        quantity: Name of the quantity.
+        reason: Reason for the skip.
+        source: Document that demands the quantity.
+        owner: Number of the pantograph; 0: the line.
+        item: Number among several values.
+        unit: Unit of a value that is no quantity of a run.
+        value: Value without a limit.
+    """
+    requirement = Requirement(quantity, owner, item, None, None, "primary", source, unit=unit)
+    return build_criterion(requirement, value, reason, "primary")
 
 
 def criterion_name(criterion: Criterion) -> str:
@@ -166,9 +187,3 @@ def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[st
     """
     number = select_item(values.get(requirement.owner, {}).get(requirement.quantity), requirement.item)
     return number if number is not None and math.isfinite(number) else None
-
-
-def _distance_outside(value: float, requirement: Requirement, unit: str) -> str:
-    if requirement.lower is not None and value < requirement.lower:
-        return f"{requirement.lower - value:.3g} {unit} below the lower limit".replace("  ", " ")
-    return f"{value - (requirement.upper or 0.0):.3g} {unit} above the upper limit".replace("  ", " ")

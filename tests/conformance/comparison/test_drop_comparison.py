@@ -48,10 +48,20 @@ def find(
     return row.models
 
 
+SHARES: list[float] = []
+"""Completed shares that the comparison of two models reports."""
+
+
 @pytest.fixture(scope="module")
 def two_models() -> DropComparison:
     """Record under 0.1 1/s; models with 0.1 and 0.3 1/s."""
-    return compare_drop(record_drop(), build_task(0.1, 0.3))
+    return compare_drop(record_drop(), build_task(0.1, 0.3), SHARES.append)
+
+
+def test_progress_grows_over_all_models(two_models: DropComparison) -> None:
+    assert len(two_models.models) == 2
+    assert sorted(SHARES) == SHARES
+    assert 0 <= SHARES[0] <= 0.5 < SHARES[-1] <= 1
 
 
 def test_release_is_found_between_two_samples(two_models: DropComparison) -> None:

@@ -87,6 +87,7 @@ def test_coherence_is_one_for_a_common_part_and_low_for_independent_noise() -> N
     found = coherence(pair_forces(signals(run(noise[1]), 1000.0), signals(run(noise[2]), 1000.0)))
     assert found.value[(found.frequency > 1) & (found.frequency < 8)].min() > 0.9
     above = found.value[found.frequency > 20]
+    assert 0 < found.frequency.min() < found.frequency.max() <= 50
     assert found.segments == 8  # 600 m at 75 m/s: 8 s
     # 5 % of about 30 independent frequencies: at most 5 with a probability of 99 %
     assert np.mean(above > found.chance_level) < 0.17

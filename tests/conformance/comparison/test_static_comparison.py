@@ -59,6 +59,9 @@ def test_model_agrees_with_itself(tmp_path: Path, computed: dict[str, Array]) ->
         assert item.close == ()
     assert [span.values for span in comparison.values[0].spans] == [11, 10, 10, 10, 9, 11]
     assert all(not values.outlier_rows for values in comparison.values)
+    ends = {(values.curve_position_m[0], values.curve_position_m[-1]) for values in comparison.values}
+    spans = comparison.values[0].spans
+    assert ends == {(spans[0].start_m, spans[-1].end_m)}
 
 
 def test_known_differences_are_found_with_their_place_and_sign(tmp_path: Path, computed: dict[str, Array]) -> None:

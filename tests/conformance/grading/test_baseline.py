@@ -40,6 +40,22 @@ def results() -> Results:
     return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
 
 
+def pantocheck(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def build_command(cases: str, out: Path, accepted: str, formats: str = "json") -> list[str | Path]:
+    """Run on the published statistics, whose unverified records the user accepts."""
+    options = ["--system", PASSING, *CRITERIA, "--formats", formats, "--accept-unverified", accepted]
+    return ["run", f"en50318-2002/{cases}", *options, "--out", out]
+
+
+@pytest.fixture
+def drifted(results: Results) -> Results:
+    """Comparison in which the standard deviation of the first case drifted from 27.0 N to 27.6 N, by more than 1 %."""
+    return compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json")
+
+
 def changed(results: Results, name: str, value: float | list[float]) -> Results:
     """Baseline in which one quantity of the first case had another value."""
     first = results.cases[0]
@@ -107,16 +123,14 @@ def test_ratio_near_zero_drifts_by_a_hundredth(results: Results, was: float, dri
     assert any(row.baseline is not None for row in tiny.cases[0].criteria) is drifts
 
 
-def test_drift_is_a_verdict_of_its_own(results: Results) -> None:
+def test_drift_is_a_verdict_of_its_own(results: Results, drifted: Results) -> None:
     """All eight criteria pass; the accepted published record keeps them at a pass."""
-    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json")
-    verdicts = (compared.verdict, compared.criteria_verdict, compared.baseline_verdict)
-    assert verdicts == ("fail", "pass", "fail")
-    case = compared.cases[0]
+    assert (drifted.verdict, drifted.criteria_verdict, drifted.baseline_verdict) == ("fail", "pass", "fail")
+    case = drifted.cases[0]
     assert (case.verdict, case.criteria_verdict) == ("fail", results.cases[0].criteria_verdict)
     assert case.baseline == BaselineComparison(verdict="fail", name="b.json", drift_pct=1.0, values=8, drifted=1)
     assert (case.criteria[-1].trust, case.criteria[-1].source) == (None, "baseline b.json, allowed drift 1 %")
-    assert compared.scope == results.scope
+    assert drifted.scope == results.scope
 
 
 def test_criterion_without_trust_is_a_drift(results: Results) -> None:
@@ -147,25 +161,21 @@ FORGERIES: dict[str, Callable[[dict[str, Any]], None]] = {
 
 
 @pytest.mark.parametrize("forgery", FORGERIES)
-def test_hidden_drift_is_found(results: Results, forgery: str) -> None:
-    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
+def test_hidden_drift_is_found(drifted: Results, forgery: str) -> None:
+    compared = drifted.to_dict()
     assert find_discrepancies(Results.model_validate(compared)) == []
     FORGERIES[forgery](compared["cases"][0])
     assert find_discrepancies(Results.model_validate(compared))
 
 
-def test_hidden_verdict_of_the_run_by_the_baseline_is_found(results: Results) -> None:
-    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
-    assert any(
-        text.startswith("baseline: ")
-        for text in find_discrepancies(Results.model_validate(compared | {"baseline_verdict": "pass"}))
-    )
-    del compared["baseline_verdict"]
-    assert any(text.startswith("baseline: ") for text in find_discrepancies(Results.model_validate(compared)))
+def test_hidden_verdict_of_the_run_by_the_baseline_is_found(drifted: Results) -> None:
+    for verdict in ("pass", None):
+        found = find_discrepancies(drifted.model_copy(update={"baseline_verdict": verdict}))
+        assert any(text.startswith("baseline: ") for text in found)
 
 
-def test_drift_without_its_comparison_is_a_contradiction(results: Results) -> None:
-    compared = compare_with_baseline(results, changed(results, "std_force_N", 27.0), 1.0, "b.json").to_dict()
+def test_drift_without_its_comparison_is_a_contradiction(drifted: Results) -> None:
+    compared = drifted.to_dict()
     del compared["baseline_verdict"], compared["cases"][0]["baseline"], compared["cases"][1]["baseline"]
     found = find_discrepancies(Results.model_validate(compared))
     assert any("drift without a comparison with a baseline" in text for text in found)
@@ -241,20 +251,9 @@ def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_
     base.write_bytes(results.to_json())
     wide = {"quantity": "std_force_N", "pantograph": 1, "upper": 40.0, "trust": "primary", "source": "own"}
     write_toml(limits, {"limit": [wide]})
-    command = [
-        "run",
-        "en50318-2002/250",
-        "--system",
-        PASSING,
-        *CRITERIA,
-        "--out",
-        tmp_path / "out",
-        "--formats",
-        "json",
-    ]
-    command += ["--accept-unverified", results.system.name, "--baseline", base]
-    assert pantocheck(*command).exit_code == 0
-    result = pantocheck(*command, "--limits", limits)
+    command = build_command("250", tmp_path / "out", results.system.name)
+    assert pantocheck(*command, "--baseline", base).exit_code == 0
+    result = pantocheck(*command, "--baseline", base, "--limits", limits)
     assert result.exit_code == 1
     assert "has other limits" in result.output
 
@@ -276,25 +275,10 @@ def test_ungraded_case_keeps_its_verdict(results: Results) -> None:
     assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
 
 
-def pantocheck(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
 def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: Path) -> None:
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
-    command = [
-        "run",
-        "en50318-2002/*",
-        "--system",
-        PASSING,
-        *CRITERIA,
-        "--out",
-        tmp_path / "out",
-        "--formats",
-        "json,badge",
-    ]
-    command += ["--accept-unverified", results.system.name]
+    command = build_command("*", tmp_path / "out", results.system.name, "json,badge")
     assert pantocheck(*command).exit_code == 0
     result = pantocheck(*command, "--baseline", base)
     assert result.exit_code == 1

@@ -78,10 +78,11 @@ def test_criterion_states_verdict_margin_and_distance(
     margin: float | None,
     reason: str | None,
 ) -> None:
-    found = build_criterion(requirement(lower, upper), value, "no data", "secondary")
+    missing = "no data" if verdict == "skip" else None
+    found = build_criterion(requirement(lower, upper), value, missing, "secondary")
     assert (found.verdict, found.reason, found.unit, found.pantograph) == (verdict, reason, "N", 2)
     assert found.margin == (None if margin is None else pytest.approx(margin, abs=1e-12))
-    hypothetical = build_criterion(requirement(lower, upper, "provisional"), value, "no data", "secondary")
+    hypothetical = build_criterion(requirement(lower, upper, "provisional"), value, missing, "secondary")
     expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": "not graded: no data"}[verdict]
     assert hypothetical.verdict == "info"
     assert hypothetical.reason == f"{expected}; the limit is provisional and does not count"

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.cases.profile_file import Profile, load_profile
+from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.grading.assessed_record import load_assessed_record
+from pantocheck.conformance.grading.assessed_record import apply_exclusions, load_assessed_record
 from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.records.events import covered_share
-from pantocheck.conformance.records.sidecar_tables import LineTable
+from pantocheck.conformance.records.events import RecordEvent, covered_share
+from pantocheck.conformance.records.sidecar_tables import EventKind, LineTable
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 SPEED, PEAK_M = 70.0, 1200.0
@@ -129,6 +129,18 @@ def test_exclusion_beyond_the_rule_is_not_applied(
     assert case.verdict == "fail"
     assert case.events is not None
     assert not case.events[0].excluded
+
+
+def test_every_event_is_decided_by_itself() -> None:
+    """Two permitted stretches of 5 m in 100 m, one of another kind: 10 % are left out if the rule permits it."""
+    stretches: list[tuple[EventKind, float]] = [("overlap", 10.0), ("tunnel", 20.0), ("overlap", 30.0)]
+    events = [RecordEvent(kind, "", start, start + 5.0, "reason") for kind, start in stretches]
+    for share, excluded in ((10.0, ((10.0, 15.0), (30.0, 35.0))), (9.9, ())):
+        rule = ExclusionRule(kinds=("overlap",), largest_share_pct=share)
+        found, facts, warnings = apply_exclusions(events, (0.0, 100.0), rule)
+        assert found == excluded
+        assert [fact.excluded for fact in facts] == [bool(excluded), False, bool(excluded)]
+        assert any("the profile permits no exclusion of tunnel" in text for text in warnings)
 
 
 def test_kilometres_of_events_follow_the_direction(sidecar: Path) -> None:

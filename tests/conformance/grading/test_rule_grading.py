@@ -10,6 +10,7 @@ from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
@@ -50,6 +51,13 @@ def measured(tmp_path: Path) -> AssessedRecord:
     return summary(
         tmp_path / "measured.toml", {"mean_force_N": 120.0, "std_force_N": 28.0}, REAR | {"mean_force_N": 120.0}
     )
+
+
+def test_profile_without_a_comparison_refuses_a_measured_record(
+    train: AssessedRecord, measured: AssessedRecord
+) -> None:
+    with pytest.raises(InputError, match="does not compare with a measured record"):
+        assess_record(train, load_profile("acceptance-ac"), "secondary", measured)
 
 
 def test_each_rule_applies_to_each_pantograph(

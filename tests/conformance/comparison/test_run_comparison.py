@@ -1,0 +1,25 @@
+"""Compared runs: every quantity that a run has, its largest difference, and the joint uncertainty."""
+
+from typing import Any
+
+from pantocheck.conformance.comparison.compared_run import ComparedRun
+from pantocheck.conformance.comparison.run_comparison import compare_subjects
+from pantocheck.conformance.quantities.evaluation import Value
+
+
+def run(name: str, values: dict[str, Value], uncertainty: dict[str, Value]) -> ComparedRun:
+    keys: dict[str, Any] = {"kind": "record", "source": name, "digest": "", "case": "", "speed_km_h": 250.0}
+    return ComparedRun(name=name, values={1: values}, uncertainty={1: uncertainty}, **keys)
+
+
+def test_every_quantity_of_any_run_is_compared() -> None:
+    """The joint half-width of 0.3 and 0.4 is 0.5: a difference of 0.5 does not exceed it, one of 0.6 does."""
+    first = run("first", {"mean_force_N": 120.0, "std_force_N": 30.0, "max_force_N": 200.0}, {"mean_force_N": 0.3})
+    other = run("other", {"mean_force_N": 119.4, "std_force_N": 31.0, "min_force_N": 50.0}, {"mean_force_N": 0.4})
+    third = run("third", {"mean_force_N": 120.5}, {"mean_force_N": 0.4})
+    (owner,) = compare_subjects([[first], [other], [third]], None).cases[0].owners
+    found = {item.name: item for item in owner.quantities}
+    assert set(found) == {"mean_force_N", "std_force_N", "max_force_N", "min_force_N"}
+    assert found["std_force_N"].difference[1:] == (1.0, None)
+    assert found["mean_force_N"].beyond_uncertainty == (False, True, False)
+    assert found["min_force_N"].difference == (None, None, None)
