@@ -1,7 +1,7 @@
 """Differences of the contact forces of two runs: by frequency band, by frequency, and along the spans."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np

@@ -19,8 +19,12 @@ from pantocheck.conformance.core.drawn_axes import provide_axes
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.drops.damping_results import FitOptions, WireCoefficients, build_damping_results
-from pantocheck.conformance.drops.damping_toml import write_damping_toml
+from pantocheck.conformance.drops.damping_results import (
+    FitOptions,
+    WireCoefficients,
+    build_damping_results,
+    write_damping_toml,
+)
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
