@@ -46,13 +46,16 @@ _SOURCES = "one type for the sources of all comparisons"
 _CRITERIA = "one type and one table for the criteria of all comparisons, by label, with a limit that has its sign"
 _EVIDENCE = "evidence has its own place"
 _WIRE_SPRINGS = "springs between the wires are a new element"
-_STATIC = r"^(line-statics/static_comparison\.(?:json|html))"
+_STATIC = r"^(line-statics/static_comparison\.(?:json|html)|validate/\w+\.(?:json|html)/procedure/statics/\d+)"
 _RESPONSE = (
     r"^(pantograph-(?:compare|graded)/response_comparison\.(?:json|html)"
-    r"|pantograph-fit/fitted-fit\.(?:json|html)/comparison)"
+    r"|pantograph-fit/fitted-fit\.(?:json|html)/comparison|validate/\w+\.(?:json|html)/procedure/responses/\d+)"
 )
 _DROP = r"^(drop-(?:compare|graded)/drop_comparison\.(?:json|html))"
-_COMPARISON = "(line-statics|pantograph-(compare|graded|fit)|drop-(compare|graded))/.*"
+_COMPARISON = (
+    r"(line-statics|pantograph-(compare|graded|fit)|drop-(compare|graded)"
+    r"|validate/\w+\.\w+/procedure/(statics|responses))/.*"
+)
 
 RENAMED_FILES = (Rename(r"^show/line\.svg$", "line-draw/line.svg", "`show --drawing` is the command `line draw`"),)
 """Files by their path, searched in the path of the old state."""
@@ -63,7 +66,7 @@ RENAMED = (
     Rename(_RESPONSE + r"/(pantograph)(_digest)?$", _rename_source, _SOURCES),
     Rename(_RESPONSE + r"/criteria/(\d+)/response$", r"\1/criteria/\2/where/record", _CRITERIA),
     Rename(
-        r"(-graded/\w+\.(?:json|html)/criteria/\d+)/(motion|sensor|window_s|band_Hz|static_force_N|height_m)(?=/|$)",
+        r"((?:-graded/\w+\.(?:json|html)|/procedure/responses/\d+)/criteria/\d+)/(motion|sensor|window_s|band_Hz|static_force_N|height_m)(?=/|$)",
         r"\1/where/\2",
         _CRITERIA,
     ),
