@@ -80,6 +80,10 @@ def drive_campaign(
     """Execute the runs of a design that its store does not hold.
 
     Args:
+        design: Runs of the campaign.
+        execute: Function that executes one run.
+        store: Store of the finished runs.
+        executor: Executor of the open runs.
         execution: Conditions of an early stop.
         report: Callback that receives the progress after every run.
 

@@ -267,6 +267,8 @@ def start_cluster(kind: ClusterKind, jobs: int, options: Mapping[str, Any]) -> I
     """Submit jobs to a batch system; each job is a worker with one thread, and ends with the campaign.
 
     Args:
+        kind: Kind of the batch system.
+        jobs: Number of jobs.
         options: Options of the jobs as in dask-jobqueue, such as `queue`, `walltime` and `memory`; others are those of
             the configuration of Dask.
 

@@ -60,6 +60,8 @@ def run_cases(
     """Run cases with unique ids on a system and grade them.
 
     Args:
+        cases: Cases with unique ids.
+        system: System under test.
         trust: Lowest trust of the limits that count.
         jobs: Number of parallel processes; 1 runs all cases in this process.
         progress: Callback for each result.

@@ -1,7 +1,6 @@
 """Position of a train from distance pulses and kilometre marks."""
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
@@ -107,6 +106,8 @@ def interpolate_marks(time: RealArray, mark_time: RealArray, mark_position: Real
     Returns:
         Position, (n,) [m].
     """
+    from scipy.interpolate import PchipInterpolator  # a list of cases does not wait for it
+
     return np.asarray(PchipInterpolator(mark_time, mark_position, extrapolate=False)(time))
 
 

@@ -20,8 +20,12 @@ from pantocheck.conformance.core.units import convert_key
 from pantocheck.conformance.drops.drop_sidecar import read_drop_sidecar
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.pantograph.response_record import read_response
-from pantocheck.conformance.pantograph.response_sidecar import RESPONSE_FORMS, ResponseSidecar, list_response_columns
+from pantocheck.conformance.pantograph.response_record import (
+    RESPONSE_FORMS,
+    ResponseSidecar,
+    list_response_columns,
+    read_response,
+)
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 

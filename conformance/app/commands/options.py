@@ -143,7 +143,10 @@ def choose_case(
     """Find the only case that a name, glob or path selects and that is acceptable.
 
     Args:
+        name: Id, glob or path.
         accept, kind: Condition on a case, and the same in words for the message.
+        changes: Changed inputs.
+        catalogue: Cases that can be selected.
 
     Raises:
         InputError: No case, or several cases, meet the condition.

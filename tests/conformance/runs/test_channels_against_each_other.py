@@ -71,7 +71,7 @@ def test_filter_that_is_not_stated_is_found_in_either_pantograph(
 ) -> None:
     """The suite filters at 20 Hz again: the minimum rises, the standard deviation falls, the motion hardly shows it."""
     case, record = run
-    low_pass = replace(FILTER, phase=phase)
+    low_pass = FILTER.model_copy(update={"phase": phase})
     filtered = change(record, "force", row, lambda force: low_pass(force, record.rate))
     assert doubts(case, filtered) != {}
     assert all(kind != "unchecked" for kind in doubts(case, filtered).values())
@@ -81,7 +81,7 @@ def test_filter_that_is_not_stated_is_found_in_either_pantograph(
 def test_stated_filter_of_the_force_alone_is_accepted(run: tuple[Case, Record], phase: str) -> None:
     """The height is unfiltered; a causal filter delays the force, which the dynamics doubt."""
     case, record = run
-    low_pass = replace(FILTER, phase=phase)
+    low_pass = FILTER.model_copy(update={"phase": phase})
     force = np.array([low_pass(channel, record.rate) for channel in record.force])
     found = doubts(case, replace(record, force=force, filter_applied_Hz=20.0))
     assert "implied force" not in found

@@ -14,8 +14,7 @@ from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.drops.damping_model import THRESHOLDS
 from pantocheck.conformance.drops.population import Population
 from pantocheck.conformance.line.elements.damping import ModalDamping
-from pantocheck.conformance.pages.damping_figures import draw_observability
-from pantocheck.conformance.pages.damping_page import describe_observability
+from pantocheck.conformance.pages.damping_page import describe_observability, draw_observability
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.runs.system import StudyResult
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
