@@ -5,7 +5,6 @@ from datetime import UTC, datetime
 
 from pantocheck.conformance.core.input_error import InputError
 
-# Date of a document from the environment, so that the same results give the same bytes.
 LATEST = 253402300799
 """End of the year 9999 [s since 1970], the last date that can be written."""
 
