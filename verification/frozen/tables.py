@@ -46,15 +46,16 @@ _SOURCES = "one type for the sources of all comparisons"
 _CRITERIA = "one type and one table for the criteria of all comparisons, by label, with a limit that has its sign"
 _EVIDENCE = "evidence has its own place"
 _WIRE_SPRINGS = "springs between the wires are a new element"
-_STATIC = r"^(line-statics/static_comparison\.(?:json|html)|validate/\w+\.(?:json|html)/procedure/statics/\d+)"
+_DOSSIER = r"(?:validate|site/runs/[\w-]+)/\w+\.(?:json|html)/procedure"
+_STATIC = rf"^(line-statics/static_comparison\.(?:json|html)|{_DOSSIER}/statics/\d+)"
 _RESPONSE = (
     r"^(pantograph-(?:compare|graded)/response_comparison\.(?:json|html)"
-    r"|pantograph-fit/fitted-fit\.(?:json|html)/comparison|validate/\w+\.(?:json|html)/procedure/responses/\d+)"
+    rf"|pantograph-fit/fitted-fit\.(?:json|html)/comparison|{_DOSSIER}/responses/\d+)"
 )
 _DROP = r"^(drop-(?:compare|graded)/drop_comparison\.(?:json|html))"
 _COMPARISON = (
     r"(line-statics|pantograph-(compare|graded|fit)|drop-(compare|graded)"
-    r"|validate/\w+\.\w+/procedure/(statics|responses))/.*"
+    r"|(?:validate|site/runs/[\w-]+)/\w+\.\w+/procedure/(statics|responses))/.*"
 )
 
 RENAMED_FILES = (Rename(r"^show/line\.svg$", "line-draw/line.svg", "`show --drawing` is the command `line draw`"),)
@@ -107,6 +108,8 @@ RENAMED_TEXT = (
         _EVIDENCE,
     ),
     Rename(r"\bbenchmarks/(stand_in_search)\.py", r"verification/tables/\1.py", _EVIDENCE),
+    Rename(r"\bbenchmarks/table_ ?search\.py", "verification/tables/table_search.py", _EVIDENCE),
+    Rename(r"(?<=thresholds of )fit-damping\b", "drop fit", "commands stand in groups"),
     Rename(r"(?<=Criterion Value )Tolerance(?= ± model ± measured)", "Limit", _CRITERIA),
     Rename(
         r"((?:to the measured one|contact wire height) ?\[(?:%|mm)\] [\d.]+ )(?=\d+ [\d.]+ [\d.]+ ✓)",
