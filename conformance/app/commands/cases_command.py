@@ -5,10 +5,10 @@ from collections import Counter
 import typer
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text
 from pantocheck.conformance.app.commands.guard import BAD_INPUT, strip_control_characters
-from pantocheck.conformance.app.commands.options import CasesOption
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import CaseEntry, open_catalogue
 from pantocheck.conformance.cases.library import load_entry

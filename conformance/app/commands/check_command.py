@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption
 from pantocheck.conformance.app.commands.command_output import CommandOutput, list_problems
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.guard import BAD_INPUT, strip_control_characters
-from pantocheck.conformance.app.commands.options import CasesOption
 from pantocheck.conformance.app.file_check import check_input_file, list_input_files
 from pantocheck.conformance.app.schemas import READ_FORMATS
 from pantocheck.conformance.cases.catalogue import open_catalogue

@@ -8,9 +8,10 @@ import typer
 from rich.console import RenderableType
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
-from pantocheck.conformance.app.commands.options import SetOption, choose_train_case, complete_case
+from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.notebook.opened_run import write_comparison
 from pantocheck.conformance.cases.case import Case

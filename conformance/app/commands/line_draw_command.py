@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
-from pantocheck.conformance.app.commands.options import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue

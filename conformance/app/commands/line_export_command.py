@@ -5,9 +5,10 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.app.commands.cases_option import complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
-from pantocheck.conformance.app.commands.options import complete_case, read_line
+from pantocheck.conformance.app.commands.options import read_line
 from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
 

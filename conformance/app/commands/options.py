@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 from pydantic import ValidationError
 
+from pantocheck.conformance.app.commands.cases_option import complete_case
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.library import select_cases
@@ -17,25 +17,9 @@ from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.validation_messages import build_input_error
 from pantocheck.conformance.execution.plan import Plan, read_plan, split_names
-from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.administration import read_administration
 from pantocheck.conformance.results.report_files import DEFAULT_FORMATS
-
-
-def complete_case(incomplete: str) -> list[str]:
-    """Ids of the library that begin with the typed text; the shell completes paths of case files."""
-    return [name for name in list_library(library_folder()) if name.startswith(incomplete)]
-
-
-CasesOption = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--cases",
-        metavar="DIR",
-        help="Folder with further cases, whose ids begin with own/; repeat the option for several.",
-    ),
-]
 
 SetOption = Annotated[
     list[str] | None,
@@ -166,13 +150,6 @@ def choose_train_case(name: str, changes: Sequence[InputChange], catalogue: Cata
 def choose_drop_case(name: str, changes: Sequence[InputChange] = ()) -> Case:
     """Find the only case with a mass drop; parameters as in `choose_case`."""
     return choose_case(name, lambda case: case.file.mass_drop is not None, "with a [mass_drop] table", changes)
-
-
-def leave_out_required(pattern: str, cases: list[Case]) -> list[Case]:
-    """Cases that the pattern selects itself, without the cases that they require."""
-    exact = [case for case in cases if case.id == pattern]
-    required = {name for case in cases for name in case.file.requires}
-    return exact or [case for case in cases if case.id not in required] or cases
 
 
 def read_line(name: str) -> LineFile:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_execution import Interruption, receive_signals
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import error_console, escape_text
@@ -12,7 +13,6 @@ from pantocheck.conformance.app.commands.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
     BaselineOption,
-    CasesOption,
     DriftOption,
     FormatsOption,
     OutOption,
@@ -21,7 +21,6 @@ from pantocheck.conformance.app.commands.options import (
     TrustOption,
     VerdictsOption,
     build_options,
-    complete_case,
     state_administration,
 )
 from pantocheck.conformance.app.commands.output_settings import current_settings

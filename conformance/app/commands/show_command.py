@@ -13,9 +13,9 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, format_number
-from pantocheck.conformance.app.commands.options import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import select_cases, source_text

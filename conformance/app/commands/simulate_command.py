@@ -5,9 +5,10 @@ from typing import Annotated
 
 import typer
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_quantities_table, escape_text, list_names, select_main
-from pantocheck.conformance.app.commands.options import CasesOption, SetOption, choose_train_case, complete_case
+from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes

@@ -9,9 +9,9 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, style_verdict
-from pantocheck.conformance.app.commands.options import complete_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.app.self_test.bench import MutantResult, SelfTest, run_self_test
 from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS

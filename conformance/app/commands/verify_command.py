@@ -9,9 +9,9 @@ import typer
 from rich.console import RenderableType
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.cases_option import CasesOption
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
-from pantocheck.conformance.app.commands.options import CasesOption
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.app.notebook.verified_report import verify_report
 from pantocheck.conformance.core.texts import count_noun
