@@ -14,7 +14,7 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 67_300,
+    ("model", "conformance"): 67_320,
     ("templates",): 1_550,
     ("verification",): 14_000,
     ("tests",): 50_850,

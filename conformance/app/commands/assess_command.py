@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.app.commands.command_execution import receive_signals
 from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.interruption import receive_signals
 from pantocheck.conformance.app.commands.options import (
     AcceptUnverifiedOption,
     AdministrationOption,

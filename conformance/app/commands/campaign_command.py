@@ -7,11 +7,11 @@ import typer
 from rich.console import RenderableType
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.campaign_progress import report_campaign
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.options import SetOption, TrustOption
-from pantocheck.conformance.app.commands.progress_display import report_campaign
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
 from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation

@@ -3,7 +3,6 @@
 import json
 import math
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,6 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.console import console, error_console, escape_text
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.results.results_format import CaseResult
 
 OUTPUT_SCHEMA = "pantocheck.output/1"
 
@@ -99,14 +97,3 @@ def _make_plain(content: object) -> Any:
 # Remarks of a run: those of several cases are footnotes, printed once; others are warnings of their case.
 STANDING_REMARKS = ("20-50 Hz: lumped models",)
 """Begin of remarks that hold for every run and that a user cannot act on."""
-
-
-def list_footnotes(cases: Sequence[CaseResult]) -> list[str]:
-    """Remarks that are printed once, in their order: standing ones, and those that several cases have in common."""
-    counts = Counter(warning for case in cases for warning in dict.fromkeys(case.warnings))
-    return [text for text, count in counts.items() if count > 1 or text.startswith(STANDING_REMARKS)]
-
-
-def mark_footnotes(case: CaseResult, footnotes: Sequence[str]) -> str:
-    """Marks of the footnotes that apply to a case, such as `[1] [2]`; empty without one."""
-    return " ".join(f"[{number}]" for number, text in enumerate(footnotes, 1) if text in case.warnings)

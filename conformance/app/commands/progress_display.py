@@ -22,8 +22,8 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.console import error_console
 from pantocheck.conformance.app.commands.guard import strip_control_characters
+from pantocheck.conformance.app.commands.log_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.output_settings import current_settings
-from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -180,58 +180,3 @@ def report_cases(cases: int, title: str = "running cases") -> Iterator[Callable[
     """Show the progress of cases; yields the callback of the runner."""
     with follow_steps(title, cases) as progress:
         yield lambda result: progress.finish_task(result.id)
-
-
-# Progress of a campaign: finished and failed runs, rate and remaining time.
-@contextmanager
-def report_campaign() -> Iterator[Callable[[CampaignProgress], None]]:
-    """Show the progress of a campaign on standard error; yields the callback of the driver."""
-    latest: list[CampaignProgress] = []
-
-    def keep(progress: CampaignProgress) -> None:
-        latest[:] = [progress]
-
-    with show_line(lambda: describe_progress(latest[0]) if latest else ""):
-        yield keep
-
-
-def describe_progress(progress: CampaignProgress) -> str:
-    """Progress in one line: finished and failed runs, rate and remaining time."""
-    counts = f"{progress.finished} of {progress.total} runs finished, {progress.failed} failed"
-    if progress.rate is None or progress.remaining_s is None:
-        return counts
-    remaining = timedelta(seconds=round(progress.remaining_s))
-    rate = f"{progress.rate:.1f} per second" if progress.rate >= 1 else f"{60 * progress.rate:.1f} per minute"
-    return f"{counts}, {rate}, {remaining} remaining"
-
-
-# Log of a command: records of the loggers `pantocheck.*` on standard error, with time and module, for `-v`.
-ROOT_LOGGER = "pantocheck"
-
-
-class _ErrorLog(logging.Handler):
-    """Handler that prints above a line of progress, if there is one."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Print a record without control characters."""
-        errors = error_console()
-        # Outside of a terminal a line stays whole, for a search in a log.
-        errors.print(Text(strip_control_characters(self.format(record))), soft_wrap=not errors.is_terminal)
-
-
-@contextmanager
-def write_log() -> Iterator[None]:
-    """Print the log while a command runs, if the current settings ask for details."""
-    if current_settings().detail != "verbose":
-        yield
-        return
-    logger, handler = logging.getLogger(ROOT_LOGGER), _ErrorLog(logging.INFO)
-    handler.setFormatter(logging.Formatter("%(asctime)s %(name)s: %(message)s", "%H:%M:%S"))
-    level = logger.level
-    logger.addHandler(handler)
-    logger.setLevel(min(logging.INFO, level or logging.INFO))
-    try:
-        yield
-    finally:
-        logger.removeHandler(handler)
-        logger.setLevel(level)

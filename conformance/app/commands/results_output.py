@@ -1,12 +1,13 @@
 """Output of `pantocheck run` and `assess`: verdict, criteria, values and remarks."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rich.console import RenderableType
 from rich.text import Text
 
-from pantocheck.conformance.app.commands.command_output import CommandOutput, list_footnotes, mark_footnotes
+from pantocheck.conformance.app.commands.command_output import STANDING_REMARKS, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     FittedTable,
     build_quantities_table,
@@ -152,3 +153,14 @@ def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]
 def _name(item: Criterion) -> str:
     pantograph = f", pantograph {item.pantograph}" if item.pantograph > 1 else ""
     return name_value(item.quantity, item.item) + pantograph
+
+
+def list_footnotes(cases: Sequence[CaseResult]) -> list[str]:
+    """Remarks that are printed once, in their order: standing ones, and those that several cases have in common."""
+    counts = Counter(warning for case in cases for warning in dict.fromkeys(case.warnings))
+    return [text for text, count in counts.items() if count > 1 or text.startswith(STANDING_REMARKS)]
+
+
+def mark_footnotes(case: CaseResult, footnotes: Sequence[str]) -> str:
+    """Marks of the footnotes that apply to a case, such as `[1] [2]`; empty without one."""
+    return " ".join(f"[{number}]" for number, text in enumerate(footnotes, 1) if text in case.warnings)

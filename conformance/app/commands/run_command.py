@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
-from pantocheck.conformance.app.commands.command_execution import Interruption, receive_signals
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import error_console, escape_text
+from pantocheck.conformance.app.commands.interruption import Interruption, receive_signals
 from pantocheck.conformance.app.commands.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
