@@ -135,7 +135,7 @@ class CaseResult(ResultsPart):
     id: str
     title: str
     verdict: Verdict
-    criteria_verdict: Verdict | None = None
+    criteria_verdict: Verdict | None
     """Verdict by the EN 50318 criteria; null: an assessment by a profile, or a run of a dossier."""
     verification: CaseVerification | None = None
     """Verification; null: the case has no converged values."""
@@ -150,10 +150,10 @@ class CaseResult(ResultsPart):
     input_digest: str
     changes: list[str] = []
     """Inputs that were changed on the command line, with the values of the files."""
-    limits_digest: str | None = None
-    """SHA-256 of the limits, those of a limits file included; null: a run of a dossier, which has tolerances."""
-    stated_limits_digest: str | None = None
-    """SHA-256 of the limits of the case file or profile, without a limits file; null: a run of a dossier."""
+    limits_digest: str
+    """SHA-256 of the limits, those of a limits file included."""
+    stated_limits_digest: str
+    """SHA-256 of the limits of the case file or profile, without a limits file."""
     limit_changes: list[str] = []
     """Limits of the case file or profile that a limits file weakens."""
     library: LibraryIdentity
