@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.files import read_bytes
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.pages.embedded_results import BLOCK_ID, NAME
+from pantocheck.conformance.pages.document import BLOCK_ID, NAME
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import parse_results

@@ -13,7 +13,7 @@ from pypdf.generic import ArrayObject, DictionaryObject, IndirectObject, NameObj
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.number_comparison import compare_lines, quote_difference
-from pantocheck.conformance.pages.embedded_results import NAME
+from pantocheck.conformance.pages.document import NAME
 
 FOREIGN_KEYS = {
     "/JavaScript": "a script",

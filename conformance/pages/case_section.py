@@ -9,8 +9,7 @@ from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import draw_case_figures
-from pantocheck.conformance.pages.comparison_section import comparison_blocks
+from pantocheck.conformance.pages.case_figures import draw_case_figures, reference_note
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.line_figure import line_figures, line_reference, scheme_figures
@@ -20,7 +19,7 @@ from pantocheck.conformance.pages.quantity_tables import (
     list_skipped,
     uncertainty_blocks,
 )
-from pantocheck.conformance.pages.reference_values import reference_note
+from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import describe_record, summarise_case

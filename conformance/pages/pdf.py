@@ -12,8 +12,7 @@ from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.document import Document, to_plain
-from pantocheck.conformance.pages.embedded_results import NAME, encode_attachment
+from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
 from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.

@@ -7,7 +7,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.pantograph_pages import build_response_sections
-from pantocheck.conformance.pages.procedure_page import anchor_step, name_step
+from pantocheck.conformance.pages.scope_page import anchor_step, name_step
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (

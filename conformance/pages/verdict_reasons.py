@@ -5,11 +5,9 @@ from collections.abc import Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.criteria_table import criterion_title
+from pantocheck.conformance.pages.criteria_table import count_sentences, criterion_title
 from pantocheck.conformance.pages.document import BulletList, Section
-from pantocheck.conformance.pages.findings_table import count_sentences
-from pantocheck.conformance.pages.procedure_page import build_procedure_headline
-from pantocheck.conformance.pages.scope_page import summarise_identity
+from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin

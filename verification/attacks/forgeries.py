@@ -34,7 +34,7 @@ from pantocheck.conformance.documents.verification import Verification, verify_c
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.pages.embedded_results import encode_attachment, encode_data_block
+from pantocheck.conformance.pages.document import encode_attachment, encode_data_block
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.records.record_writing import write_record
