@@ -224,7 +224,8 @@ def _suggest_document(folder: Path) -> str:
     return f"Name one document of it: {', '.join(found)}." if found else f"Name a file: {', '.join(DOCUMENTS)}."
 
 
-# Versions of the software that wrote a document, against those that are installed.
+# Versions of the software that wrote a document, against those that are installed: only the same versions lay out the
+# same pages, so that their bytes can be compared.
 def list_suite_differences(results: Results) -> list[str]:
     """Differences of the suite that graded the system from the installed suite; none if their digests agree."""
     stated, installed = results.suite, build_suite()

@@ -5,15 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.core.figure_style import (
-    FULL,
-    GREY,
-    INK,
-    SHADES,
-    add_legend,
-    label_decades,
-    render_svg,
-)
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, SHADES, add_legend, label_decades, render_svg
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_paired_rows
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value

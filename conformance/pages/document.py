@@ -282,6 +282,10 @@ def build_plain_document(heading: str, headline: str, blocks: Iterable[Block]) -
 
 
 # Results inside a certificate, from which it can be made again: one home for their selection and encoding.
+#
+# The PDF has an attachment, the HTML page a data block. Both keep the order of the results, which is that of the rows
+# of the pages. The PDF omits the times of the run, so that two runs of the same input give the same bytes. The HTML
+# page prints these times, so its data block keeps them.
 NAME = "results.json"
 """Name of the attachment."""
 

@@ -20,9 +20,9 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.command_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.console import error_console
 from pantocheck.conformance.app.commands.guard import strip_control_characters
-from pantocheck.conformance.app.commands.log_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.results.results_format import CaseResult
