@@ -58,11 +58,7 @@ class PdfCertificate:
 
 
 def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
-    """Read a certificate as PDF.
-
-    Args:
-        content: Content of the file.
-        name: Name of the file in messages.
+    """Read a certificate as PDF; messages name it.
 
     Raises:
         InputError: Damaged, encrypted, without pages, or without valid results.

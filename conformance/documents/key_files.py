@@ -155,14 +155,7 @@ def find_signature_file(path: Path) -> Path:
 
 
 def parse_signatures(content: bytes, where: str) -> list[Any]:
-    """Signatures of a signature file, each as signed data with one signer.
-
-    Args:
-        content: Content of the file in DER or PEM.
-        where: Name of the file in messages.
-
-    Returns:
-        At least one (asn1crypto.cms.SignedData).
+    """Signatures in DER or PEM, at least one, each as signed data with one signer (asn1crypto.cms.SignedData).
 
     Raises:
         InputError: The file is not a detached CMS signature, is damaged, or has too many signatures.

@@ -231,13 +231,7 @@ def check_procedure(
     cases: list[CaseResult],
     check_grade: Callable[[Criterion], Iterator[str]],
 ) -> Iterator[str]:
-    """Find contradictions in the procedure of a dossier.
-
-    Args:
-        stated, decided: Procedure of the results, and the same with the verdicts that follow.
-        cases: Cases of the results.
-        check_grade: Check of the verdict and margin of one criterion.
-    """
+    """Find contradictions of a stated procedure with the verdicts that follow; `check_grade` checks one criterion."""
     if stated is None or decided is None:
         return
     if tuple(step.step for step in stated.steps) != STEP_NAMES:

@@ -187,14 +187,10 @@ TEXT_PARTS = (
 
 
 def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
-    """Run the cases of results again and compare all computed numbers.
-
-    Args:
-        results: Results of the built-in simulator.
-        catalogue: Cases at hand; others are named and not run.
+    """Run the cases of results again and compare all computed numbers; cases that are not at hand are named.
 
     Raises:
-        InputError: Another system made the results.
+        InputError: Another system than the built-in simulator made the results.
     """
     simulator = ReferenceSimulator()
     if (results.system.kind, results.system.name) != (simulator.kind, simulator.name):

@@ -41,11 +41,7 @@ CHANGED_KEYS = {
 
 
 def find_changes(reader: Any) -> Iterator[str]:
-    """Changes other than signatures, one line each.
-
-    Args:
-        reader: The PDF (pyhanko.pdf_utils.reader.PdfFileReader).
-    """
+    """Changes of a PDF (PdfFileReader of pyHanko) other than signatures, one line each."""
     for number in range(1, reader.xrefs.total_revisions):
         old, new = (reader.get_historical_resolver(revision) for revision in (number - 1, number))
         for problem in _find_problems(old, new):
@@ -157,15 +153,7 @@ SIGNATURE_KEY = b"/ByteRange"
 
 
 def check_pdf(content: bytes, roots: list[Any] | None) -> tuple[tuple[SignatureFacts, ...], tuple[str, ...]]:
-    """Check the signatures of a PDF, and that nothing but signatures was added to it.
-
-    Args:
-        content: A PDF that contains `SIGNATURE_KEY`.
-        roots: Trust roots (asn1crypto.x509.Certificate); None if the user gave none.
-
-    Returns:
-        Signatures in the order of signing, and changes of the document.
-    """
+    """Signatures of a signed PDF in the order of signing, and its other changes; roots as in `check_cms`."""
     from pyhanko.pdf_utils.reader import PdfFileReader
 
     try:

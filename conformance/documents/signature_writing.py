@@ -254,14 +254,7 @@ INVISIBLE = "invisible"
 
 
 def find_place(field: Any) -> str:
-    """Place of the box of a signature field of a PDF; empty for any other place.
-
-    Args:
-        field: Field and widget in one (reference to a dictionary of pyHanko).
-
-    Returns:
-        A key of `BOXES`, `INVISIBLE` for a box without an area, or nothing.
-    """
+    """Place of the box of a field (dictionary of pyHanko): a key of `BOXES`, `INVISIBLE`, or empty for another."""
     rectangle = [float(edge) for edge in field.get_object()["/Rect"]]
     left, bottom, right, top = rectangle
     if left == right and bottom == top:

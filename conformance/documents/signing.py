@@ -135,13 +135,7 @@ MAX_ANSWER_BYTES = 2**20
 
 
 def build_timestamp_client(url: str) -> Any:
-    """Client of the time-stamp server at an address.
-
-    Args:
-        url: Address of the server, http or https.
-
-    Returns:
-        Client whose requests fail with `InputError` (pyhanko.sign.timestamps.TimeStamper).
+    """Client (TimeStamper of pyHanko) of the server at an address; its requests fail with `InputError`.
 
     Raises:
         InputError: The address is not one of http or https.

@@ -79,13 +79,10 @@ class Verification:
 
 
 def verify_document(path: Path) -> Verification:
-    """Verify a certificate or a results.json.
+    """Verify a certificate as PDF or HTML page, or a results.json.
 
     A consistent document has verdicts that follow from its numbers, pages that follow from its results, and the cases
     of the library. Only a record or a new run shows that the numbers come from the named system.
-
-    Args:
-        path: Certificate as PDF or HTML page, or results.json.
 
     Raises:
         InputError: None of these, damaged, or without valid results.

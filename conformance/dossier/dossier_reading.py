@@ -94,12 +94,8 @@ Content = TypeVar("Content")
 def read_dossier(path: Path) -> Dossier:
     """Read a dossier and the files that it names.
 
-    Args:
-        path: The dossier.
-
     Raises:
-        InputError: The dossier or a file that it names is missing or invalid; the error lists the problems of all of
-            them.
+        InputError: A file is missing or invalid; the error lists the problems of all of them.
     """
     file = read_model(path, DossierFile, "dossier")
     reader = _FileReader(path)

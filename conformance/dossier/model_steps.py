@@ -51,9 +51,6 @@ def check_pantographs(dossier: Dossier) -> StepResult:
     """Compare the measured responses of every pantograph with its model.
 
     Every band up to the cut-off of the line tests needs a limit; a band without one is skipped.
-
-    Args:
-        dossier: Dossier with its pantographs.
     """
     entries = dossier.file.pantograph
     if not any(entry.responses for entry in entries):
@@ -121,14 +118,10 @@ START_AS_STATED = "as in the case"
 
 
 def check_parameters(dossier: Dossier, runs: Sequence[CaseResult]) -> StepResult:
-    """Compare the declared simulation parameters with those of the runs.
+    """Compare the declared simulation parameters with those of the runs of cases and pairs.
 
     Numbers bound the values of all runs. Texts, and runs that do not state a value, cannot be compared: a pass then
     counts as unverified.
-
-    Args:
-        dossier: Dossier with the declared parameters.
-        runs: Results of the cases and pairs that have a run.
     """
     table, trust = dossier.file.parameters, dossier.file.trust
     if not any((table.element_m, table.time_step_s, table.shortest_run_s, table.start)):
@@ -205,9 +198,6 @@ def check_statics(dossier: Dossier) -> StepResult:
     """Compare the measured static values of every line with its model.
 
     Elasticity and height both need a tolerance and measured values; a criterion without them is skipped.
-
-    Args:
-        dossier: Dossier with its lines.
     """
     entries = dossier.file.line
     if not any(entry.statics for entry in entries):
@@ -271,13 +261,6 @@ def run_reference_models(
     dossier: Dossier, system: System, participation: Participation, jobs: int, progress: Progress | None
 ) -> StepResult:
     """Run the reference models of a dossier on the system under test.
-
-    Args:
-        dossier: Dossier with the reference models.
-        system: System under test.
-        participation: Verdicts that decide.
-        jobs: Number of parallel processes.
-        progress: Callback for each result.
 
     Raises:
         StepInterrupted: The user ended the run.

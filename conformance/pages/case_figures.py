@@ -38,10 +38,7 @@ LISTED_SUPPORTS = 3
 def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[doc.Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift.
 
-    Args:
-        case: The case.
-        number: Index of the case in the results.
-        anchor: Anchor of the section of the case.
+    `number` is the index of the case in the results, `anchor` that of the section of the case.
     """
     yield from _chart_figures(case.charts)
     limited = [row for row in case.criteria if not row.is_drift]
@@ -144,13 +141,7 @@ REFERENCE_STYLE: PlotStyle = {
 
 @render_svg
 def draw_force(trace: Traces, limited: Sequence[Criterion], reference: list[float]) -> Figure:
-    """Contact force of one pantograph; on the right, its limits.
-
-    Args:
-        trace: Entry of `traces` in results.json.
-        limited: Criteria of `select_limited`.
-        reference: Filtered force of the reference simulator at the same positions, drawn behind it; empty: none.
-    """
+    """Contact force of one pantograph over its reference, if any; on the right, the limits of `select_limited`."""
     figure = Figure(figsize=(FULL, 2.25))
     if limited:
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))

@@ -233,13 +233,7 @@ KEY_UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K"
 
 
 def input_blocks(case: CaseResult, earlier: tuple[CaseResult, ...], anchor: str) -> tuple[doc.Block, ...]:
-    """Table of the inputs of a case with its sources, and the groups that are those of an earlier case.
-
-    Args:
-        case: The case.
-        earlier: Cases that stand before it in the report.
-        anchor: Anchor of the sources, before their number.
-    """
+    """Inputs of a case with their sources, whose anchors begin with `anchor`, and groups that an earlier case has."""
     single, groups = _split_single_values(case.inputs)
     repeated: dict[str, list[str]] = defaultdict(list)
     shown = []

@@ -60,12 +60,7 @@ def build_certificate(results: Results) -> doc.Document:
 
 
 def build_dated_certificate(results: Results, date: int) -> doc.Document:
-    """The certificate of a run with a given date.
-
-    Args:
-        results: Results of a run.
-        date: Date of the document [s since 1970]; 0: not known.
-    """
+    """The certificate of a run with a given date [s since 1970]; 0: not known."""
     prepared = prepare_results(results)
     header = build_header(prepared)
     cases = prepared.cases
@@ -186,12 +181,7 @@ def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
 
 # The summary of a run for the page of a CI job.
 def build_summary(results: Results, certificates: Sequence[str] = ()) -> doc.Document:
-    """Verdict, reasons and criteria of a run.
-
-    Args:
-        results: Results of a run.
-        certificates: Names of the certificates in the same folder, which the page links.
-    """
+    """Verdict, reasons and criteria of a run; `certificates` are names in the same folder, which the page links."""
     results = prepare_results(results)
     header = build_header(results)
     scope = (*_build_summary_scope(results), *build_findings_section(results))

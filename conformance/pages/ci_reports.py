@@ -129,12 +129,7 @@ COUNTERS = ("tests", "failures", "errors", "skipped")
 
 
 def render_junit(results: Results, certificates: Sequence[str] = ()) -> bytes:
-    """JUnit XML of a run.
-
-    Args:
-        results: Results of a run.
-        certificates: Names of the certificates in the same folder, which the properties of each case name.
-    """
+    """JUnit XML of a run; the properties of each case name the certificates in the same folder."""
     results = prepare_results(results)
     cases = (_case_suite(case, results, certificates) for case in results.cases)
     suites = [*map(_suite, list_step_tests(results)), *cases]
@@ -270,12 +265,7 @@ GITLAB_SEVERITIES: dict[Severity, str] = {"error": "critical", "warning": "minor
 
 
 def render_code_quality(annotations: Sequence[Annotation], fallback: Path) -> bytes:
-    """Code quality report.
-
-    Args:
-        annotations: Annotations.
-        fallback: File that stands for an unknown place, because the service requires one: results.json.
-    """
+    """Code quality report; the file `fallback` stands for an unknown place, because the service requires one."""
     issues = [_issue(annotation, annotation.place or FilePlace(fallback)) for annotation in annotations]
     return (json.dumps(issues, indent=1, ensure_ascii=True) + "\n").encode()
 

@@ -68,12 +68,7 @@ def replace_missing_glyphs(text: str) -> str:
 
 # Appearance of a visible signature, typeset by Typst as a page of its own.
 def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:
-    """PDF of one untagged page with lines of text in a frame.
-
-    Args:
-        lines: Lines of text; each is shrunk to the width of the box.
-        width, height: Size of the box [points].
-    """
+    """PDF of one untagged page [points] with lines of text in a frame, each shrunk to the width of the box."""
     data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
     files = {
         "main.typ": (TEMPLATES / "signature-box.typ").read_bytes(),

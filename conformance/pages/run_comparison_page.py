@@ -128,13 +128,7 @@ def format_compared(quantity: ComparedQuantity, index: int) -> str:
 
 # Section of a case on the measured run beside it: values, curves, spectra and spans.
 def comparison_blocks(case: CaseResult, number: int, anchor: str) -> tuple[doc.Block, ...]:
-    """Blocks on the measured run of a case; empty if nothing is compared.
-
-    Args:
-        case: The case.
-        number: Index of the case in the results.
-        anchor: Anchor of the section of the case.
-    """
+    """Blocks on the measured run of a case; empty if nothing is compared; arguments as in `draw_case_figures`."""
     comparison = case.comparison
     if comparison is None:
         return ()

@@ -128,12 +128,7 @@ def _kind(case: CaseResult) -> str:
 
 
 def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """Table of the steps of the procedure with the verdicts of their cases.
-
-    Args:
-        results: Results from `prepare_results`.
-        anchors: Anchor of the section of each case, by its name; empty: no links.
-    """
+    """Table of the steps of the procedure with the verdicts of their cases, linked by the anchors of their sections."""
     if not results.scope:
         return ()
     verdicts = {case.id: case.criteria_verdict or case.verdict for case in results.cases}

@@ -83,13 +83,7 @@ def _print_periodically(describe: Callable[[], str], output: Console) -> Iterato
 
 
 class TaskProgress(logging.Handler):
-    """Progress of tasks that report their steps to the loggers `pantocheck.*`.
-
-    Args:
-        title: Purpose of the tasks.
-        total: Number of tasks.
-        clock: Time [s].
-    """
+    """Progress of tasks that report their steps to the loggers `pantocheck.*`; the title is their purpose."""
 
     def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()
