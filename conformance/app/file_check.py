@@ -76,10 +76,8 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
         kind = recognise_toml(read_toml(path, "file"), where)
     elif kind not in READ_FORMATS:
         raise InputError("option --kind", f"there is no kind {kind!r}", suggest_names(kind, list(READ_FORMATS)))
-    return _CHECKS[kind](path) if kind in _CHECKS else _check_model(path, kind)
-
-
-def _check_model(path: Path, kind: str) -> str:
+    if kind in _CHECKS:
+        return _CHECKS[kind](path)
     read_model(path, READ_FORMATS[kind], kind)
     return f"{kind} file"
 

@@ -32,12 +32,6 @@ def list_revision_ends(content: bytes) -> tuple[int, ...]:
     return tuple(match.end() for match in REVISION_END.finditer(content))
 
 
-def cut_original_revision(content: bytes) -> bytes:
-    """First revision of a PDF, without the updates that were appended to it; all bytes if no revision ends."""
-    ends = list_revision_ends(content)
-    return content[: ends[0]] if ends else content
-
-
 # Reading of a PDF of unknown origin, and of the results attached to it.
 @dataclass(frozen=True)
 class PdfCertificate:
@@ -63,7 +57,8 @@ def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
     Raises:
         InputError: Damaged, encrypted, without pages, or without valid results.
     """
-    original = cut_original_revision(content)
+    ends = list_revision_ends(content)
+    original = content[: ends[0]] if ends else content
     reader = open_document(original, name)
     attachment = read_attachment(reader, name)
     return PdfCertificate(

@@ -45,15 +45,11 @@ def list_shown_cases(cases: Sequence[CaseResult]) -> list[ShownCase]:
     """Cases with a section of their own: all but those that were skipped without any value."""
     shown: list[ShownCase] = []
     for number, case in enumerate(cases):
-        if case.verdict != "skip" or any(_list_shown_parts(case)):
+        parts = (case.criteria, case.quantities, case.traces, case.charts, case.tables, case.uplift)
+        if case.verdict != "skip" or any(parts):
             earlier = tuple(other.case for other in shown)
             shown.append(ShownCase(case, number, f"case-{number + 1}", earlier))
     return shown
-
-
-def _list_shown_parts(case: CaseResult) -> tuple[object, ...]:
-    """Parts of a case that its section shows."""
-    return (case.criteria, case.quantities, case.traces, case.charts, case.tables, case.uplift)
 
 
 def build_case_section(shown: ShownCase) -> doc.Section:
@@ -75,7 +71,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     blocks += verification_blocks(case, anchor)
     blocks += baseline_blocks(case, anchor)
     blocks += comparison_blocks(case, shown.number, anchor)
-    blocks += event_blocks(case)
+    blocks += (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
     blocks += [doc.Section(table.caption, (_study_table(case, table),)) for table in _select_tables(case)]
     blocks += _list_details(shown)
     return doc.Section(case.title, tuple(blocks), anchor=anchor, ruled=True)
@@ -142,11 +138,6 @@ def _join_sources(rows: Iterable[list[str]], tolerances: set[str]) -> Iterator[l
 # Sections of a case on the events of its record: places of the line, and contact losses.
 LISTED_LOSSES = 40
 """Largest number of contact losses in the table of a page; results.json lists more."""
-
-
-def event_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Blocks on the events of a record; empty if it has none."""
-    return (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
 
 
 def _build_loss_section(losses: Mapping[str, Sequence[ContactLossFacts]]) -> tuple[doc.Block, ...]:

@@ -315,13 +315,10 @@ def _render_command(annotation: Annotation) -> str:
         if annotation.place.line is not None:
             properties["line"] = str(annotation.place.line)
     properties["title"] = f"{annotation.group}: {annotation.name}"
-    stated = ",".join(f"{name}={_escape_property(text)}" for name, text in properties.items())
+    escaped = {name: _escape_message(text).replace(":", "%3A").replace(",", "%2C") for name, text in properties.items()}
+    stated = ",".join(f"{name}={text}" for name, text in escaped.items())
     return f"::{annotation.severity} {stated}::{_escape_message(annotation.text)}"
 
 
 def _escape_message(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-
-
-def _escape_property(text: str) -> str:
-    return _escape_message(text).replace(":", "%3A").replace(",", "%2C")

@@ -63,10 +63,6 @@ def _build_model_table(models: tuple[ComparedModel, ...]) -> doc.Table:
     )
 
 
-def _build_drop_sections(comparison: DropComparison) -> tuple[doc.Section, ...]:
-    return tuple(_build_place(place, comparison) for place in comparison.places)
-
-
 def _build_place(place: ComparedPlace, comparison: DropComparison) -> doc.Section:
     """Section of a sensor or of the mass: motion in every window, residual energy, table of all bands."""
     name = place.name
@@ -130,7 +126,7 @@ DROP_PAGE: PageKind[DropComparison] = PageKind(
     ),
     label=lambda comparison: comparison.record.name,
     opening=_build_opening,
-    sections=_build_drop_sections,
+    sections=lambda comparison: tuple(_build_place(place, comparison) for place in comparison.places),
 )
 
 

@@ -25,7 +25,6 @@ from pantocheck.conformance.pages.words import (
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
     ComparedQuantity,
-    ComparedSource,
     ForceAgreement,
     RunComparison,
 )
@@ -50,7 +49,10 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     results = clean_model(results)
     names = [subject.name for subject in results.subjects]
     header = doc.PlainHeader("Comparison of runs", f"{', '.join(names[1:])} beside {names[0]}.")
-    facts = {subject.name: _describe_subject(subject) for subject in results.subjects}
+    facts = {
+        subject.name: f"{subject.source}, {subject.digest}" if subject.digest else str(subject.source)
+        for subject in results.subjects
+    }
     suite = results.suite
     facts |= {"Suite": f"Pantocheck {suite.version}", "Digest of the suite": suite.digest}
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
@@ -58,10 +60,6 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
         owners = [_build_owner(owner, names) for owner in case.owners if owner.quantities]
         blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
     return doc.Document(header.headline, header, tuple(blocks))
-
-
-def _describe_subject(subject: ComparedSource) -> str:
-    return f"{subject.source}, {subject.digest}" if subject.digest else str(subject.source)
 
 
 def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
@@ -215,22 +213,18 @@ def _build_span_table(key: str, spans: Sequence[SpanStatistics]) -> doc.Table:
         "Max.": lambda run: run.max_N,
         "Min.": lambda run: run.min_N,
     }
+
+    def show(run: str, select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
+        return format_value(select(getattr(span, run)))
+
     cells: dict[str, Callable[[SpanStatistics], str]] = {
         "From [m]": lambda span: format_plain(span.start_m),
         "To [m]": lambda span: format_plain(span.end_m),
     }
-    cells |= {f"{label} sim.": partial(_format_simulated, select) for label, select in statistics.items()}
-    cells |= {f"{label} meas.": partial(_format_measured, select) for label, select in statistics.items()}
+    for run, short in (("simulated", "sim."), ("measured", "meas.")):
+        cells |= {f"{label} {short}": partial(show, run, select) for label, select in statistics.items()}
     caption = f"Pantograph {key}: statistics of the filtered force span by span [N], simulated and measured"
     return doc.make_grid(caption, spans, cells)
-
-
-def _format_simulated(select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
-    return format_value(select(span.simulated))
-
-
-def _format_measured(select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
-    return format_value(select(span.measured))
 
 
 # Figures of a simulated run and a measured one: forces over the track with their difference, spectra, spans.

@@ -252,12 +252,8 @@ def _describe_step(step: ProcedureStep) -> Iterator[str]:
 
 def list_step_missing(step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[str, ...]:
     """Components that the uncertainty of a step lacks: those of the case of its smallest margin."""
-    named = (case for case in cases if case.id in step.cases and _is_closest(step, case.id))
+    named = (case for case in cases if case.id in step.cases and str(step.closest).startswith(f"{case.id}, "))
     return next((list_unknown(case.uncertainty_basis) for case in named), ())
-
-
-def _is_closest(step: ProcedureStep, case: str) -> bool:
-    return str(step.closest).startswith(f"{case}, ")
 
 
 def _build_procedure_row(number: int, step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[doc.RichText, ...]:

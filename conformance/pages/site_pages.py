@@ -177,8 +177,7 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
 
 def _read(case: CaseResult, owner: str, name: str) -> float | None:
     """Value of a quantity; None if it is not known."""
-    value = case.quantities.get(owner, {}).get(name)
-    return select_single(value)
+    return select_single(case.quantities.get(owner, {}).get(name))
 
 
 def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:

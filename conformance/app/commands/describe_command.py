@@ -63,7 +63,8 @@ def describe_command(
         raise InputError(f"file '{sidecar}'", "exists already", "Give another name; no file is overwritten.")
     tables = _read(file, layout)
     facts, time = list_channel_facts(tables[0]), find_time(tables[0])
-    drop = kind == "mass-drop" or (kind is None and is_drop(facts))
+    moves = "force" not in guess_channels(facts) and any(map(is_acceleration, facts))
+    drop = kind == "mass-drop" or (kind is None and moves)
     runs = [f"{len(tables)} runs; the first one is described"] if len(tables) > 1 else []
     size = f"{len(facts)} columns, {tables[0].values.shape[0]} samples"
     lines = [*_describe_layout(file, layout), *runs, size, *_describe_time(time)]
@@ -104,11 +105,6 @@ def _read(file: Path, layout: TextSettings) -> list[MeasuredTable]:
             raise
         options = "Options of `describe`: --separator, --decimal, --header-lines, --encoding."
         raise InputError(error.where, error.found, f"{error.hint} {options}") from None
-
-
-def is_drop(facts: list[ChannelFacts]) -> bool:
-    """Whether the channels are probably those of a mass drop: accelerations, and no force."""
-    return "force" not in guess_channels(facts) and any(map(is_acceleration, facts))
 
 
 def _describe_layout(file: Path, settings: TextSettings) -> Iterator[str]:
