@@ -20,8 +20,8 @@ from pantocheck.conformance.core.measured_table import CSV, TABLE_FORMATS
 from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
-from pantocheck.conformance.dossier.document_check import check_documents
 from pantocheck.conformance.dossier.dossier_reading import read_dossier
+from pantocheck.conformance.dossier.validation import check_documents
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.grading.assessed_record import find_missing_statement
@@ -76,10 +76,8 @@ def check_input_file(path: Path, kind: str | None = None) -> str:
         kind = recognise_toml(read_toml(path, "file"), where)
     elif kind not in READ_FORMATS:
         raise InputError("option --kind", f"there is no kind {kind!r}", suggest_names(kind, list(READ_FORMATS)))
-    return _CHECKS[kind](path) if kind in _CHECKS else _check_model(path, kind)
-
-
-def _check_model(path: Path, kind: str) -> str:
+    if kind in _CHECKS:
+        return _CHECKS[kind](path)
     read_model(path, READ_FORMATS[kind], kind)
     return f"{kind} file"
 

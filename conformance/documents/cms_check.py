@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import unquote
 
-from pantocheck.conformance.documents.certificates import (
+from pantocheck.conformance.documents.key_files import (
     describe_failure,
     find_usage_problem,
     find_validity_problem,
@@ -14,7 +14,7 @@ from pantocheck.conformance.documents.certificates import (
     read_name,
     run_apart,
 )
-from pantocheck.conformance.documents.cms_signing import ROLE_PREFIX
+from pantocheck.conformance.documents.signature_writing import ROLE_PREFIX
 from pantocheck.conformance.pages.words import clean_text
 
 

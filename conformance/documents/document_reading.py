@@ -1,20 +1,23 @@
-"""Revisions of a PDF: the document as it was written, and the updates that were appended to it.
+"""Documents of unknown origin: PDF with its revisions, HTML page or results.json, and the software that wrote them.
 
 A signature is appended to a PDF as an update, and so is any later change. The bytes before it stay as they were.
 """
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.files import read_bytes
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.pages.embedded_results import BLOCK_ID, NAME
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.pages.document import BLOCK_ID, NAME
 from pantocheck.conformance.pages.words import clean_text
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.renderer_identity import identify_renderer
+from pantocheck.conformance.results.results_format import Renderer, Results
 from pantocheck.conformance.results.results_reading import parse_results
 
 if TYPE_CHECKING:
@@ -27,12 +30,6 @@ REVISION_END = re.compile(rb"startxref\s+\d+\s+%%EOF(\r\n|\n|\r)?")
 def list_revision_ends(content: bytes) -> tuple[int, ...]:
     """Ends of the revisions of a PDF [bytes], the first one being the document as it was written."""
     return tuple(match.end() for match in REVISION_END.finditer(content))
-
-
-def cut_original_revision(content: bytes) -> bytes:
-    """First revision of a PDF, without the updates that were appended to it; all bytes if no revision ends."""
-    ends = list_revision_ends(content)
-    return content[: ends[0]] if ends else content
 
 
 # Reading of a PDF of unknown origin, and of the results attached to it.
@@ -55,16 +52,13 @@ class PdfCertificate:
 
 
 def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
-    """Read a certificate as PDF.
-
-    Args:
-        content: Content of the file.
-        name: Name of the file in messages.
+    """Read a certificate as PDF; messages name it.
 
     Raises:
         InputError: Damaged, encrypted, without pages, or without valid results.
     """
-    original = cut_original_revision(content)
+    ends = list_revision_ends(content)
+    original = content[: ends[0]] if ends else content
     reader = open_document(original, name)
     attachment = read_attachment(reader, name)
     return PdfCertificate(
@@ -219,3 +213,51 @@ def _suggest_document(folder: Path) -> str:
     """Advice for a folder in place of a document: the documents in it."""
     found = [f"'{folder / name}'" for name in DOCUMENTS if (folder / name).is_file()]
     return f"Name one document of it: {', '.join(found)}." if found else f"Name a file: {', '.join(DOCUMENTS)}."
+
+
+# Versions of the software that wrote a document, against those that are installed: only the same versions lay out the
+# same pages, so that their bytes can be compared.
+def list_suite_differences(results: Results) -> list[str]:
+    """Differences of the suite that graded the system from the installed suite; none if their digests agree."""
+    stated, installed = results.suite, build_suite()
+    if stated.digest == installed.digest:
+        return []  # `find_false_version` compares the versions
+    if stated.version != installed.version:
+        return [f"Pantocheck {stated.version}; installed is {installed.version}"]
+    return [f"Pantocheck {stated.version} with the digest {stated.digest[:19]}; installed is {installed.digest[:19]}"]
+
+
+def find_false_version(results: Results) -> list[str]:
+    """Contradiction of a stated version with the digest of the installed files; none if the digests differ."""
+    stated, installed = results.suite, build_suite()
+    if stated.digest != installed.digest or stated.version == installed.version:
+        return []
+    return [f"Pantocheck {stated.version} stated; the stated digest is that of Pantocheck {installed.version}"]
+
+
+def list_version_differences(document: Certificate) -> list[str]:
+    """All differences of the software that made a document from the installed one, as sentences."""
+    return [*list_suite_differences(document.results), *_list_renderer_differences(document.results, _layout(document))]
+
+
+def _layout(document: Certificate) -> frozenset[str]:
+    """Fields of `Renderer` on which a document depends: Typst lays out no HTML page, and nothing a results.json."""
+    match document:
+        case ResultsFile():
+            return frozenset()
+        case HtmlCertificate():
+            return frozenset(Renderer.model_fields) - {"typst"}
+        case PdfCertificate():
+            return frozenset(Renderer.model_fields)
+        case never:
+            assert_never(never)
+
+
+def _list_renderer_differences(results: Results, software: Collection[str]) -> list[str]:
+    """Differences of the software that made the pages from the installed one."""
+    stated, installed = results.renderer, identify_renderer()
+    return [
+        f"{name} {getattr(stated, name)}; installed is {getattr(installed, name)}"
+        for name in Renderer.model_fields
+        if name in software and getattr(stated, name) != getattr(installed, name)
+    ]

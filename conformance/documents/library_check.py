@@ -13,7 +13,7 @@ from pantocheck.conformance.cases.profile_file import Profile, list_profiles, lo
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
-from pantocheck.conformance.documents.version_differences import list_suite_differences
+from pantocheck.conformance.documents.document_reading import list_suite_differences
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest, profile_limits_digest
 from pantocheck.conformance.grading.case_verification import (
@@ -22,7 +22,7 @@ from pantocheck.conformance.grading.case_verification import (
     include_start,
     verification_digest,
 )
-from pantocheck.conformance.grading.criterion_grading import Requirement, criterion_name
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.validity_warnings import find_unvalidated, validity_warnings
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
@@ -275,7 +275,7 @@ def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]
     requirements = build_requirements(converged, case.is_static)
     if result.record is not None and result.record.start == "differs":
         requirements = tuple(include_start(requirement, converged) for requirement in requirements)
-    rows, wanted = _by_target(stated.criteria), {_target(item): item for item in requirements}
+    rows, wanted = _by_target(stated.criteria), {(one.quantity, one.owner, one.item): one for one in requirements}
     for target in rows.keys() - wanted.keys():
         yield f"{criterion_name(rows[target])}: no converged value in the library, a limit in the certificate"
     for target, requirement in wanted.items():
@@ -316,10 +316,6 @@ def _replacing_limit(limit: Limit, row: Criterion | None) -> Limit | None:
 
 def _by_target(rows: Any) -> dict[LimitTarget, Criterion]:
     return {(row.quantity, row.pantograph, row.item): row for row in rows}
-
-
-def _target(requirement: Requirement) -> LimitTarget:
-    return requirement.quantity, requirement.owner, requirement.item
 
 
 def _bounds(row: Criterion) -> str:

@@ -15,16 +15,22 @@ from itertools import zip_longest
 from typing import assert_never
 
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
+from pantocheck.conformance.documents.authenticity_check import (
+    DocumentCheck,
+    compare_lines,
+    judge_details,
+    quote,
+    quote_difference,
+    shorten_details,
+)
 from pantocheck.conformance.documents.document_reading import (
     DATA_BLOCK,
     Certificate,
     HtmlCertificate,
     PdfCertificate,
     ResultsFile,
+    list_version_differences,
 )
-from pantocheck.conformance.documents.number_comparison import compare_lines, quote, quote_difference
-from pantocheck.conformance.documents.version_differences import list_version_differences
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
@@ -155,11 +161,6 @@ def compare_html(stated: str, expected: str) -> Iterator[str]:
         yield "spaces, line breaks or the spelling of tags differ; texts and tags agree"
 
 
-def compare_html_texts(stated: str, expected: str) -> Iterator[str]:
-    """First difference of the texts of two pages; parameters as in `compare_html`."""
-    yield from compare_lines(_Page(_cut_data(stated)).texts, _Page(_cut_data(expected)).texts)
-
-
 def read_html_date(page: str) -> int:
     """Date in the metadata of a page [s since 1970]; 0 if there is none."""
     found = DATE.search(page)
@@ -242,7 +243,7 @@ def _compare(document: Certificate) -> PageDifferences:
             return PageDifferences(
                 False,
                 (*list_active_parts(text, page), *compare_html(text, page)),
-                tuple(compare_html_texts(text, page)),
+                tuple(compare_lines(_Page(_cut_data(text)).texts, _Page(_cut_data(page)).texts)),
                 tuple(list_foreign_elements(text)),
             )
         case PdfCertificate():

@@ -12,8 +12,8 @@ from pypdf import PageObject, PdfReader
 from pypdf.generic import ArrayObject, DictionaryObject, IndirectObject, NameObject, PdfObject, StreamObject
 
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.documents.number_comparison import compare_lines, quote_difference
-from pantocheck.conformance.pages.embedded_results import NAME
+from pantocheck.conformance.documents.authenticity_check import compare_lines, quote_difference
+from pantocheck.conformance.pages.document import NAME
 
 FOREIGN_KEYS = {
     "/JavaScript": "a script",
@@ -79,7 +79,8 @@ def _find_parts(item: Any, depth: int) -> Iterator[str]:
         yield "objects that are nested too deeply"
     elif isinstance(item, DictionaryObject):
         # In a structure element, /A holds attributes such as the size of a figure.
-        inner = item.keys() - {"/A"} if _is_structure(item) else item.keys()
+        structure = "/P" in item and "/S" in item and item.get("/Type", "/StructElem") == "/StructElem"
+        inner = item.keys() - {"/A"} if structure else item.keys()
         yield from (FOREIGN_KEYS[key] for key in inner if key in FOREIGN_KEYS)
         for key in item:
             value = item.raw_get(key)
@@ -89,10 +90,6 @@ def _find_parts(item: Any, depth: int) -> Iterator[str]:
     elif isinstance(item, ArrayObject):
         for value in item:
             yield from _find_parts(value, depth - 1)
-
-
-def _is_structure(item: DictionaryObject) -> bool:
-    return "/P" in item and "/S" in item and item.get("/Type", "/StructElem") == "/StructElem"
 
 
 # Comparison of a PDF with the one that its results give: number of pages, metadata, texts, drawings, attachments.

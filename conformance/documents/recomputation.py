@@ -9,7 +9,7 @@ from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remar
 from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
 from pantocheck.conformance.core.verdicts import Verdict, judge, margin
-from pantocheck.conformance.documents.number_comparison import EXACT, format_exact, same_number, select_first
+from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
@@ -53,7 +53,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed) -> Iterator[str]:
     stated, verification = case.criteria_verdict or case.verdict, case.verification
     yield from (f"{case.id}, {text}" for text in check_combination(case))
     record = case.record
-    graded = list_graded(case)
+    graded = [row for row in case.criteria if not row.is_drift]
     ungraded = not graded and case.reason and stated in ("skip", "error")
     yield from _check_criteria(case, case.criteria, trust)
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
@@ -199,11 +199,6 @@ def check_combination(case: CaseResult) -> Iterator[str]:
 
 
 # Check of a comparison with a baseline: bounds, numbers and verdict must follow from the criteria of drift.
-def list_graded(case: CaseResult) -> list[Criterion]:
-    """Criteria that `criteria_verdict` counts: all but those of drift."""
-    return [row for row in case.criteria if not row.is_drift]
-
-
 def check_baseline(case: CaseResult) -> Iterator[str]:
     """Find contradictions between a comparison with a baseline and the criteria of drift."""
     comparison = case.baseline
@@ -236,13 +231,7 @@ def check_procedure(
     cases: list[CaseResult],
     check_grade: Callable[[Criterion], Iterator[str]],
 ) -> Iterator[str]:
-    """Find contradictions in the procedure of a dossier.
-
-    Args:
-        stated, decided: Procedure of the results, and the same with the verdicts that follow.
-        cases: Cases of the results.
-        check_grade: Check of the verdict and margin of one criterion.
-    """
+    """Find contradictions of a stated procedure with the verdicts that follow; `check_grade` checks one criterion."""
     if stated is None or decided is None:
         return
     if tuple(step.step for step in stated.steps) != STEP_NAMES:

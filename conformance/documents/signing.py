@@ -10,8 +10,7 @@ from urllib.parse import urlsplit
 
 from pantocheck.conformance.core.files import read_bytes, write_atomically
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.documents.certificates import use_signature_package
-from pantocheck.conformance.documents.cms_signing import Signer, check_role, sign_detached
+from pantocheck.conformance.documents.cms_check import check_cms
 from pantocheck.conformance.documents.document_reading import MAX_DOCUMENT_BYTES
 from pantocheck.conformance.documents.key_files import (
     MAX_SIGNATURE_BYTES,
@@ -21,9 +20,10 @@ from pantocheck.conformance.documents.key_files import (
     find_signature_file,
     parse_signatures,
     read_signing_key,
+    use_signature_package,
 )
-from pantocheck.conformance.documents.pdf_signing import BOXES
-from pantocheck.conformance.documents.signature_check import is_signed_pdf
+from pantocheck.conformance.documents.signature_check import check_pdf, is_signed_pdf
+from pantocheck.conformance.documents.signature_writing import BOXES, Signer, check_role, sign_detached, sign_pdf
 from pantocheck.conformance.pages.words import clean_text
 
 
@@ -107,9 +107,6 @@ def _choose_pdf_path(document: Path, content: bytes, out: Path | None) -> Path:
 
 
 def _sign_pdf(content: bytes, signer: Signer, place: str | None, document: Path) -> bytes:
-    from pantocheck.conformance.documents.pdf_signature_check import check_pdf
-    from pantocheck.conformance.documents.pdf_signing import sign_pdf
-
     where = f"document '{document.name}'"
     signed = sign_pdf(content, signer, place, where)
     signatures, changes = check_pdf(signed, None)
@@ -120,8 +117,6 @@ def _sign_pdf(content: bytes, signer: Signer, place: str | None, document: Path)
 
 
 def _sign_beside(content: bytes, signer: Signer, path: Path) -> bytes:
-    from pantocheck.conformance.documents.cms_check import check_cms
-
     where = f"signature '{path.name}'"
     earlier = read_bytes(path, where, MAX_SIGNATURE_BYTES) if path.exists() else None
     for part in [] if earlier is None else parse_signatures(earlier, where):
@@ -140,13 +135,7 @@ MAX_ANSWER_BYTES = 2**20
 
 
 def build_timestamp_client(url: str) -> Any:
-    """Client of the time-stamp server at an address.
-
-    Args:
-        url: Address of the server, http or https.
-
-    Returns:
-        Client whose requests fail with `InputError` (pyhanko.sign.timestamps.TimeStamper).
+    """Client (TimeStamper of pyHanko) of the server at an address; its requests fail with `InputError`.
 
     Raises:
         InputError: The address is not one of http or https.

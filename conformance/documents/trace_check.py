@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 from pantocheck.conformance.core.figure_data import Traces
-from pantocheck.conformance.documents.number_comparison import ROUNDED, format_exact, same_number, select_first
+from pantocheck.conformance.documents.authenticity_check import ROUNDED, format_exact, same_number, select_first
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.results.results_format import CaseResult
 

@@ -12,18 +12,16 @@ from pantocheck.conformance.documents.cms_check import SignatureReport, describe
 from pantocheck.conformance.documents.document_reading import (
     Certificate,
     PdfCertificate,
+    find_false_version,
     list_revision_ends,
+    list_suite_differences,
+    list_version_differences,
     read_certificate,
 )
 from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.signature_check import is_signed_pdf
-from pantocheck.conformance.documents.version_differences import (
-    find_false_version,
-    list_suite_differences,
-    list_version_differences,
-)
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 DocumentState = Literal["consistent", "incomplete", "contradicted"]
@@ -81,13 +79,10 @@ class Verification:
 
 
 def verify_document(path: Path) -> Verification:
-    """Verify a certificate or a results.json.
+    """Verify a certificate as PDF or HTML page, or a results.json.
 
     A consistent document has verdicts that follow from its numbers, pages that follow from its results, and the cases
     of the library. Only a record or a new run shows that the numbers come from the named system.
-
-    Args:
-        path: Certificate as PDF or HTML page, or results.json.
 
     Raises:
         InputError: None of these, damaged, or without valid results.

@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.library import overlay_limits, read_limits, se
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.toml_file import read_model, read_toml
-from pantocheck.conformance.dossier.dossier_file import CaseRun, DossierFile, RecordRun
+from pantocheck.conformance.dossier.dossier_file import CaseRun, DossierFile, LineEntry, PantographEntry, RecordRun
 from pantocheck.conformance.execution.plan import place_cases, place_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.line_file import LineFile
@@ -52,7 +52,7 @@ class Dossier:
                 "lines": {name: content_digest(line) for name, line in self.lines.items()},
                 "pantographs": {name: content_digest(part) for name, part in self.pantographs.items()},
                 "cases": [[case.id, case.digest, limits_digest(case.limits)] for case in cases],
-                "sidecars": [file_digest(self.locate(name).with_suffix(".toml")) for _, name in self.list_tables()],
+                "sidecars": [file_digest(self.locate(name).with_suffix(".toml")) for _, name, _ in self.list_tables()],
             }
         )
 
@@ -60,18 +60,18 @@ class Dossier:
         """Path of a file that the dossier names."""
         return self.folder / name
 
-    def list_tables(self) -> Iterator[tuple[str, str]]:
-        """Key and name of every measured or simulated table that the dossier names."""
+    def list_tables(self) -> Iterator[tuple[str, str, PantographEntry | LineEntry | RecordRun]]:
+        """Key and name of every measured or simulated table that the dossier names, with the entry that names it."""
         for i, pantograph in enumerate(self.file.pantograph, 1):
             for k, name in enumerate(pantograph.responses, 1):
-                yield f"pantograph[{i}].responses[{k}]", name
+                yield f"pantograph[{i}].responses[{k}]", name, pantograph
         for i, line in enumerate(self.file.line, 1):
             if line.statics is not None:
-                yield f"line[{i}].statics", line.statics
+                yield f"line[{i}].statics", line.statics, line
         for i, pair in enumerate(self.file.pair, 1):
             if isinstance(pair.simulated, RecordRun):
-                yield f"pair[{i}].simulated.record", pair.simulated.record
-            yield f"pair[{i}].measured.record", pair.measured.record
+                yield f"pair[{i}].simulated.record", pair.simulated.record, pair.simulated
+            yield f"pair[{i}].measured.record", pair.measured.record, pair.measured
 
     def name_line(self, line: LineFile) -> str:
         """Name of a line in the dossier, recognised by its content; its title if the dossier does not name it."""
@@ -94,12 +94,8 @@ Content = TypeVar("Content")
 def read_dossier(path: Path) -> Dossier:
     """Read a dossier and the files that it names.
 
-    Args:
-        path: The dossier.
-
     Raises:
-        InputError: The dossier or a file that it names is missing or invalid; the error lists the problems of all of
-            them.
+        InputError: A file is missing or invalid; the error lists the problems of all of them.
     """
     file = read_model(path, DossierFile, "dossier")
     reader = _FileReader(path)
@@ -117,7 +113,8 @@ def read_dossier(path: Path) -> Dossier:
     }
     cases = reader.attempt("reference.cases", lambda: select_cases(place_cases(file.reference.cases, path.parent)))
     if (limits := file.reference.limits) is not None:
-        cases = reader.attempt("reference.limits", partial(_overlay, cases or [], path.parent / limits))
+        own_limits = path.parent / limits
+        cases = reader.attempt("reference.limits", lambda: overlay_limits(cases or [], read_limits(own_limits)))
     dossier = Dossier(
         file,
         path.parent,
@@ -126,8 +123,8 @@ def read_dossier(path: Path) -> Dossier:
         tuple(cases or ()),
         {name: case for name, case in pair_cases.items() if case is not None},
     )
-    for key, name in dossier.list_tables():
-        reader.check_table(key, dossier.locate(name))
+    for key, name, _ in dossier.list_tables():
+        reader.attempt(key, partial(_locate_document, dossier.locate(name), path.parent))
     if reader.problems:
         raise join_errors(reader.problems)
     return dossier
@@ -157,10 +154,6 @@ class _FileReader:
             )
             return None
 
-    def check_table(self, key: str, path: Path) -> None:
-        """Check that a table and its sidecar are there: regular files in the folder of the dossier."""
-        self.attempt(key, partial(_locate_document, path, self.path.parent))
-
     def _name(self, key: str) -> str:
         return f"dossier '{self.path.name}', key {key}"
 
@@ -178,10 +171,6 @@ def _locate_document(path: Path, folder: Path) -> None:
     table = read_toml(sidecar, "sidecar").get("file")
     if isinstance(table, str):
         locate_table(sidecar, table, None)
-
-
-def _overlay(cases: list[Case], path: Path) -> list[Case]:
-    return overlay_limits(cases, read_limits(path))
 
 
 def _select_run(name: str, folder: Path) -> Case:

@@ -40,11 +40,7 @@ RECORDS_FOLDER = "records"
 
 
 def build_line_test_profile(table: LineTestTable) -> Profile:
-    """Rules of the pairs: the tolerances of the user, or those of the library.
-
-    Args:
-        table: Table `line_test` of the dossier.
-    """
+    """Rules of the pairs: the tolerances of the user, or those of the library."""
     return Profile.model_validate(
         {
             "schema": "pantocheck.profile/1",
@@ -229,14 +225,7 @@ def _collect(finished: list[tuple[CaseResult, Evidence | None]], reason: str | N
 
 # Line tests joined over the pairs: mean, spread and largest difference of every quantity.
 def join_pairs(cases: Sequence[CaseResult]) -> list[JoinedQuantity]:
-    """Join the differences of all pairs that were compared.
-
-    Args:
-        cases: Results of the pairs.
-
-    Returns:
-        Quantities that a pair has in both runs, by pantograph (0: the line) and in the order of reports.
-    """
+    """Differences of all compared pairs by pantograph (0: the line) and quantity, in the order of reports."""
     owners = sorted({int(owner) for case in cases if case.comparison for owner in case.comparison.quantities})
     joined = (_join_quantity(cases, str(owner), name) for owner in owners for name in QUANTITIES)
     return [item for item in joined if item is not None]

@@ -1,23 +1,47 @@
-"""Pantograph model: frequency responses measured at its head against the model."""
+"""Steps without a measured run: pantograph model, line at rest, simulation parameters, reference models, claims."""
 
 from collections.abc import Iterator, Sequence
 
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
-from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS
+from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, unit_of_difference
 from pantocheck.conformance.comparison.response_comparison import compare_responses
+from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
+from pantocheck.conformance.comparison.static_differences import CRITERIA
+from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.trust import Trust
-from pantocheck.conformance.dossier.dossier_file import PantographEntry, ParameterTable
+from pantocheck.conformance.dossier.dossier_file import (
+    LineEntry,
+    PantographEntry,
+    ParameterTable,
+    StaticTolerance,
+    ValidityTable,
+)
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import StepResult, convert_criterion
+from pantocheck.conformance.dossier.step_result import (
+    StepInterrupted,
+    StepResult,
+    convert_criterion,
+    describe_conditions,
+)
+from pantocheck.conformance.execution.runner import Progress, RunInterrupted, run_cases
+from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion, skip_unlimited
+from pantocheck.conformance.grading.procedure_verdict import is_reference
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison
-from pantocheck.conformance.results.procedure_format import DeclaredParameter
+from pantocheck.conformance.results.comparison_format import (
+    ComparisonCriterion,
+    ResponseComparison,
+    StaticComparison,
+    StaticQuantity,
+)
+from pantocheck.conformance.results.procedure_format import DeclaredParameter, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.runs.system import System
 
 NEEDED_BY_PANTOGRAPHS = "needed by the comparison of pantographs of this suite"
 """Source of a criterion without a limit."""
@@ -27,9 +51,6 @@ def check_pantographs(dossier: Dossier) -> StepResult:
     """Compare the measured responses of every pantograph with its model.
 
     Every band up to the cut-off of the line tests needs a limit; a band without one is skipped.
-
-    Args:
-        dossier: Dossier with its pantographs.
     """
     entries = dossier.file.pantograph
     if not any(entry.responses for entry in entries):
@@ -97,14 +118,10 @@ START_AS_STATED = "as in the case"
 
 
 def check_parameters(dossier: Dossier, runs: Sequence[CaseResult]) -> StepResult:
-    """Compare the declared simulation parameters with those of the runs.
+    """Compare the declared simulation parameters with those of the runs of cases and pairs.
 
     Numbers bound the values of all runs. Texts, and runs that do not state a value, cannot be compared: a pass then
     counts as unverified.
-
-    Args:
-        dossier: Dossier with the declared parameters.
-        runs: Results of the cases and pairs that have a run.
     """
     table, trust = dossier.file.parameters, dossier.file.trust
     if not any((table.element_m, table.time_step_s, table.shortest_run_s, table.start)):
@@ -170,3 +187,123 @@ def _build_criterion(
 ) -> Criterion:
     requirement = Requirement(name, LINE, None, *bounds, "primary", DECLARED, unit=unit)
     return build_criterion(requirement, value, missing, trust)
+
+
+# Static check: elasticity and contact wire heights measured along a line against its model.
+NEEDED_BY_STATIC_CHECK = "needed by the static check of this suite"
+"""Source of a criterion without a tolerance."""
+
+
+def check_statics(dossier: Dossier) -> StepResult:
+    """Compare the measured static values of every line with its model.
+
+    Elasticity and height both need a tolerance and measured values; a criterion without them is skipped.
+    """
+    entries = dossier.file.line
+    if not any(entry.statics for entry in entries):
+        reason = "the dossier names no measured elasticity and contact wire heights of a line (key line.statics)"
+        return StepResult("static_check", "not done", reason)
+    statics, criteria = [], []
+    for number, entry in enumerate(entries, 1):
+        item = number if len(entries) > 1 else None
+        if entry.statics is None:
+            reason = f"line {entry.name!r} has no measured values (key line[{number}].statics)"
+            criteria += [_skip_static(name, item, reason) for name in _list_tolerances(entry.tolerance) or CRITERIA]
+            continue
+        try:
+            statics.append(_compare_statics(dossier, entry, entry.statics))
+        except InputError as error:
+            return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
+        criteria += [_convert_static(row, entry.tolerance, item, dossier.file.trust) for row in statics[-1].criteria]
+        criteria += _skip_ungraded(entry.tolerance, item)
+    notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)
+    return StepResult("static_check", criteria=tuple(criteria), statics=tuple(statics), notes=notes)
+
+
+def _compare_statics(dossier: Dossier, entry: LineEntry, name: str) -> StaticComparison:
+    line = dossier.lines[entry.name]
+    record = read_static_record(dossier.locate(name), line.geometry)
+    return compare_statics(record, line, entry.element_m, build_tolerances(_list_tolerances(entry.tolerance)))
+
+
+def _list_tolerances(tolerance: StaticTolerance) -> dict[StaticQuantity, float]:
+    """Stated tolerances by the name of their criterion."""
+    stated: dict[StaticQuantity, float | None] = {
+        "elasticity_difference_mm_N": tolerance.elasticity_mm_N,
+        "elasticity_difference_pct": tolerance.elasticity_pct,
+        "contact_wire_height_difference_mm": tolerance.height_mm,
+    }
+    return {name: value for name, value in stated.items() if value is not None}
+
+
+def _convert_static(row: ComparisonCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
+    requirement = Requirement(
+        row.quantity, LINE, item, row.lower, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
+    )
+    return convert_criterion(row, requirement, trust)
+
+
+def _skip_ungraded(tolerance: StaticTolerance, item: int | None) -> Iterator[Criterion]:
+    """Skipped criteria of the values for which the dossier states no tolerance."""
+    graded = {CRITERIA[name] for name in _list_tolerances(tolerance)}
+    for value in STATIC_VALUES:
+        if value not in graded:
+            quantity = next(name for name, kind in CRITERIA.items() if kind == value)
+            yield _skip_static(quantity, item, "the dossier states no tolerance")
+
+
+def _skip_static(quantity: StaticQuantity, item: int | None, reason: str) -> Criterion:
+    return skip_unlimited(quantity, reason, NEEDED_BY_STATIC_CHECK, item=item, unit=unit_of_difference(quantity))
+
+
+# Reference models: the system under test runs the cases of the dossier.
+def run_reference_models(
+    dossier: Dossier, system: System, participation: Participation, jobs: int, progress: Progress | None
+) -> StepResult:
+    """Run the reference models of a dossier on the system under test.
+
+    Raises:
+        StepInterrupted: The user ended the run.
+    """
+    if not dossier.cases:
+        return StepResult("reference_models", "not done", "the dossier names no reference model (key reference.cases)")
+    try:
+        results = run_cases(dossier.cases, system, dossier.file.trust, jobs, progress, participation)
+    except RunInterrupted as interruption:
+        result = _build_result(dossier, interruption.results.cases)
+        raise StepInterrupted(result, interruption.exit_code) from None
+    return _build_result(dossier, results.cases)
+
+
+def _build_result(dossier: Dossier, results: Sequence[CaseResult]) -> StepResult:
+    by_id: dict[str, Case] = {case.id: case for case in dossier.cases}
+    evidence = [describe_conditions(case.id, by_id[case.id], dossier) for case in results]
+    others = [case.id for case in results if not is_reference(case)]
+    return StepResult(
+        "reference_models",
+        cases=tuple(results),
+        evidence=tuple(item for item in evidence if item is not None),
+        notes=(f"No reference model of the library, for information: {', '.join(others)}.",) if others else (),
+    )
+
+
+# Limits of validity: the claims of a dossier. The runs that passed verify them.
+def list_claims(dossier: Dossier) -> StepResult:
+    """Claims of a dossier; their verdicts follow from those of the runs."""
+    table = dossier.file.validity
+    if table.claims_nothing:
+        return StepResult("limits_of_validity", "not done", "the dossier claims no range of validity (table validity)")
+    return StepResult("limits_of_validity", claims=tuple(_list_claims(table)))
+
+
+def _list_claims(table: ValidityTable) -> Iterator[ValidityClaim]:
+    for name in table.lines:
+        yield ValidityClaim(kind="line", name=name, unit="", claimed=None)
+    for name in table.pantographs:
+        yield ValidityClaim(kind="pantograph", name=name, unit="", claimed=None)
+    if table.speed_km_h is not None:
+        yield ValidityClaim(kind="speed", name="", unit="km/h", claimed=table.speed_km_h)
+    if table.spacing_m is not None:
+        yield ValidityClaim(kind="spacing", name="", unit="m", claimed=table.spacing_m)
+    for change in table.change:
+        yield ValidityClaim(kind="change", name=change.key, unit="", claimed=change.range)

@@ -75,12 +75,7 @@ def find_copy(simulated: RunSide, measured: RunSide) -> str | None:
 
 
 def list_mismatches(simulated: RunSide, measured: RunSide, profile: Profile) -> Iterator[str]:
-    """Differences between the passages of two runs, in words.
-
-    Args:
-        simulated, measured: Runs of a pair.
-        profile: Rules of the line tests, with the speed tolerance.
-    """
+    """Differences between the passages of two runs, in words; the rules of the line tests state the speed tolerance."""
     for name, other, own in (
         ("line", measured.line, simulated.line),
         ("pantographs", ", ".join(measured.pantographs), ", ".join(simulated.pantographs)),
@@ -128,12 +123,7 @@ def _section(record: AssessedRecord) -> tuple[float, float] | None:
 
 # Runs of a pair: a case that the system under test runs, or a record.
 def read_run(run: RecordRun, dossier: Dossier, profile: Profile) -> RunSide:
-    """Read a recorded run of a pair.
-
-    Args:
-        run: Table of the dossier.
-        dossier: Dossier with the line.
-        profile: Rules of the line tests.
+    """Read a recorded run of a pair by the rules of the line tests.
 
     Raises:
         InputError: The record cannot be read or is impossible.

@@ -91,13 +91,7 @@ class StepInterrupted(Exception):
 
 # Conditions of a run that a claim on the range of validity refers to: line, pantographs, speed, spacing, inputs.
 def describe_conditions(name: str, case: Case, dossier: Dossier) -> Evidence | None:
-    """Conditions of the run of a case; None for a case without a train.
-
-    Args:
-        name: Id of the result.
-        case: The case.
-        dossier: Dossier with the names of lines and pantographs, and the inputs whose change is claimed.
-    """
+    """Conditions of the run of a case, under the id of its result; None for a case without a train."""
     if case.is_static or case.file.mass_drop is not None or case.file.speed_km_h is None:
         return None
     return Evidence(

@@ -5,17 +5,26 @@ from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
+from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.processes import interruption_exit_code
+from pantocheck.conformance.dossier.dossier_file import LineEntry, PantographEntry
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.line_test_step import LineTests, join_pairs
-from pantocheck.conformance.dossier.model_steps import check_pantographs, check_parameters
-from pantocheck.conformance.dossier.reference_models_step import list_claims, run_reference_models
-from pantocheck.conformance.dossier.static_check_step import check_statics
+from pantocheck.conformance.dossier.line_test_step import LineTests, build_line_test_profile, join_pairs
+from pantocheck.conformance.dossier.model_steps import (
+    check_pantographs,
+    check_parameters,
+    check_statics,
+    list_claims,
+    run_reference_models,
+)
+from pantocheck.conformance.dossier.run_reading import read_run
 from pantocheck.conformance.dossier.step_result import StepInterrupted, StepResult
 from pantocheck.conformance.execution.runner import Progress, RunInterrupted, identify_system
 from pantocheck.conformance.grading.case_selection import choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.results_building import build_results, utc_now
+from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure, StepName
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.runs.system import System
@@ -111,3 +120,29 @@ class Validation:
         identity = identify_system(self.system)
         cases = [case for step in steps for case in step.cases]
         return build_results(cases, identity, file.trust, started, self.participation, procedure)
+
+
+# Check of the measured and simulated tables of a dossier: each is read as its step reads it, without a simulation.
+def check_documents(dossier: Dossier) -> int:
+    """Read every table of a dossier; returns their number.
+
+    Raises:
+        InputError: A table cannot be read as its kind; the error lists the problems of all tables.
+    """
+    problems: list[InputError] = []
+    profile, tables = build_line_test_profile(dossier.file.line_test), [*dossier.list_tables()]
+    for key, name, entry in tables:
+        try:
+            if isinstance(entry, PantographEntry):
+                read_response(dossier.locate(name))
+            elif isinstance(entry, LineEntry):
+                read_static_record(dossier.locate(name), dossier.lines[entry.name].geometry)
+            else:
+                read_run(entry, dossier, profile)
+        except InputError as error:
+            problems += (
+                InputError(f"dossier, key {key}: {each.where}", each.found, each.hint) for each in error.problems
+            )
+    if problems:
+        raise join_errors(problems)
+    return len(tables)

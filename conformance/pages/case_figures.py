@@ -1,44 +1,51 @@
 """Figures of a case with their captions and alternative texts."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart, Histogram, Traces, UpliftTrace
-from pantocheck.conformance.core.results_part import Number, select_single
-from pantocheck.conformance.pages.document import Curves, Figure
-from pantocheck.conformance.pages.force_figures import (
-    draw_force,
-    draw_histogram,
-    draw_spectrum,
-    draw_uplift,
-    select_limited,
+from pantocheck.conformance.core.figure_style import (
+    FULL,
+    GREY,
+    HALF,
+    INK,
+    LIMIT_FILL,
+    LIMIT_LINE,
+    LINES,
+    PALE,
+    SHADES,
+    PlotStyle,
+    add_legend,
+    render_svg,
 )
-from pantocheck.conformance.pages.reference_values import select_reference_force
+from pantocheck.conformance.core.results_part import Number, select_item, select_single
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult
 
 LISTED_SUPPORTS = 3
 """Largest number of supports that a caption lists one by one."""
 
 
-def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[Figure]:
+def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[doc.Figure]:
     """Charts of a study, then force, spectrum and histogram of each pantograph, then the uplift.
 
-    Args:
-        case: The case.
-        number: Index of the case in the results.
-        anchor: Anchor of the section of the case.
+    `number` is the index of the case in the results, `anchor` that of the section of the case.
     """
     yield from _chart_figures(case.charts)
     limited = [row for row in case.criteria if not row.is_drift]
     for key, trace in sorted(case.traces.items(), key=lambda item: (len(item[0]), item[0])):
         if trace.position_m:
             rows = [row for row in limited if str(row.pantograph) == key]
-            curves = Curves("force", number, key)
+            curves = doc.Curves("force", number, key)
             figure = _force_figure(key, trace, rows, select_reference_force(case, key))
             yield replace(figure, anchor=name_figure(anchor, key), curves=curves)
         if trace.spectrum.frequency_Hz:
@@ -50,7 +57,9 @@ def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[Fi
         drawing = draw_uplift(supports, limited)
         alternative = f"Uplift at the supports. Largest: {', '.join(map(_describe_peak, supports))}."
         caption = _describe_uplift(supports)
-        yield Figure(drawing, alternative, caption, anchor=name_figure(anchor, "0"), curves=Curves("uplift", number))
+        yield doc.Figure(
+            drawing, alternative, caption, anchor=name_figure(anchor, "0"), curves=doc.Curves("uplift", number)
+        )
 
 
 def _describe_uplift(supports: Sequence[UpliftTrace]) -> str:
@@ -72,17 +81,17 @@ def name_figure(anchor: str, owner: str) -> str:
     return f"{anchor}-uplift" if owner == "0" else f"{anchor}-force-{owner}"
 
 
-def _chart_figures(charts: Sequence[Chart]) -> Iterator[Figure]:
+def _chart_figures(charts: Sequence[Chart]) -> Iterator[doc.Figure]:
     """Charts of a study; those that stand side by side and have the same linear y axis get one scale."""
     for (wide, _, scale), group in groupby(charts, lambda chart: (chart.wide, chart.y_label, chart.y_scale)):
         neighbours = list(group)
         shared = not wide and scale == "linear" and len(neighbours) > 1
         y_range = find_common_range(neighbours) if shared else None
         for chart in neighbours:
-            yield Figure(draw_chart(chart, y_range), chart.alternative, chart.caption, wide)
+            yield doc.Figure(draw_chart(chart, y_range), chart.alternative, chart.caption, wide)
 
 
-def _force_figure(key: str, trace: Traces, criteria: Sequence[Criterion], reference: list[float]) -> Figure:
+def _force_figure(key: str, trace: Traces, criteria: Sequence[Criterion], reference: list[float]) -> doc.Figure:
     start, end = trace.position_m[0], trace.position_m[-1]
     mean, std = trace.mean_N, trace.std_N
     text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
@@ -92,10 +101,10 @@ def _force_figure(key: str, trace: Traces, criteria: Sequence[Criterion], refere
     limited = select_limited(criteria)
     strip = " On the right: limits and values of the force statistics." if limited else ""
     behind = " Behind: the reference simulator." if reference else ""
-    return Figure(draw_force(trace, limited, reference), f"{text}.{behind}", f"{text}.{behind}{strip}")
+    return doc.Figure(draw_force(trace, limited, reference), f"{text}.{behind}", f"{text}.{behind}{strip}")
 
 
-def _spectrum_figure(key: str, trace: Traces, quantities: Mapping[str, Number]) -> Figure:
+def _spectrum_figure(key: str, trace: Traces, quantities: Mapping[str, Number]) -> doc.Figure:
     values = [
         f"{low:g} to {high:g} Hz: {format_value(select_single(quantities[name]))} N"
         for low, high, name in BANDS
@@ -103,11 +112,219 @@ def _spectrum_figure(key: str, trace: Traces, quantities: Mapping[str, Number]) 
     ]
     caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
     alternative = f"{caption} {'; '.join(values)}." if values else caption
-    return Figure(draw_spectrum(trace, quantities), alternative, caption, wide=False)
+    return doc.Figure(draw_spectrum(trace, quantities), alternative, caption, wide=False)
 
 
-def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> Figure:
+def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> doc.Figure:
     edges = histogram.edges_N
     caption = f"Pantograph {key}: histogram of the 20 Hz force."
     alternative = f"{caption} From {format_value(edges[0])} N to {format_value(edges[-1])} N."
-    return Figure(draw_histogram(trace, histogram), alternative, caption, wide=False)
+    return doc.Figure(draw_histogram(trace, histogram), alternative, caption, wide=False)
+
+
+# Contact force over the track, its spectrum and its histogram.
+# Levels of the force whose limits are drawn beside it, in this order, under short names.
+FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
+
+
+MOST_SUPPORT_TICKS = 12
+"""Largest number of supports whose positions are the ticks of the track."""
+
+REFERENCE_STYLE: PlotStyle = {
+    "color": INK,
+    "linewidth": 1.1,
+    "linestyle": (0, (3, 1.5)),
+    "label": "reference, 0–20 Hz",
+}
+"""Style of the force of the reference; it is hidden where the force of the system lies on it."""
+
+
+@render_svg
+def draw_force(trace: Traces, limited: Sequence[Criterion], reference: list[float]) -> Figure:
+    """Contact force of one pantograph over its reference, if any; on the right, the limits of `select_limited`."""
+    figure = Figure(figsize=(FULL, 2.25))
+    if limited:
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
+        _draw_limits(right, limited)
+    else:
+        left = figure.subplots()
+    position = trace.position_m
+    if trace.force_N:
+        left.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
+    if reference:
+        left.plot(position, reference, **REFERENCE_STYLE)
+    if trace.force_20_N:
+        left.plot(position, trace.force_20_N, color=INK, linewidth=1.2, label="0–20 Hz")
+    _draw_levels(left.axhline, trace)
+    for number, support in enumerate(trace.supports_m):
+        left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
+    left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
+    if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
+        left.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
+    add_legend(left, 3 if reference else 5)
+    return figure
+
+
+def select_limited(criteria: Sequence[Criterion]) -> list[Criterion]:
+    """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LEVELS`."""
+    return [
+        row
+        for name in FORCE_LEVELS
+        for row in criteria
+        if row.quantity == name and (row.lower is not None or row.upper is not None)
+    ]
+
+
+def _draw_limits(axes: Axes, rows: Sequence[Criterion]) -> None:
+    """One column per statistic: its limits as a bar, its value as a disc, cross or ring."""
+    for column, row in enumerate(rows):
+        lower, upper = row.lower, row.upper
+        bounds = [limit for limit in (lower, upper) if limit is not None]
+        if lower is not None and upper is not None:
+            axes.fill_between([column - 0.32, column + 0.32], lower, upper, color=LIMIT_FILL, linewidth=0)
+        axes.hlines(bounds, column - 0.36, column + 0.36, color=INK, linewidth=1.2)
+        if len(bounds) == 1:  # an arrow from the only limit into the permitted side
+            arrow = {"arrowstyle": "<-", "color": INK, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
+            tip = (0, 16 if upper is None else -16)
+            axes.annotate("", (column, bounds[0]), xytext=tip, textcoords="offset points", arrowprops=arrow)
+        if row.value is not None:
+            marker, face = {"pass": ("o", INK), "fail": ("X", INK)}.get(row.verdict, ("o", "white"))
+            axes.plot(column, row.value, marker, color=INK, markerfacecolor=face, markersize=5)
+    axes.set(xlim=(-0.7, len(rows) - 0.3), xlabel="limits")
+    axes.set_xticks(range(len(rows)), [FORCE_LEVELS[row.quantity] for row in rows])
+    axes.tick_params(axis="both", length=0, labelleft=False)
+    axes.spines.left.set_visible(False)
+
+
+@render_svg
+def draw_spectrum(trace: Traces, quantities: Mapping[str, Number]) -> Figure:
+    """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS."""
+    frequency, amplitude = trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N
+    figure = Figure(figsize=(HALF, 2.0))
+    axes = figure.subplots()
+    axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
+    above: PlotStyle = {"va": "bottom", "fontsize": 7}
+    for number, (low, high, quantity) in enumerate(BANDS):
+        axes.axvspan(low, high, color=PALE if number % 2 == 0 else "white", zorder=0)
+        axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
+        rms = select_single(quantities.get(quantity))
+        text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
+        axes.text((low + high) / 2, 1.02, text, ha="center", transform=axes.get_xaxis_transform(), **above)
+    axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", transform=axes.transAxes, **above)
+    axes.set_ylim(bottom=0)
+    axes.set(xlim=(0, 50), xticks=[0, 5, 10, 20, 30, 40, 50], xlabel="frequency [Hz]", ylabel="amplitude [N]")
+    return figure
+
+
+@render_svg
+def draw_histogram(trace: Traces, histogram: Histogram) -> Figure:
+    """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
+    edges, share = histogram.edges_N, histogram.share_pct
+    figure = Figure(figsize=(HALF, 2.0))
+    axes = figure.subplots()
+    axes.set_ylim(0, 1.08 * max(share))
+    axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)
+    if trace.std_N is not None:
+        _draw_levels(axes.axvline, trace)
+        axes.margins(x=0.04)
+        add_legend(axes)
+    axes.set(xlabel="contact force, 0–20 Hz [N]", ylabel="share of samples [%]")
+    return figure
+
+
+def _draw_levels(draw_line: Callable[..., object], trace: Traces) -> None:
+    """The mean and mean plus and minus three standard deviations, if they are known."""
+    mean, std = trace.mean_N, trace.std_N
+    if std is not None:
+        draw_line(mean, color=INK, linewidth=0.9, linestyle="-.", label="mean")
+        for level, label in ((mean + 3 * std, "mean ± 3 σ"), (mean - 3 * std, None)):
+            draw_line(level, color=INK, linewidth=0.9, linestyle="--", label=label)
+
+
+# Uplift of the contact wire at the supports.
+MOST_NAMED = 8
+"""Largest number of supports with a line style each; of more, only the largest uplift stands out."""
+
+
+@render_svg
+def draw_uplift(supports: Sequence[UpliftTrace], criteria: Sequence[Criterion]) -> Figure:
+    """Uplift over time at the supports of a case, with the limits of the maximum where its criteria grade it."""
+    figure = Figure(figsize=(FULL, 2.1))
+    axes = figure.subplots()
+    if len(supports) <= MOST_NAMED:
+        for number, support in enumerate(supports):
+            # Two shades times four dashes: neighbours differ in the shade, and no two of eight curves are equal.
+            shade, style = SHADES[number % 2], LINES[number // 2 % len(LINES)]
+            name = f"support at {support.support_m:g} m"
+            axes.plot(support.time_s, support.uplift_mm, style, color=shade, linewidth=1.1, label=name)
+    else:
+        _draw_largest(axes, supports)
+    limits = {(row.lower, row.upper) for row in criteria if row.quantity == "max_uplift_at_support_mm"}
+    for lower, upper in sorted(limits, key=str):
+        levels = [level for level in (lower, upper) if level is not None]
+        if lower is not None and upper is not None:
+            axes.axhspan(lower, upper, color=LIMIT_FILL, zorder=0, label="limits of the maximum")
+        elif levels:
+            axes.axhline(levels[0], color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
+    axes.set(xlabel="time [s]", ylabel="uplift [mm]")
+    add_legend(axes, columns=4)
+    return figure
+
+
+def _draw_largest(axes: Axes, supports: Sequence[UpliftTrace]) -> None:
+    """All supports in grey with the largest uplift drawn over them: a name for each would fill the figure."""
+    largest = max(supports, key=lambda support: max(support.uplift_mm))
+    others = [support for support in supports if support is not largest]
+    for support in others:
+        name = "other supports" if support is others[0] else None
+        axes.plot(support.time_s, support.uplift_mm, color=SHADES[2], linewidth=0.8, label=name)
+    name = f"largest: support at {largest.support_m:g} m"
+    axes.plot(largest.time_s, largest.uplift_mm, color=INK, linewidth=1.3, label=name)
+
+
+# Values of the reference simulator beside those of the system under test, on request; they decide no verdict.
+REFERENCE_PLACE = 4
+"""Place of the column in a table of criteria: behind value and error."""
+
+
+def reference_note(case: CaseResult) -> tuple[doc.Block, ...]:
+    """Sentence on the reference of a case; empty if none was requested."""
+    reference = case.reference
+    if reference is None:
+        return ()
+    name = f"{reference.name} {reference.version}"
+    if reference.reason is not None:
+        return (doc.Paragraph(f"{name}: no values for comparison, {reference.reason}."),)
+    return (doc.Paragraph(f"Reference: values of the {name}, for information. They take part in no verdict."),)
+
+
+def insert_reference(case: CaseResult, table: doc.Table, criteria: Sequence[Criterion]) -> doc.Table:
+    """Table of criteria with a column of the values of the reference, if the case has them."""
+    if not has_reference(case):
+        return table
+    column = doc.Column("Reference", number=True, short="Refer-\nence")
+    values = [format_value(find_reference(case, item)) for item in criteria]
+    return replace(
+        table,
+        columns=(*table.columns[:REFERENCE_PLACE], column, *table.columns[REFERENCE_PLACE:]),
+        rows=tuple(
+            (*row[:REFERENCE_PLACE], value, *row[REFERENCE_PLACE:])
+            for row, value in zip(table.rows, values, strict=True)
+        ),
+    )
+
+
+def has_reference(case: CaseResult) -> bool:
+    """Whether a case has values of the reference."""
+    return case.reference is not None and case.reference.reason is None
+
+
+def find_reference(case: CaseResult, criterion: Criterion) -> float | None:
+    """Value of the reference for a criterion; None if it has none."""
+    quantities = {} if case.reference is None else case.reference.quantities
+    return select_item(quantities.get(str(criterion.pantograph), {}).get(criterion.quantity), criterion.item)
+
+
+def select_reference_force(case: CaseResult, key: str) -> list[float]:
+    """Filtered force of the reference at the drawn positions of a pantograph; empty if there is none."""
+    return [] if case.reference is None else case.reference.force_20_N.get(key, [])

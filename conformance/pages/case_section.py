@@ -9,8 +9,7 @@ from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import draw_case_figures
-from pantocheck.conformance.pages.comparison_section import comparison_blocks
+from pantocheck.conformance.pages.case_figures import draw_case_figures, reference_note
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.line_figure import line_figures, line_reference, scheme_figures
@@ -20,7 +19,7 @@ from pantocheck.conformance.pages.quantity_tables import (
     list_skipped,
     uncertainty_blocks,
 )
-from pantocheck.conformance.pages.reference_values import reference_note
+from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import describe_record, summarise_case
@@ -46,15 +45,11 @@ def list_shown_cases(cases: Sequence[CaseResult]) -> list[ShownCase]:
     """Cases with a section of their own: all but those that were skipped without any value."""
     shown: list[ShownCase] = []
     for number, case in enumerate(cases):
-        if case.verdict != "skip" or any(_list_shown_parts(case)):
+        parts = (case.criteria, case.quantities, case.traces, case.charts, case.tables, case.uplift)
+        if case.verdict != "skip" or any(parts):
             earlier = tuple(other.case for other in shown)
             shown.append(ShownCase(case, number, f"case-{number + 1}", earlier))
     return shown
-
-
-def _list_shown_parts(case: CaseResult) -> tuple[object, ...]:
-    """Parts of a case that its section shows."""
-    return (case.criteria, case.quantities, case.traces, case.charts, case.tables, case.uplift)
 
 
 def build_case_section(shown: ShownCase) -> doc.Section:
@@ -76,7 +71,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     blocks += verification_blocks(case, anchor)
     blocks += baseline_blocks(case, anchor)
     blocks += comparison_blocks(case, shown.number, anchor)
-    blocks += event_blocks(case)
+    blocks += (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
     blocks += [doc.Section(table.caption, (_study_table(case, table),)) for table in _select_tables(case)]
     blocks += _list_details(shown)
     return doc.Section(case.title, tuple(blocks), anchor=anchor, ruled=True)
@@ -143,11 +138,6 @@ def _join_sources(rows: Iterable[list[str]], tolerances: set[str]) -> Iterator[l
 # Sections of a case on the events of its record: places of the line, and contact losses.
 LISTED_LOSSES = 40
 """Largest number of contact losses in the table of a page; results.json lists more."""
-
-
-def event_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Blocks on the events of a record; empty if it has none."""
-    return (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
 
 
 def _build_loss_section(losses: Mapping[str, Sequence[ContactLossFacts]]) -> tuple[doc.Block, ...]:
@@ -234,13 +224,7 @@ KEY_UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K"
 
 
 def input_blocks(case: CaseResult, earlier: tuple[CaseResult, ...], anchor: str) -> tuple[doc.Block, ...]:
-    """Table of the inputs of a case with its sources, and the groups that are those of an earlier case.
-
-    Args:
-        case: The case.
-        earlier: Cases that stand before it in the report.
-        anchor: Anchor of the sources, before their number.
-    """
+    """Inputs of a case with their sources, whose anchors begin with `anchor`, and groups that an earlier case has."""
     single, groups = _split_single_values(case.inputs)
     repeated: dict[str, list[str]] = defaultdict(list)
     shown = []

@@ -5,15 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.core.figure_style import (
-    FULL,
-    GREY,
-    INK,
-    SHADES,
-    add_legend,
-    label_decades,
-    render_svg,
-)
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, SHADES, add_legend, label_decades, render_svg
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_paired_rows
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
@@ -121,14 +113,10 @@ def _component(row: Coefficient | Observability) -> str:
     return row.kind.replace("_", " ")
 
 
-def _matrix(row: Coefficient | Observability) -> str:
-    return row.matrix
-
-
 def _coefficient_table(rows: Sequence[Coefficient]) -> doc.Table:
     cells: dict[str, Callable[[Coefficient], str]] = {
         "Component": _component,
-        "Multiplies": _matrix,
+        "Multiplies": lambda row: row.matrix,
         "Value": lambda row: f"{format_value(row.value)} {COEFFICIENT_UNITS[row.matrix]}",
         "95 % interval": lambda row: f"{format_value(row.low_95, 3)} to {format_value(row.high_95, 3)}",
         "Determined": lambda row: "yes" if row.determined else "not determined",
@@ -139,7 +127,7 @@ def _coefficient_table(rows: Sequence[Coefficient]) -> doc.Table:
 def _observability_table(rows: Sequence[Observability]) -> doc.Table:
     cells: dict[str, Callable[[Observability], str]] = {
         "Component": _component,
-        "Multiplies": _matrix,
+        "Multiplies": lambda row: row.matrix,
         "Share [%]": lambda row: format_percent(row.largest_share, 3),
         "Std": lambda row: format_value(row.std, 2),
         "Plausible / std": lambda row: format_value(row.plausible_over_std, 3),
@@ -150,10 +138,6 @@ def _observability_table(rows: Sequence[Observability]) -> doc.Table:
     return doc.make_grid("Information of the modes on each coefficient", rows, cells)
 
 
-def _explain_omission(pair: PairedMode) -> str:
-    return "no: overlaps another mode" if pair.overlapping else "no: outlier of its group"
-
-
 def _pair_table(pairs: Sequence[PairedMode]) -> doc.Table:
     cells: dict[str, Callable[[PairedMode], str]] = {
         "Measured [Hz]": lambda pair: format_value(pair.measured_Hz, 5),
@@ -162,7 +146,9 @@ def _pair_table(pairs: Sequence[PairedMode]) -> doc.Table:
         "Group": lambda pair: str(pair.group),
         "Measured ζ [%]": lambda pair: format_percent(pair.measured),
         "Fitted ζ [%]": lambda pair: format_percent(pair.fitted),
-        "Used": lambda pair: "yes" if pair.used else _explain_omission(pair),
+        "Used": lambda pair: (
+            "yes" if pair.used else f"no: {'overlaps another mode' if pair.overlapping else 'outlier of its group'}"
+        ),
     }
     return doc.make_grid("Measured modes and their computed counterparts", pairs, cells)
 

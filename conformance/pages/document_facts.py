@@ -86,7 +86,7 @@ def list_case_facts(case: CaseResult) -> Facts:
     return Facts(
         _drop_empty(
             ("Speed", _with_unit(run.speed_km_h, "km/h")),
-            *_list_law_forces(run),
+            *((f"Force law of pantograph {number}", force.text) for number, force in run.law_forces.items()),
             ("Analysis section", f"{format_plain(section[0])} m to {format_plain(section[1])} m" if section else None),
             ("Filter", _describe_filter(run)),
             ("Sampling rate of the record", _with_unit(run.rate_Hz, "samples per second")),
@@ -106,10 +106,6 @@ def list_case_facts(case: CaseResult) -> Facts:
             ("Wall time / simulated time", format_value(wall / simulated, 3) if wall and simulated else None),
         ),
     )
-
-
-def _list_law_forces(run: RunFacts) -> list[tuple[str, str]]:
-    return [(f"Force law of pantograph {number}", force.text) for number, force in run.law_forces.items()]
 
 
 def _describe_filter(run: RunFacts) -> str:

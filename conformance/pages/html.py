@@ -15,8 +15,7 @@ from markupsafe import Markup
 
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.document import Document, to_plain
-from pantocheck.conformance.pages.embedded_results import BLOCK_ID, encode_data_block
+from pantocheck.conformance.pages.document import BLOCK_ID, Document, encode_data_block, to_plain
 from pantocheck.conformance.pages.words import bind_page_units, read_words
 
 

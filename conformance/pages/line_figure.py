@@ -175,12 +175,7 @@ def _shorten(name: str) -> str:
 
 # Drawing of the line of a case; a drawing that an earlier case has is named only.
 def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.Figure, ...]:
-    """Drawing of the line at rest; none without its shape, or if an earlier case has the same drawing.
-
-    Args:
-        case: The case.
-        earlier: Cases that stand before it in the report.
-    """
+    """Drawing of the line at rest; none without its shape, or if an earlier case of the report has the same drawing."""
     shape = case.line_shape
     if shape is None or _find_equal(case, earlier) is not None:
         return ()

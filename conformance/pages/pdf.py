@@ -12,8 +12,7 @@ from matplotlib.ft2font import FT2Font
 
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.document import Document, to_plain
-from pantocheck.conformance.pages.embedded_results import NAME, encode_attachment
+from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
 from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
@@ -69,12 +68,7 @@ def replace_missing_glyphs(text: str) -> str:
 
 # Appearance of a visible signature, typeset by Typst as a page of its own.
 def render_signature_box(lines: Sequence[str], width: int, height: int) -> bytes:
-    """PDF of one untagged page with lines of text in a frame.
-
-    Args:
-        lines: Lines of text; each is shrunk to the width of the box.
-        width, height: Size of the box [points].
-    """
+    """PDF of one untagged page [points] with lines of text in a frame, each shrunk to the width of the box."""
     data = {"lines": [replace_missing_glyphs(line) for line in lines], "width": width, "height": height}
     files = {
         "main.typ": (TEMPLATES / "signature-box.typ").read_bytes(),

@@ -5,15 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from pantocheck.conformance.core.figure_style import (
-    FULL,
-    GREY,
-    INK,
-    SHADES,
-    add_box,
-    add_legend,
-    render_svg,
-)
+from pantocheck.conformance.core.figure_style import FULL, GREY, INK, SHADES, add_box, add_legend, render_svg
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value

@@ -8,8 +8,8 @@ from typing import Any
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
 from pantocheck.conformance.core.results_part import select_single
+from pantocheck.conformance.pages.case_figures import has_reference
 from pantocheck.conformance.pages.document import Block, BulletList, Code, Column, Drawing, RichText, SmallPrint, Table
-from pantocheck.conformance.pages.reference_values import has_reference
 from pantocheck.conformance.pages.two_verdicts import list_criteria
 from pantocheck.conformance.pages.words import (
     format_value,

@@ -123,13 +123,7 @@ SCALE_WIDTH, SCALE_GAP = 0.12, 0.12
 
 @render_svg
 def draw_spectrogram(data: Spectrogram, marks: dict[str, float], limits: tuple[float, float]) -> Figure:
-    """Levels over time and frequency.
-
-    Args:
-        data: Entry `spectrogram` of a line.
-        marks: Times after the release that are marked, by their names [s].
-        limits: Start and end of the record after the release [s].
-    """
+    """Levels over time and frequency, with named times and limits of the record after the release [s]."""
     grid = PanelGrid(FULL, 1.6, columns=2, right=0.85, between_columns=0.5)
     figure, panels = add_panels(grid)
     whole, start = panels[0]

@@ -9,9 +9,7 @@ from pathlib import Path
 from pantocheck.conformance.core.extras import install_line, is_installed
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.reproducibility import read_source_date
-from pantocheck.conformance.pages.badge import render_badge
-from pantocheck.conformance.pages.document import Document
-from pantocheck.conformance.pages.embedded_results import strip_times
+from pantocheck.conformance.pages.document import Document, strip_times
 from pantocheck.conformance.results.file_places import ReportPlaces
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
@@ -99,11 +97,11 @@ def write_pages(results: Results, folder: Path, formats: Sequence[str], places: 
         for name in pages:
             write_report(certificate, folder / FILES[name])
     if "md" in formats:
-        from pantocheck.conformance.pages.summary_page import build_summary
+        from pantocheck.conformance.pages.certificate_page import build_summary
 
         write_report(build_summary(results, certificates), folder / FILES["md"])
     if "junit" in formats:
-        from pantocheck.conformance.pages.junit import render_junit
+        from pantocheck.conformance.pages.ci_reports import render_junit
 
         write_atomically(folder / FILES["junit"], render_junit(results, certificates))
     if "csv" in formats:
@@ -111,13 +109,15 @@ def write_pages(results: Results, folder: Path, formats: Sequence[str], places: 
 
         write_atomically(folder / FILES["csv"], render_quantity_list(results).encode("utf-8"))
     if "badge" in formats:
+        from pantocheck.conformance.pages.two_verdicts import render_badge
+
         write_atomically(folder / FILES["badge"], render_badge(results).encode("utf-8"))
     if "annotations" in formats or "codequality" in formats:
         _write_annotations(results, folder, formats, places)
 
 
 def _write_annotations(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces) -> None:
-    from pantocheck.conformance.pages.annotations import list_annotations, render_code_quality, render_workflow_commands
+    from pantocheck.conformance.pages.ci_reports import list_annotations, render_code_quality, render_workflow_commands
 
     found = list_annotations(results, places)
     if "annotations" in formats:

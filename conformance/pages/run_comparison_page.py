@@ -1,7 +1,18 @@
 """Report on a comparison of runs, from comparison.json."""
 
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PlotStyle, add_legend, render_svg
+from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import clean_model
+from pantocheck.conformance.pages.criteria_table import Basis
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
@@ -14,10 +25,17 @@ from pantocheck.conformance.pages.words import (
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
     ComparedQuantity,
-    ComparedSource,
     ForceAgreement,
     RunComparison,
 )
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
+from pantocheck.conformance.results.measured_run_format import (
+    ForceStatistics,
+    MeasuredPantograph,
+    MeasuredRun,
+    SpanStatistics,
+)
+from pantocheck.conformance.results.results_format import CaseResult
 
 RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "
@@ -31,7 +49,10 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     results = clean_model(results)
     names = [subject.name for subject in results.subjects]
     header = doc.PlainHeader("Comparison of runs", f"{', '.join(names[1:])} beside {names[0]}.")
-    facts = {subject.name: _describe_subject(subject) for subject in results.subjects}
+    facts = {
+        subject.name: f"{subject.source}, {subject.digest}" if subject.digest else str(subject.source)
+        for subject in results.subjects
+    }
     suite = results.suite
     facts |= {"Suite": f"Pantocheck {suite.version}", "Digest of the suite": suite.digest}
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
@@ -39,10 +60,6 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
         owners = [_build_owner(owner, names) for owner in case.owners if owner.quantities]
         blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
     return doc.Document(header.headline, header, tuple(blocks))
-
-
-def _describe_subject(subject: ComparedSource) -> str:
-    return f"{subject.source}, {subject.digest}" if subject.digest else str(subject.source)
 
 
 def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
@@ -105,3 +122,196 @@ def format_compared(quantity: ComparedQuantity, index: int) -> str:
         return text
     mark = " *" if quantity.beyond_uncertainty[index] else ""
     return f"{text} ({format_signed(difference)}{mark})"
+
+
+# Section of a case on the measured run beside it: values, curves, spectra and spans.
+def comparison_blocks(case: CaseResult, number: int, anchor: str) -> tuple[doc.Block, ...]:
+    """Blocks on the measured run of a case; empty if nothing is compared; arguments as in `draw_case_figures`."""
+    comparison = case.comparison
+    if comparison is None:
+        return ()
+    text = f"Measured record {comparison.name}. Curves show the track that both runs cover."
+    blocks: list[doc.Block] = [doc.Paragraph(text), _build_value_table(case, comparison)]
+    figures = tuple(
+        figure
+        for key, pantograph in comparison.pantographs.items()
+        for figure in _draw_figures(doc.Curves("measured", number, key), pantograph, comparison, anchor)
+    )
+    if figures:
+        blocks.append(doc.Figures(figures))
+    blocks += [
+        _build_span_table(key, pantograph.spans)
+        for key, pantograph in comparison.pantographs.items()
+        if pantograph.spans
+    ]
+    return (doc.Section("Simulated and measured run", tuple(blocks)),)
+
+
+def _build_value_table(case: CaseResult, comparison: MeasuredRun) -> doc.Table:
+    """Quantities that both runs have, with the uncertainties of both."""
+    columns = (
+        doc.Column("Quantity", share=1),
+        doc.Column("Owner"),
+        *(doc.Column(heading, number=True) for heading in ("Simulated", "±", "Measured", "±", "Difference")),
+        doc.Column("Unit"),
+    )
+    rows: list[tuple[doc.RichText, ...]] = []
+    for key, measured in comparison.quantities.items():
+        simulated, widths = case.quantities.get(key, {}), case.uncertainty.get(key, {})
+        for name, value in measured.items():
+            other = simulated.get(name)
+            if isinstance(value, list) or isinstance(other, list | None):
+                continue
+            rows.append(
+                (
+                    quantity_label(name),
+                    name_pantograph(key),
+                    format_value(other),
+                    _format_width(select_single(widths.get(name)), case.uncertainty_basis),
+                    format_value(value),
+                    format_value(select_single(comparison.uncertainty.get(key, {}).get(name)), 2),
+                    format_signed(other - value),
+                    quantity_unit(name),
+                )
+            )
+    return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
+
+
+def _format_width(width: float | None, basis: Basis) -> str:
+    """Half-width of a simulated value with two digits and its mark; a dash without one."""
+    return "–" if width is None else mark_half_width(width, format_value(width, 2), list_unknown(basis))
+
+
+def _draw_figures(
+    curves: doc.Curves, pantograph: MeasuredPantograph, comparison: MeasuredRun, anchor: str
+) -> Iterator[doc.Figure]:
+    if not pantograph.position_m:
+        return
+    who, cutoff = f"Pantograph {curves.owner}", format_plain(comparison.cutoff_Hz)
+    largest = format_value(max(map(abs, force_difference(pantograph))), 3)
+    caption = f"{who}: contact force up to {cutoff} Hz, simulated and measured; below, their difference."
+    yield doc.Figure(
+        draw_overlay(pantograph),
+        f"{caption} Largest difference {largest} N.",
+        caption,
+        anchor=f"{anchor}-measured-{curves.owner}",
+        curves=curves,
+    )
+    caption = f"{who}: amplitude spectra, simulated and measured; below, their difference."
+    yield doc.Figure(
+        draw_run_spectra(pantograph), f"{caption} The table has the RMS of the bands.", caption, wide=False
+    )
+    if pantograph.spans:
+        caption = f"{who}: mean and standard deviation of the force up to {cutoff} Hz, span by span."
+        yield doc.Figure(draw_spans(pantograph), f"{caption} The table has the values.", caption, wide=False)
+
+
+def _build_span_table(key: str, spans: Sequence[SpanStatistics]) -> doc.Table:
+    statistics: dict[str, Callable[[ForceStatistics], float]] = {
+        "Mean": lambda run: run.mean_N,
+        "σ": lambda run: run.std_N,
+        "Max.": lambda run: run.max_N,
+        "Min.": lambda run: run.min_N,
+    }
+
+    def show(run: str, select: Callable[[ForceStatistics], float], span: SpanStatistics) -> str:
+        return format_value(select(getattr(span, run)))
+
+    cells: dict[str, Callable[[SpanStatistics], str]] = {
+        "From [m]": lambda span: format_plain(span.start_m),
+        "To [m]": lambda span: format_plain(span.end_m),
+    }
+    for run, short in (("simulated", "sim."), ("measured", "meas.")):
+        cells |= {f"{label} {short}": partial(show, run, select) for label, select in statistics.items()}
+    caption = f"Pantograph {key}: statistics of the filtered force span by span [N], simulated and measured"
+    return doc.make_grid(caption, spans, cells)
+
+
+# Figures of a simulated run and a measured one: forces over the track with their difference, spectra, spans.
+SIMULATED: PlotStyle = {"color": INK, "linewidth": 1.2, "label": "simulated"}
+MEASURED: PlotStyle = {"color": GREY, "linewidth": 1.2, "linestyle": "--", "label": "measured"}
+"""Styles of the two runs; they differ without colour."""
+
+SPAN_STATISTICS: dict[str, Callable[[ForceStatistics], float]] = {
+    "mean [N]": lambda run: run.mean_N,
+    "standard\ndeviation [N]": lambda run: run.std_N,
+}
+"""Statistics that the figure of the spans shows, by their labels."""
+
+
+@render_svg
+def draw_overlay(pantograph: MeasuredPantograph) -> Figure:
+    """Filtered forces of one pantograph in both runs; below, simulated minus measured force."""
+    figure = Figure(figsize=(FULL, 3.0))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    position = pantograph.position_m
+    upper.plot(position, pantograph.simulated_N, **SIMULATED)
+    upper.plot(position, pantograph.measured_N, **MEASURED)
+    lower.plot(position, force_difference(pantograph), color=INK, linewidth=0.9)
+    lower.axhline(0.0, color=GREY, linewidth=0.8)
+    for axes in (upper, lower):
+        for support in list_span_limits(pantograph):
+            axes.axvline(support, color=GREY, linewidth=0.6, linestyle=":")
+    upper.set_ylabel("contact force [N]")
+    lower.set(xlabel="position along the track [m]", ylabel="difference [N]", xlim=(position[0], position[-1]))
+    add_legend(upper)
+    return figure
+
+
+@render_svg
+def draw_run_spectra(pantograph: MeasuredPantograph) -> Figure:
+    """Amplitude spectra of the unfiltered forces in both runs; below, simulated minus measured amplitude."""
+    figure = Figure(figsize=(HALF, 3.0))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    simulated, measured = pantograph.simulated_spectrum, pantograph.measured_spectrum
+    upper.plot(simulated.frequency_Hz, simulated.amplitude_N, **SIMULATED | {"linewidth": 0.9})
+    upper.plot(measured.frequency_Hz, measured.amplitude_N, **MEASURED | {"linewidth": 0.9})
+    frequency, difference = spectrum_difference(simulated, measured)
+    lower.plot(frequency, difference, color=INK, linewidth=0.9)
+    lower.axhline(0.0, color=GREY, linewidth=0.8)
+    upper.set_ylim(bottom=0)
+    upper.set_ylabel("amplitude [N]")
+    lower.set(xlim=(0, 50), xticks=[0, 5, 10, 20, 30, 40, 50], xlabel="frequency [Hz]", ylabel="difference [N]")
+    add_legend(upper)
+    return figure
+
+
+@render_svg
+def draw_spans(pantograph: MeasuredPantograph) -> Figure:
+    """Mean and standard deviation of the filtered force span by span in both runs."""
+    figure = Figure(figsize=(HALF, 3.0))
+    panels = figure.subplots(2, 1, sharex=True)
+    for axes, (label, select) in zip(panels, SPAN_STATISTICS.items(), strict=True):
+        _draw_span_values(axes, pantograph.spans, select)
+        axes.set_ylabel(label)
+    panels[-1].set(xlabel="position along the track [m]")
+    add_legend(panels[0])
+    return figure
+
+
+def force_difference(pantograph: MeasuredPantograph) -> list[float]:
+    """Simulated minus measured force at the drawn positions [N]."""
+    return [a - b for a, b in zip(pantograph.simulated_N, pantograph.measured_N, strict=True)]
+
+
+def spectrum_difference(simulated: Spectrum, measured: Spectrum) -> tuple[list[float], list[float]]:
+    """Frequencies of the simulated spectrum that both have [Hz], and simulated minus measured amplitude there [N]."""
+    frequency, known = np.array(simulated.frequency_Hz), np.array(measured.frequency_Hz)
+    if not known.size:
+        return [], []
+    both = (frequency >= known[0]) & (frequency <= known[-1])
+    beside = np.interp(frequency[both], known, measured.amplitude_N)
+    return frequency[both].tolist(), (np.array(simulated.amplitude_N)[both] - beside).tolist()
+
+
+def list_span_limits(pantograph: MeasuredPantograph) -> list[float]:
+    """Positions of the supports between the compared spans [m]."""
+    return sorted({place for span in pantograph.spans for place in (span.start_m, span.end_m)})
+
+
+def _draw_span_values(axes: Axes, spans: Sequence[SpanStatistics], select: Callable[[ForceStatistics], float]) -> None:
+    edges = [spans[0].start_m, *(span.end_m for span in spans)]
+    for runs, style in (([span.simulated for span in spans], SIMULATED), ([span.measured for span in spans], MEASURED)):
+        values = [select(run) for run in runs]
+        axes.step(edges, [*values, values[-1]], where="post", **style)
+    axes.set_xlim(edges[0], edges[-1])

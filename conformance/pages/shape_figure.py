@@ -48,12 +48,7 @@ class ShapeColumn:
 
 @render_svg
 def draw_shapes(columns: Sequence[ShapeColumn], supports: Sequence[float]) -> Figure:
-    """Mode shapes of several groups of modes side by side.
-
-    Args:
-        columns: Groups of modes.
-        supports: Positions of the supports [m]; empty: unknown.
-    """
+    """Mode shapes of several groups of modes side by side, with the supports [m] if they are known."""
     count = max(len(column.rows) for column in columns)
     grid = PanelGrid(
         FULL, ROW_HEIGHT * count, columns=len(columns), left=0.75, right=0.15, top=0.45, between_columns=0.9

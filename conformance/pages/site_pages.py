@@ -75,13 +75,7 @@ CONTRADICTION = "contradicts itself: {count} discrepancies, first: {first}"
 
 
 def build_site_index(title: str, published: Sequence[PublishedResults], pages: Mapping[str, str]) -> doc.Document:
-    """First page of a site.
-
-    Args:
-        title: Title of the site.
-        published: Results from the oldest to the latest.
-        pages: Page of each case by its id.
-    """
+    """First page of a site, from results in the order of their dates, and the page of each case by its id."""
     systems = list(dict.fromkeys(run.system for run in published))
     counted = ((systems, "system"), (pages, "case"), (published, "run"))
     headline = f"{', '.join(count_noun(len(items), noun) for items, noun in counted)}."
@@ -183,8 +177,7 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
 
 def _read(case: CaseResult, owner: str, name: str) -> float | None:
     """Value of a quantity; None if it is not known."""
-    value = case.quantities.get(owner, {}).get(name)
-    return select_single(value)
+    return select_single(case.quantities.get(owner, {}).get(name))
 
 
 def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:

@@ -1,13 +1,14 @@
 """Sections of the steps of a procedure: verdict, criteria, figures and tables."""
 
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.pantograph_pages import build_response_sections
-from pantocheck.conformance.pages.procedure_page import anchor_step, name_step
+from pantocheck.conformance.pages.scope_page import anchor_step, name_step
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
@@ -20,6 +21,7 @@ from pantocheck.conformance.pages.words import (
     read_words,
 )
 from pantocheck.conformance.quantities.limit_text import is_relative_margin
+from pantocheck.conformance.results.comparison_format import ModelComparison
 from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import (
     Evidence,
@@ -30,6 +32,8 @@ from pantocheck.conformance.results.procedure_format import (
     ValidityClaim,
 )
 from pantocheck.conformance.results.results_format import CaseResult
+
+Compared = TypeVar("Compared", bound=ModelComparison)
 
 SHORT_STEPS = ("simulation_parameters", "limits_of_validity")
 """Steps that need no page of their own."""
@@ -68,18 +72,11 @@ def build_step_section(
     )
 
 
-def _pantograph_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
-    return tuple(
-        doc.Section(response.model.name, (*doc.warn(list_remarks(response)), *build_response_sections(response)))
-        for response in procedure.responses
-    )
-
-
-def _static_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
-    return tuple(
-        doc.Section(statics.model.name, (*doc.warn(list_remarks(statics)), *build_static_sections(statics)))
-        for statics in procedure.statics
-    )
+def _comparison_blocks(
+    comparisons: Sequence[Compared], build: Callable[[Compared], Sequence[doc.Block]]
+) -> tuple[doc.Block, ...]:
+    """Section of each comparison of a model with measured values."""
+    return tuple(doc.Section(one.model.name, (*doc.warn(list_remarks(one)), *build(one))) for one in comparisons)
 
 
 def _parameter_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
@@ -271,8 +268,8 @@ def _find_step(procedure: Procedure, name: str) -> ProcedureStep:
 
 
 BUILDERS: dict[StepName, Callable[[Procedure, Sequence[CaseResult]], tuple[doc.Block, ...]]] = {
-    "pantograph_model": _pantograph_blocks,
-    "static_check": _static_blocks,
+    "pantograph_model": lambda procedure, cases: _comparison_blocks(procedure.responses, build_response_sections),
+    "static_check": lambda procedure, cases: _comparison_blocks(procedure.statics, build_static_sections),
     "simulation_parameters": _parameter_blocks,
     "reference_models": _reference_blocks,
     "line_test": _line_test_blocks,

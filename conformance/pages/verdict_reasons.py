@@ -5,11 +5,9 @@ from collections.abc import Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.criteria_table import criterion_title
+from pantocheck.conformance.pages.criteria_table import count_sentences, criterion_title
 from pantocheck.conformance.pages.document import BulletList, Section
-from pantocheck.conformance.pages.findings_table import count_sentences
-from pantocheck.conformance.pages.procedure_page import build_procedure_headline
-from pantocheck.conformance.pages.scope_page import summarise_identity
+from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
@@ -101,7 +99,11 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Drift from the baseline": [_reason(pair) for pair in drifts],
-        "Not verified": _record_reasons(results),
+        "Not verified": [
+            f"{case.id}: {describe_record(case)}"
+            for case in results.cases
+            if case.record and case.record.state == "unverified"
+        ],
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
         "Closer to a limit than the uncertainty": [
             _close_value(pair) for pair in _criteria(results) if pair[1].is_close
@@ -165,11 +167,6 @@ def _case_reasons(results: Results, verdict: str) -> list[str]:
         if case.verdict == verdict and case.reason:
             cases.setdefault(case.reason, []).append(case.id)
     return [f"{', '.join(ids)}: {reason}" for reason, ids in cases.items()]
-
-
-def _record_reasons(results: Results) -> list[str]:
-    cases = [case for case in results.cases if case.record and case.record.state == "unverified"]
-    return [f"{case.id}: {describe_record(case)}" for case in cases]
 
 
 def _value(pair: CaseCriterion) -> str:

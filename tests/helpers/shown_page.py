@@ -3,12 +3,11 @@
 from dataclasses import replace
 from typing import Any
 
-from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.results_format import Results
 
 

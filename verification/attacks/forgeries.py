@@ -28,13 +28,12 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
 from pantocheck.conformance.documents.document_reading import read_certificate
-from pantocheck.conformance.documents.record_check import check_record_quantities
-from pantocheck.conformance.documents.rerun_check import check_rerun
+from pantocheck.conformance.documents.repetition_check import check_record_quantities, check_rerun
 from pantocheck.conformance.documents.verification import Verification, verify_certificate
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.pages.embedded_results import encode_attachment, encode_data_block
+from pantocheck.conformance.pages.document import encode_attachment, encode_data_block
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.records.record_writing import write_record

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import scipy.io
 
-from pantocheck.conformance.app.new_files import read_template
+from pantocheck.conformance.app.commands.new_command import read_template
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.documents.verification import verify_document

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pantocheck.conformance.app.sidecar_draft import draft_record_sidecar
+from pantocheck.conformance.app.commands.describe_command import draft_record_sidecar
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record

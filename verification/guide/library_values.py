@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from pantocheck.conformance.app.self_test.bench import MutantResult, run_self_test
+from pantocheck.conformance.app.self_test.mutants import MutantResult, run_self_test
 from pantocheck.conformance.app.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Iterable, Sequence
 
 from pantocheck.conformance.app.commands.system_self_test_command import DEFAULT_CASES, NUMERICAL_CASES
-from pantocheck.conformance.app.self_test.bench import MutantResult, run_self_test
+from pantocheck.conformance.app.self_test.mutants import MutantResult, run_self_test
 from pantocheck.conformance.app.self_test.numerical_faults import NumericalResult, run_numerical_faults
 from pantocheck.conformance.cases.library import select_cases
 

@@ -8,7 +8,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.pages.findings_table import count_sentences, list_findings
+from pantocheck.conformance.pages.criteria_table import count_sentences, list_findings
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_reading import read_results
 

@@ -1,5 +1,8 @@
 """`pantocheck campaign`: many runs with varied inputs, which can be interrupted and resumed."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import timedelta
 from pathlib import Path
 from typing import Annotated
 
@@ -7,19 +10,16 @@ import typer
 from rich.console import RenderableType
 from rich.text import Text
 
-from pantocheck.conformance.app.commands.campaign_progress import report_campaign
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.options import SetOption, TrustOption
+from pantocheck.conformance.app.commands.progress_display import show_line
 from pantocheck.conformance.campaigns.campaign_columns import choose_values
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress
 from pantocheck.conformance.campaigns.campaign_evaluation import RunPair, evaluate_campaign, pair_runs
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution, check_variation, parse_variation
-from pantocheck.conformance.campaigns.campaign_preparation import (
-    PreparedCampaign,
-    find_campaign_file,
-    prepare_campaign,
-)
+from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, find_campaign_file, prepare_campaign
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore, open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import write_campaign_table, write_parquet
 from pantocheck.conformance.campaigns.run_executors import choose_executor
@@ -199,3 +199,26 @@ def _write_results(results: CampaignResults, store: CampaignStore, folder: Path)
     write_model(files[1], results)
     report = build_campaign_report(results)
     return [*files, *write_document(report, folder / "campaign")]
+
+
+# Progress of a campaign: finished and failed runs, rate and remaining time.
+@contextmanager
+def report_campaign() -> Iterator[Callable[[CampaignProgress], None]]:
+    """Show the progress of a campaign on standard error; yields the callback of the driver."""
+    latest: list[CampaignProgress] = []
+
+    def keep(progress: CampaignProgress) -> None:
+        latest[:] = [progress]
+
+    with show_line(lambda: describe_progress(latest[0]) if latest else ""):
+        yield keep
+
+
+def describe_progress(progress: CampaignProgress) -> str:
+    """Progress in one line: finished and failed runs, rate and remaining time."""
+    counts = f"{progress.finished} of {progress.total} runs finished, {progress.failed} failed"
+    if progress.rate is None or progress.remaining_s is None:
+        return counts
+    remaining = timedelta(seconds=round(progress.remaining_s))
+    rate = f"{progress.rate:.1f} per second" if progress.rate >= 1 else f"{60 * progress.rate:.1f} per minute"
+    return f"{counts}, {rate}, {remaining} remaining"

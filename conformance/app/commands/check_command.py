@@ -1,4 +1,4 @@
-"""`pantocheck check`: check of input files, with all their problems."""
+"""`pantocheck check` and `schema`: check of input files, with all their problems, and the schemas of their formats."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,13 +7,14 @@ import typer
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption
-from pantocheck.conformance.app.commands.command_output import CommandOutput, list_problems
+from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped, list_problems
 from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.guard import BAD_INPUT, strip_control_characters
 from pantocheck.conformance.app.file_check import check_input_file, list_input_files
-from pantocheck.conformance.app.schemas import READ_FORMATS
+from pantocheck.conformance.app.schemas import FORMAT_NAMES, READ_FORMATS, build_schema, format_schema
 from pantocheck.conformance.cases.catalogue import open_catalogue
-from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.files import write_atomically
+from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.texts import count_noun
 
 
@@ -59,3 +60,26 @@ def check_command(
     if len(lines) == 1 and not files[0].is_dir():
         return CommandOutput(lines[0].text, checked)
     return CommandOutput(Text(f"{count_noun(len(paths), 'file')} checked, all valid"), checked, lines)
+
+
+# `pantocheck schema`: JSON Schemas of the file formats.
+def schema_command(
+    name: Annotated[
+        str | None, typer.Argument(help=f"Format: {', '.join(FORMAT_NAMES)}; all if omitted.", show_default=False)
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write NAME.schema.json to this folder instead of printing.")] = None,
+) -> CommandOutput:
+    """Print the JSON Schema of a file format.
+
+    Example: pantocheck schema case > case.schema.json
+    """
+    if name is not None and name not in FORMAT_NAMES:
+        raise InputError(f"schema '{name}'", "there is no such format", suggest_names(name, FORMAT_NAMES))
+    schemas = {each: build_schema(each) for each in (FORMAT_NAMES if name is None else (name,))}
+    if out is None:
+        shown = schemas if name is None else schemas[name]
+        return CommandOutput(Text(), shown, [Unwrapped(format_schema(shown).rstrip("\n"))])
+    files = [out / f"{each}.schema.json" for each in schemas]
+    for path, schema in zip(files, schemas.values(), strict=True):
+        write_atomically(path, format_schema(schema).encode())
+    return CommandOutput(Text(f"{len(files)} schemas"), schemas, files=files)

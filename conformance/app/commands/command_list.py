@@ -63,6 +63,17 @@ PANELS: dict[str, dict[str, str]] = {
 }
 """Commands by panel of the help, each with its summary, which is the first line of its docstring, too."""
 
+SHARED_FILES = {
+    "run": ("assess",),
+    "check": ("schema",),
+    "line_file": ("line import", "line export", "line draw"),
+    "measured_comparison": ("line statics", "pantograph compare", "drop compare"),
+    "drop_simulate": ("drop campaign",),
+    "drop_identify": ("drop fit",),
+    "system_self_test": ("system check",),
+}
+"""Begin of the names of files with several commands, each with its commands; another command has its own file."""
+
 COMMANDS = {name: summary for commands in PANELS.values() for name, summary in commands.items()}
 """Summary of each command by its name; the words of a command in a group are separated by a space."""
 
@@ -112,16 +123,17 @@ def _build_group(word: str) -> LazyGroup:
 
 def _import_command(name: str, name_in_code: str) -> ModuleType:
     """File of a command. Those that compute with the compiled kernels themselves need the extra `simulator`."""
+    file = next((file for file, commands in SHARED_FILES.items() if name in commands), name_in_code)
     with refuse_missing_package(f"pantocheck {name}"):
-        return import_module(f"pantocheck.conformance.app.commands.{name_in_code}")
+        return import_module(f"pantocheck.conformance.app.commands.{file}_command")
 
 
 def load_command(name: str) -> Any:
     """Command of a name, imported from its file, with the options of the output."""
-    name_in_code = f"{name.replace('-', '_').replace(' ', '_')}_command"
-    function = getattr(guard_command(_import_command)(name, name_in_code), name_in_code)
+    name_in_code = name.replace("-", "_").replace(" ", "_")
+    function = getattr(guard_command(_import_command)(name, name_in_code), f"{name_in_code}_command")
     # Tables and JSON would slow the help down.
-    execution = import_module("pantocheck.conformance.app.commands.command_execution")
+    execution = import_module("pantocheck.conformance.app.commands.command_output")
     single = typer.Typer(add_completion=False, rich_markup_mode=None)
     single.command(name.rpartition(" ")[2], epilog=OUTPUT_EPILOG)(execution.build_executable(name, function))
     return get_command(single)

@@ -1,19 +1,32 @@
-"""Output of a command: a conclusion and details for a reader, data for a program, and files."""
+"""Execution of a command and its output: conclusion and details for a reader, data for a program, files and log."""
 
+import inspect
 import json
+import logging
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import typer
 from pydantic import BaseModel
 from rich.console import RenderableType
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.console import console, error_console, escape_text
-from pantocheck.conformance.app.commands.output_settings import current_settings
+from pantocheck.conformance.app.commands.guard import guard_command, strip_control_characters
+from pantocheck.conformance.app.commands.output_settings import (
+    FLAGS,
+    add_flags,
+    combine_flags,
+    current_settings,
+    list_given,
+    use_settings,
+)
 from pantocheck.conformance.core.input_error import InputError
 
 OUTPUT_SCHEMA = "pantocheck.output/1"
@@ -97,3 +110,61 @@ def _make_plain(content: object) -> Any:
 # Remarks of a run: those of several cases are footnotes, printed once; others are warnings of their case.
 STANDING_REMARKS = ("20-50 Hz: lumped models",)
 """Begin of remarks that hold for every run and that a user cannot act on."""
+
+
+# Log of a command on standard error: records of the loggers `pantocheck.*`, with `--verbose`.
+ROOT_LOGGER = "pantocheck"
+
+
+class _ErrorLog(logging.Handler):
+    """Handler that prints above a line of progress, if there is one."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record without control characters."""
+        errors = error_console()
+        # Outside of a terminal a line stays whole, for a search in a log.
+        errors.print(Text(strip_control_characters(self.format(record))), soft_wrap=not errors.is_terminal)
+
+
+@contextmanager
+def write_log() -> Iterator[None]:
+    """Print the log while a command runs, if the current settings ask for details."""
+    if current_settings().detail != "verbose":
+        yield
+        return
+    logger, handler = logging.getLogger(ROOT_LOGGER), _ErrorLog(logging.INFO)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(name)s: %(message)s", "%H:%M:%S"))
+    level = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(min(logging.INFO, level or logging.INFO))
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(level)
+
+
+# Execution of a command.
+def build_executable(name: str, command: Callable[..., CommandOutput]) -> Callable[..., None]:
+    """Function for typer that runs a command, prints its output and ends with its exit code.
+
+    It has the parameters of the command and the options of the output, which count before the command, too.
+    """
+
+    def run(context: typer.Context, **arguments: object) -> None:
+        given = {flag: bool(arguments.pop(flag)) for flag in FLAGS}
+        with use_settings(combine_flags(context.obj | list_given(given))):
+            raise typer.Exit(guard_command(execute, partial(print_failure, name))(**arguments))
+
+    def execute(**arguments: object) -> int:
+        with write_log():
+            output = command(**arguments)
+        print_output(output, name)
+        return output.exit_code
+
+    own = inspect.signature(run).parameters["context"]
+    parameters = [own, *inspect.signature(command, eval_str=True).parameters.values()]
+    parameters = [parameter.replace(kind=parameter.KEYWORD_ONLY) for parameter in parameters]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__doc__ = command.__doc__
+    return add_flags(run, "hidden")

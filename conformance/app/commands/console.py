@@ -48,14 +48,7 @@ INDENT = 2
 
 
 class FittedTable:
-    """Rows under headings, for any width.
-
-    Args:
-        headings: One per column.
-        title: Text above the table.
-        unbroken: Headings of columns that are never wrapped.
-        right: Headings of columns that are aligned to the right.
-    """
+    """Rows under headings, for any width; columns by their headings are never wrapped, or aligned to the right."""
 
     def __init__(
         self, headings: Sequence[str], title: str | None, unbroken: Collection[str], right: Collection[str]

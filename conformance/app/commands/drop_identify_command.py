@@ -1,4 +1,4 @@
-"""`pantocheck drop identify`: modes of a line from mass-drop records."""
+"""`pantocheck drop identify` and `drop fit`: modes of a line from mass-drop records, and a damping model from modes."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -7,13 +7,25 @@ from typing import Annotated, Literal
 import typer
 from rich.console import RenderableType
 
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.app.commands.console import escape_text, format_number, indent_text
+from pantocheck.conformance.app.commands.options import ElementOption, LineOption, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.identified_lines import write_identification
+from pantocheck.conformance.app.notebook.identified_lines import (
+    refuse_other_modes,
+    write_damping_fit,
+    write_identification,
+)
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS, list_suffixes
+from pantocheck.conformance.drops.damping_model import MODAL_GROUPS
+from pantocheck.conformance.drops.damping_results import (
+    FitOptions,
+    WireCoefficients,
+    build_damping_results,
+    write_damping_toml,
+)
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
@@ -22,11 +34,12 @@ from pantocheck.conformance.drops.mode_export import MODE_FORMATS, select_mode_w
 from pantocheck.conformance.drops.population import Population, identify_population
 from pantocheck.conformance.drops.population_analysis import analyse_population
 from pantocheck.conformance.drops.start_poles import read_poles
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
-from pantocheck.conformance.results.identified_modes import ModesFile
+from pantocheck.conformance.results.identified_modes import ModesFile, read_modes
 from pantocheck.conformance.results.population_format import PooledGroup
 
 
@@ -132,4 +145,56 @@ def _format_group(group: PooledGroup) -> str:
         f"group {group.group}: median over tests {format_number(100 * group.median)} % "
         f"({format_number(100 * group.interval[0])}-{format_number(100 * group.interval[1])} %), joint result "
         f"{format_number(joint)} %, outliers: {group.outliers_above} above, {group.outliers_below} below"
+    )
+
+
+# `pantocheck drop fit`: damping model of a line from identified modes.
+def drop_fit_command(
+    modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck drop identify`.")],
+    line: LineOption,
+    out: Annotated[
+        Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
+    ],
+    element: ElementOption = 0.5,
+    wires: Annotated[
+        WireCoefficients,
+        typer.Option(help="separate: each wire has its own coefficients; common: both wires have the same."),
+    ] = "separate",
+    modal_groups: Annotated[
+        int,
+        typer.Option(
+            help="Groups of span modes with a band of modal damping in damping_with_modal.toml.", min=1, max=8
+        ),
+    ] = MODAL_GROUPS,
+    other_line: Annotated[
+        bool,
+        typer.Option("--other-line", help="Permit a line that differs from that of the record; the result is marked."),
+    ] = False,
+) -> CommandOutput:
+    """Fit a damping model of a line to identified modes.
+
+    The model is Rayleigh damping per component, with and without modal damping. The report states which coefficients
+    the modes determine. A line whose spans, tensions or wires at the sensors differ from those of the record is
+    refused.
+
+    Example: pantocheck drop fit T1/modes.json --line my-line.toml --out T1
+    """
+    identified, catenary = read_modes(modes), build_catenary(read_line(line))
+    if not other_line:
+        refuse_other_modes(identified, catenary, modes.name)
+    check_writable(out)
+    with follow_steps("damping fit", 2) as progress:
+        progress.begin_task("modes of the line")
+        results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
+        progress.begin_task("report")
+        document, files = write_damping_fit(results, out)
+    return CommandOutput(
+        escape_text(document.header.headline),
+        results,
+        [
+            *(indent_text(text, "warning: ") for text in results.warnings),
+            Unwrapped(escape_text(write_damping_toml(results)).plain),
+        ],
+        files=files,
+        remarks=remark_missing_formats(),
     )

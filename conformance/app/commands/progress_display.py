@@ -20,9 +20,9 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.command_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.console import error_console
 from pantocheck.conformance.app.commands.guard import strip_control_characters
-from pantocheck.conformance.app.commands.log_output import ROOT_LOGGER
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.results.results_format import CaseResult
@@ -83,13 +83,7 @@ def _print_periodically(describe: Callable[[], str], output: Console) -> Iterato
 
 
 class TaskProgress(logging.Handler):
-    """Progress of tasks that report their steps to the loggers `pantocheck.*`.
-
-    Args:
-        title: Purpose of the tasks.
-        total: Number of tasks.
-        clock: Time [s].
-    """
+    """Progress of tasks that report their steps to the loggers `pantocheck.*`; the title is their purpose."""
 
     def __init__(self, title: str, total: int, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()

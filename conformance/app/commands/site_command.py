@@ -15,12 +15,7 @@ from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages.report_writers import write_pages, write_report
-from pantocheck.conformance.pages.site_pages import (
-    build_case_page,
-    build_site_index,
-    name_file,
-    publish_results,
-)
+from pantocheck.conformance.pages.site_pages import build_case_page, build_site_index, name_file, publish_results
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_reading import read_results
 

@@ -32,8 +32,8 @@ from pantocheck.conformance.dossier.dossier_reading import read_dossier
 from pantocheck.conformance.dossier.validation import Validation
 from pantocheck.conformance.execution.runner import RunInterrupted
 from pantocheck.conformance.grading.criterion_grading import criterion_name
-from pantocheck.conformance.pages.procedure_page import describe_steps, list_step_missing, name_state
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_all
+from pantocheck.conformance.pages.scope_page import describe_steps, list_step_missing, name_state
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces

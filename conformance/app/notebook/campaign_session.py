@@ -6,11 +6,7 @@ from typing import Any
 
 from pantocheck.conformance.app.notebook.display import build_column, tabulate_columns
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
-from pantocheck.conformance.campaigns.campaign_preparation import (
-    find_campaign_file,
-    prepare_campaign,
-    read_campaign,
-)
+from pantocheck.conformance.campaigns.campaign_preparation import find_campaign_file, prepare_campaign, read_campaign
 from pantocheck.conformance.campaigns.campaign_store import open_store, read_store
 from pantocheck.conformance.campaigns.campaign_table import collect_columns, write_campaign_table
 from pantocheck.conformance.campaigns.run_executors import choose_executor

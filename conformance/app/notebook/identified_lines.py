@@ -1,6 +1,6 @@
 """Modes of a line in Python, identified from mass drops, and damping models fitted to them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -102,15 +102,7 @@ class FittedDamping:
         """
         axes, comparison = provide_axes(axes), self.results.comparison
         measured = comparison.measured
-        axes.errorbar(
-            measured.frequency_Hz,
-            [100 * ratio for ratio in measured.damping_ratio],
-            yerr=[196 * std for std in measured.std],
-            fmt="o",
-            color="0.1",
-            markersize=4,
-            label="identified, 95 % interval",
-        )
+        _draw_intervals(axes, measured.frequency_Hz, measured.damping_ratio, measured.std)
         for (name, ratios), style in zip(comparison.models.items(), MODEL_STYLES, strict=False):
             axes.plot(comparison.frequency_Hz, [100 * ratio for ratio in ratios], style, label=name)
         axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
@@ -128,6 +120,15 @@ class FittedDamping:
         """
         warn_missing_formats()
         return write_damping_fit(self.results, Path(folder))[1]
+
+
+def _draw_intervals(
+    axes: Any, frequency_Hz: Sequence[float], ratio: Sequence[float], std: Sequence[float], capsize: int = 0
+) -> None:
+    """Draw identified damping ratios with their 95 % intervals in percent."""
+    values, widths = [100 * value for value in ratio], [196 * value for value in std]
+    label = "identified, 95 % interval"
+    axes.errorbar(frequency_Hz, values, widths, fmt="o", color="0.1", markersize=4, capsize=capsize, label=label)
 
 
 def refuse_other_modes(modes: tuple[Mode, ...], catenary: Catenary, name: str) -> None:
@@ -192,16 +193,8 @@ class IdentifiedLines:
         """
         axes = provide_axes(axes)
         certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
-        axes.errorbar(
-            [mode.frequency_Hz for mode in certain],
-            [100 * mode.damping_ratio for mode in certain],
-            yerr=[196 * mode.damping_ratio_std for mode in certain],
-            fmt="o",
-            color="0.1",
-            markersize=4,
-            capsize=2,
-            label="identified, 95 % interval",
-        )
+        keys = ("frequency_Hz", "damping_ratio", "damping_ratio_std")
+        _draw_intervals(axes, *([getattr(mode, key) for mode in certain] for key in keys), capsize=2)
         axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
         axes.legend()
         return axes

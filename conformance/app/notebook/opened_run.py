@@ -21,7 +21,7 @@ from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.results.comparison_format import ComparedOwner, ForceAgreement, RunComparison
+from pantocheck.conformance.results.comparison_format import ForceAgreement, RunComparison
 from pantocheck.conformance.runs.system import System
 
 
@@ -236,7 +236,8 @@ class ComparedRuns:
         Raises:
             KeyError: The forces were not compared; the message gives the reason.
         """
-        owner = self._find_owner(pantograph)
+        owners = (owner for case in self.comparison.cases for owner in case.owners)
+        owner = next(owner for owner in owners if owner.number == pantograph)
         found = {agreement.subject: agreement for agreement in owner.agreements}
         name = self.subjects[subject - 1]
         if name not in found:
@@ -268,9 +269,6 @@ class ComparedRuns:
             InputError: A file cannot be written.
         """
         return write_comparison(self.comparison, Path(folder))
-
-    def _find_owner(self, pantograph: int) -> ComparedOwner:
-        return next(owner for case in self.comparison.cases for owner in case.owners if owner.number == pantograph)
 
     def _list_rows(self) -> Iterator[dict[str, object]]:
         for case in self.comparison.cases:

@@ -11,7 +11,7 @@ from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
 from pantocheck.conformance.documents.library_check import check_outside_cases
-from pantocheck.conformance.documents.record_check import check_record_quantities
+from pantocheck.conformance.documents.repetition_check import check_record_quantities, check_rerun
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import DocumentState, Verification, check_origin, verify_document
 
@@ -84,8 +84,6 @@ def verify_report(
     checks = check_outside_cases(results, catalogue)
     checks += [check for record in records for check in check_record_quantities(results, Path(record), catalogue)]
     if rerun:
-        from pantocheck.conformance.documents.rerun_check import check_rerun
-
         checks += check_rerun(results, catalogue)
     verification = verification.add_checks([*checks, *check_origin(signatures)])
     return VerifiedReport(verification, signatures.authentic and verification.consistent)

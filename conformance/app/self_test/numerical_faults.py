@@ -94,12 +94,7 @@ FAULTS: tuple[NumericalFault, ...] = (
 
 
 def run_numerical_faults(cases: Sequence[Case], progress: Callable[[str], None]) -> tuple[NumericalResult, ...]:
-    """Run the numerical faults on the cases that have converged values.
-
-    Args:
-        cases: Cases with a train.
-        progress: Function that receives the name of each fault before it runs.
-    """
+    """Run the faults on cases that have converged values; `progress` receives the name of each fault first."""
     results = []
     for fault in FAULTS:
         progress(fault.name)

@@ -11,8 +11,8 @@ import hypothesis.strategies as st
 from hypothesis import given, settings
 
 from helpers.toml_edit import write_toml
+from pantocheck.conformance.app.commands.new_command import read_template
 from pantocheck.conformance.app.file_check import check_input_file
-from pantocheck.conformance.app.new_files import read_template
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.key_paths import follow_path, join_path
 

@@ -12,8 +12,8 @@ import pytest
 from pydantic import BaseModel
 
 from helpers.command_line import pantocheck
+from pantocheck.conformance.app.commands.new_command import NEW_KINDS, NewKind, read_template
 from pantocheck.conformance.app.file_check import check_input_file
-from pantocheck.conformance.app.new_files import NEW_KINDS, NewKind, read_template
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.key_paths import find_field, key_adapter, list_models

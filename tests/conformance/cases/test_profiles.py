@@ -28,7 +28,7 @@ from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.results_format import Results
 

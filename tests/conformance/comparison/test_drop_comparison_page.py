@@ -5,8 +5,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_page import build_comparison
-from pantocheck.conformance.pages.drop_sections import DROP_PAGE, draw_drop_motion, draw_residual_energy
+from pantocheck.conformance.pages.comparison_page import (
+    DROP_PAGE,
+    build_comparison,
+    draw_drop_motion,
+    draw_residual_energy,
+)
 from pantocheck.conformance.results.drop_comparison_format import DropComparison, MotionCurve
 
 TIME = [0.0, 0.5, 1.0]

@@ -14,7 +14,7 @@ from pantocheck.conformance.core.figure_data import Spectrum
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.comparison_section import comparison_blocks, force_difference, spectrum_difference
+from pantocheck.conformance.pages.run_comparison_page import comparison_blocks, force_difference, spectrum_difference
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable

@@ -9,9 +9,8 @@ from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.documents.number_comparison import compare_numbers
-from pantocheck.conformance.documents.record_check import check_record_quantities
-from pantocheck.conformance.documents.rerun_check import check_rerun
+from pantocheck.conformance.documents.authenticity_check import compare_numbers
+from pantocheck.conformance.documents.repetition_check import check_record_quantities, check_rerun
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record_writing import write_record

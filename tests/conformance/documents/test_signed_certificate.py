@@ -16,8 +16,8 @@ from helpers.signer_fixtures import Signers
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.sign_command import PASSPHRASE_VARIABLE
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.documents.pdf_signing import BOXES
 from pantocheck.conformance.documents.signature_check import check_signatures
+from pantocheck.conformance.documents.signature_writing import BOXES
 from pantocheck.conformance.results.results_format import Results
 
 

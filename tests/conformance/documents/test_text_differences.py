@@ -1,6 +1,6 @@
 """Quotations of two different texts show their first difference."""
 
-from pantocheck.conformance.documents.number_comparison import QUOTED_CHARACTERS, compare_lines, quote_difference
+from pantocheck.conformance.documents.authenticity_check import QUOTED_CHARACTERS, compare_lines, quote_difference
 
 LONG = (
     "This is a self-declared conformance report, in the style of EN 50318. It is not a certification by a third party."

@@ -12,10 +12,10 @@ from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import step_sections
-from pantocheck.conformance.pages.badge import render_badge
-from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.procedure_page import build_procedure_headline, list_step_reasons
+from pantocheck.conformance.pages.scope_page import build_procedure_headline, list_step_reasons
+from pantocheck.conformance.pages.two_verdicts import render_badge
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.results_format import Results
 

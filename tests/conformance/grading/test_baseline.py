@@ -20,9 +20,9 @@ from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.case_verdict import Participation
-from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.certificate_page import build_summary
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results

@@ -14,13 +14,12 @@ from pantocheck.conformance.app.commands.results_output import build_results_out
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.baseline import compare_with_baseline
 from pantocheck.conformance.grading.case_verdict import Participation
-from pantocheck.conformance.pages.badge import summarise_verdict
-from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.quantity_tables import render_quantity_list
-from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.two_verdicts import summarise_verdict
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.results_format import Results
 

@@ -19,7 +19,7 @@ from pantocheck.conformance.documents.verification import find_gaps
 from pantocheck.conformance.execution.plan import Plan, prepare_plan
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
-from pantocheck.conformance.pages.junit import render_junit
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.record_facts import RecordFacts, RecordState

@@ -13,8 +13,8 @@ from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest
 from pantocheck.conformance.grading.results_building import build_results
+from pantocheck.conformance.pages.certificate_page import build_summary
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.summary_page import build_summary
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from helpers.section_lines import section_line
-from pantocheck.conformance.app.commands.line_draw_command import list_marks
+from pantocheck.conformance.app.commands.line_file_command import list_marks
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.geometry import Geometry, ListedSpans

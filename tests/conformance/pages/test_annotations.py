@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.pages.annotations import (
+from pantocheck.conformance.pages.ci_reports import (
     MOST_SHOWN,
     list_annotations,
     render_code_quality,

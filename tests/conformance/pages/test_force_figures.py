@@ -8,7 +8,7 @@ import pytest
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Traces, UpliftTrace
-from pantocheck.conformance.pages.force_figures import draw_force, draw_uplift, select_limited
+from pantocheck.conformance.pages.case_figures import draw_force, draw_uplift, select_limited
 from pantocheck.conformance.results.results_format import CaseResult
 
 

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 from helpers.shown_page import summarise
-from pantocheck.conformance.pages.badge import render_badge
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.document import (
     BulletList,
     Code,
@@ -27,10 +27,10 @@ from pantocheck.conformance.pages.document import (
     Section,
     TrustMark,
 )
-from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.report_writers import write_pages
+from pantocheck.conformance.pages.two_verdicts import render_badge
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import Results
 

@@ -17,8 +17,16 @@ from helpers.shown_page import certify, print_certificate
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pages.criteria_table import describe_criterion
-from pantocheck.conformance.pages.document import Code, Column, Document, Paragraph, PlainHeader, Section, Table
-from pantocheck.conformance.pages.embedded_results import strip_times
+from pantocheck.conformance.pages.document import (
+    Code,
+    Column,
+    Document,
+    Paragraph,
+    PlainHeader,
+    Section,
+    Table,
+    strip_times,
+)
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.report_writers import write_report

@@ -8,7 +8,7 @@ import pytest
 
 from helpers.signed_files import sign
 from helpers.signer_fixtures import Signers
-from pantocheck.conformance.documents import pdf_signing
+from pantocheck.conformance.documents import signature_writing
 from pantocheck.conformance.documents.signature_check import check_signatures
 
 
@@ -126,7 +126,7 @@ UPDATES = {
 def test_update_after_signing(document: Path, signers: Signers, roots_file: Path, name: str) -> None:
     """Every update after a signature is reported, because no signature covers it."""
     signed = sign(document, signers.author)
-    writer = pdf_signing._open_writer(signed.read_bytes(), "report")
+    writer = signature_writing._open_writer(signed.read_bytes(), "report")
     UPDATES[name][0](writer)
     with signed.open("wb") as file:
         writer.write(file)
@@ -156,7 +156,7 @@ def sign_with(change: Callable[[Any], None], document: Path, signers: Signers, m
     """Sign a document with a change in the same revision, without the check of the result."""
     from pantocheck.conformance.documents import signing
 
-    open_writer = pdf_signing._open_writer
+    open_writer = signature_writing._open_writer
 
     def open_and_change(content: bytes, where: str) -> Any:
         writer = open_writer(content, where)
@@ -165,11 +165,11 @@ def sign_with(change: Callable[[Any], None], document: Path, signers: Signers, m
         return writer
 
     with monkeypatch.context() as patch:
-        patch.setattr(pdf_signing, "_open_writer", open_and_change)
+        patch.setattr(signature_writing, "_open_writer", open_and_change)
         patch.setattr(
             signing,
             "_sign_pdf",
-            lambda content, signer, place, _: pdf_signing.sign_pdf(content, signer, place, "report"),
+            lambda content, signer, place, _: signature_writing.sign_pdf(content, signer, place, "report"),
         )
         return sign(document, signers.author)
 
@@ -177,7 +177,7 @@ def sign_with(change: Callable[[Any], None], document: Path, signers: Signers, m
 def test_box_over_the_page(document: Path, signers: Signers, roots_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A box of a signature could show any text; it must lie where the page is empty."""
     with monkeypatch.context() as patch:
-        patch.setitem(pdf_signing.BOXES, "centre", (100, 400, 400, 600))
+        patch.setitem(signature_writing.BOXES, "centre", (100, 400, 400, 600))
         signed = sign(document, signers.author, place="centre")
     (change,) = check_signatures(signed, roots_file).changes
     assert change.endswith("the box of the signature is not at a place that reports leave free")

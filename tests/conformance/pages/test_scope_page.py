@@ -10,8 +10,8 @@ from pypdf import PdfReader
 from helpers.shown_page import certify, print_certificate, shown_certificate, summarise
 from pantocheck.conformance.app.commands.command_output import print_output
 from pantocheck.conformance.app.commands.results_output import build_results_output
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.document import Section, Table, VerdictMark, WarningBox
-from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.scope_page import (
     CHANGES_SHOWN,
     build_scope_section,

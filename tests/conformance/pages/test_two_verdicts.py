@@ -9,13 +9,12 @@ import pytest
 from helpers.shown_page import certify, shown_certificate, summarise
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
-from pantocheck.conformance.pages.badge import summarise_verdict
-from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.document import Code
-from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import build_band_table
-from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.two_verdicts import summarise_verdict
 from pantocheck.conformance.pages.verdict_reasons import build_headline, list_reasons
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 

@@ -13,8 +13,8 @@ from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.options import build_options, state_administration
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.document import Facts, Section
-from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.administration import read_administration
 from pantocheck.conformance.results.results_format import Results

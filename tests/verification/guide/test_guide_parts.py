@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pantocheck.conformance.app.self_test.bench import MutantResult
-from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS
+from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, MutantResult
 from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, NumericalResult
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.verdicts import Verdict

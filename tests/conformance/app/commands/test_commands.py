@@ -15,11 +15,11 @@ import typer
 
 from helpers.case_fixtures import EditedCase
 from helpers.command_line import SKIPPER, pantocheck
-from pantocheck.conformance.app.commands import line_draw_command, run_command, system_self_test_command
+from pantocheck.conformance.app.commands import line_file_command, run_command, system_self_test_command
 from pantocheck.conformance.app.commands.command_list import COMMANDS
 from pantocheck.conformance.app.commands.guard import guard_command
 from pantocheck.conformance.app.schemas import build_schema
-from pantocheck.conformance.app.self_test.bench import SelfTest
+from pantocheck.conformance.app.self_test.mutants import SelfTest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import list_library, select_cases
 from pantocheck.conformance.line.library_folder import library_folder
@@ -323,7 +323,7 @@ def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(line_draw_command, "discretise", lambda *_: pytest.fail("drawn"))
+    monkeypatch.setattr(line_file_command, "discretise", lambda *_: pytest.fail("drawn"))
     result = pantocheck("line", "draw", "en50318-2002/250", "--out", tmp_path / "file" / "line.svg")
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr

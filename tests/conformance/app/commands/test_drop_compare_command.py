@@ -11,7 +11,7 @@ from jsonschema import validate
 
 from helpers.command_line import pantocheck
 from helpers.recorded_drops import ELEMENT, damp_masses, read_short_line, record_drop
-from pantocheck.conformance.app.commands.drop_compare_command import name_damping_files
+from pantocheck.conformance.app.commands.measured_comparison_command import name_damping_files
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.core.step_log import TaskStep
 from pantocheck.conformance.drops.drop_writing import write_drop_hdf5

@@ -22,7 +22,7 @@ from pantocheck.conformance.results.results_reading import read_results
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 
 TRUST: Trust = "secondary"
-GRADING, WRITING = "execution.runner.build_results", "pages.junit.render_junit"
+GRADING, WRITING = "execution.runner.build_results", "pages.ci_reports.render_junit"
 """Functions that are called after the last case; junit.xml is the last of the reports."""
 
 Interrupt = Callable[..., None]

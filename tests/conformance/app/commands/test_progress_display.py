@@ -10,7 +10,7 @@ import pytest
 
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.app.commands import progress_display
-from pantocheck.conformance.app.commands.log_output import write_log
+from pantocheck.conformance.app.commands.command_output import write_log
 from pantocheck.conformance.app.commands.output_settings import OutputSettings, use_settings
 from pantocheck.conformance.app.commands.progress_display import REDRAWS_PER_S, TaskProgress, follow_steps, show_line
 from pantocheck.conformance.cases.library import select_cases

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from helpers.command_line import pantocheck
-from pantocheck.conformance.app.self_test import bench
-from pantocheck.conformance.app.self_test.bench import SelfTest, run_self_test
-from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, Mutant
+from pantocheck.conformance.app.self_test import mutants
+from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, Mutant, SelfTest, run_self_test
 from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, run_numerical_faults
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.runs.system import Delivered
@@ -72,8 +71,8 @@ def test_tables_of_the_page_are_those_of_this_run(self_test: SelfTest) -> None:
 def test_self_test_names_every_undetected_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
     """A mutant without a fault: the self-test itself must be able to fail, also on a narrow terminal."""
     harmless = Mutant("harmless", "Nothing.", lambda case, record: Delivered(record), "limits")
-    monkeypatch.setattr(bench, "MUTANTS", (harmless,))
-    monkeypatch.setattr(bench, "MILD", ())
+    monkeypatch.setattr(mutants, "MUTANTS", (harmless,))
+    monkeypatch.setattr(mutants, "MILD", ())
     result = pantocheck("system", "self-test", "en50318-2002/250", COLUMNS="80")
     assert result.exit_code == 1
     assert result.output.startswith("FAIL 0 of 1 mutants detected by the expected check")

@@ -1,14 +1,16 @@
-"""`pantocheck line draw`: drawing of a whole line, in elevation and in plan."""
+"""`pantocheck line import`, `line export` and `line draw`: a line as tables, and its drawing."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
 
+import tomli_w
 import typer
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case, leave_out_required
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
+from pantocheck.conformance.app.commands.options import read_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
@@ -16,13 +18,88 @@ from pantocheck.conformance.cases.library import recognise_named_file, select_ca
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.dropper_rows import LengthMeaning
 from pantocheck.conformance.line.elements.element import KINDS, DrawnMark
 from pantocheck.conformance.line.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg, list_labelled_marks
+from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_import import import_line
 from pantocheck.model import Catenary, discretise
 
+
+def line_import_command(
+    supports: Annotated[
+        Path, typer.Argument(help=f"CSV table of the supports and both ends: {DocumentationPage.LINE_TABLES}.")
+    ],
+    base: Annotated[
+        Path, typer.Option(help="Line file with the wires, arms and damping, and the values of empty cells.")
+    ],
+    out: Annotated[Path, typer.Option(help="Line file to write.")],
+    droppers: Annotated[
+        Path | None, typer.Option(help="CSV table of the droppers. Default: those of [droppers] in the base file.")
+    ] = None,
+    dropper_lengths: Annotated[
+        LengthMeaning,
+        typer.Option(
+            help="Meaning of the column length_m: published, for comparison only; or unloaded, so that the heights of "
+            "the contact wire follow from the lengths."
+        ),
+    ] = "published",
+) -> CommandOutput:
+    """Write a line file from tables of supports and droppers.
+
+    All problems of all files are reported at once, with file, row and column.
+
+    Example: pantocheck line import supports.csv --droppers droppers.csv --base base.toml --out my-line.toml
+
+    Then: pantocheck check my-line.toml
+    """
+    inputs = [path for path in (supports, droppers, base) if path is not None]
+    if out.resolve() in [path.resolve() for path in inputs]:
+        raise InputError(f"option --out {out}", "is a file of the import", "Give another name for the line file.")
+    tree = import_line(base, supports, droppers, dropper_lengths)
+    check_writable(out.parent)
+    names = ", ".join(path.name for path in inputs)
+    head = f"# Written by `pantocheck line import` from {names}.\n"
+    write_atomically(out, (head + tomli_w.dumps(tree)).encode())
+    geometry = tree["geometry"]
+    facts = {
+        "spans": len(geometry["span_list"]),
+        "length_m": sum(span["length_m"] for span in geometry["span_list"]),
+    }
+    return CommandOutput(escape_text(f"{facts['spans']} spans, {facts['length_m']:g} m"), facts, files=(out,))
+
+
+# `pantocheck line export`: tables of the supports and droppers of a line.
+def line_export_command(
+    line: Annotated[
+        str, typer.Argument(help="Id of a case, or path of a case or line file.", autocompletion=complete_case)
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for supports.csv and droppers.csv.")],
+    decimal: Annotated[
+        DecimalMark, typer.Option(help="Decimal mark; beside commas, columns are separated by semicolons.")
+    ] = "point",
+) -> CommandOutput:
+    """Write supports and droppers of a line as tables.
+
+    `pantocheck line import` turns the tables, with the same line file as base, into the same line.
+
+    Example: pantocheck line export en50318-2018/ac-simple/static --out tables --decimal comma
+    """
+    line_file = read_line(line)
+    check_writable(out)
+    files = [out / "supports.csv", out / "droppers.csv"]
+    for path, export in zip(files, (export_supports, export_droppers), strict=True):
+        # Spreadsheets recognise UTF-8 by the byte order mark.
+        write_atomically(path, export(line_file, decimal).encode("utf-8-sig"))
+    spans = line_file.geometry.spans
+    return CommandOutput(escape_text(f"{line_file.title}: {spans} spans"), {"spans": spans}, files=files)
+
+
+# `pantocheck line draw`: drawing of a whole line, in elevation and in plan.
 DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
     ".svg": lambda drawing: draw_line_svg(drawing).encode(),
     ".pdf": draw_line_pdf,
