@@ -15,6 +15,7 @@ from pantocheck.conformance.comparison.response_deviation import (
     summarise_band,
 )
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import worst_verdict
@@ -26,7 +27,6 @@ from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
     ComparedResponse,
     ComparedSource,
-    ComparisonCriterion,
     HeadResponse,
     ResponseComparison,
 )
@@ -179,7 +179,7 @@ def _describe_band(band: ResponseBand, statistics: BandStatistics) -> BandDeviat
     )
 
 
-def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[ComparisonCriterion]) -> Iterator[str]:
+def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[Criterion]) -> Iterator[str]:
     """Caveats: informative responses, missing uncertainty and rows, responses without a limit."""
     graded = {criterion.where.record for criterion in criteria}
     for response in responses:

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, build_comparison_criterion
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, grade_difference
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.criterion import Criterion, CriterionPlace
 from pantocheck.conformance.core.validation_messages import name_rows
 from pantocheck.conformance.pantograph.response_record import ResponseRecord, ResponseUncertainty
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, CriterionPlace, ResponseQuantity
+from pantocheck.conformance.results.comparison_format import ResponseQuantity
 
 ResponseBand = tuple[float, float]
 
@@ -130,9 +131,7 @@ def _find_missing_data(
     return None
 
 
-def grade_responses(
-    limits: Sequence[ComparisonLimit], responses: Sequence[GradedResponse]
-) -> tuple[ComparisonCriterion, ...]:
+def grade_responses(limits: Sequence[ComparisonLimit], responses: Sequence[GradedResponse]) -> tuple[Criterion, ...]:
     """Grade the responses at the centre of the head by every limit.
 
     Args:
@@ -146,7 +145,7 @@ def grade_responses(
     return tuple(criterion for limit in limits for criterion in _grade_limit(limit, at_head))
 
 
-def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) -> Iterator[ComparisonCriterion]:
+def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) -> Iterator[Criterion]:
     band = limit.band_Hz or (0.0, 0.0)
     for force in limit.static_forces_N or ():
         loaded = [response for response in responses if response[0].sidecar.static_force_N == force]
@@ -154,22 +153,24 @@ def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) ->
             found = [item for item in loaded if height is None or item[0].sidecar.height_m == height]
             if not found:
                 place = "" if height is None else f" at {height:g} m"
-                yield build_comparison_criterion(
+                yield grade_difference(
                     limit,
-                    CriterionPlace(static_force_N=force, height_m=height, band_Hz=band),
                     None,
+                    CriterionPlace(static_force_N=force, height_m=height, band_Hz=band),
                     missing=f"no response at the centre of the head under {force:g} N{place}",
                     source=limit.source,
                 )
             for record, bands in found:
                 statistics, measured_at = bands[band], record.sidecar.height_m
-                yield build_comparison_criterion(
+                yield grade_difference(
                     limit,
+                    _select_value(statistics.values, limit),
                     CriterionPlace(record=record.source, static_force_N=force, height_m=measured_at, band_Hz=band),
-                    next((value for name, value in statistics.values.items() if name == limit.quantity), None),
                     missing=statistics.missing,
-                    measurement=next(
-                        (width for name, width in statistics.uncertainty.items() if name == limit.quantity), None
-                    ),
+                    measurement=_select_value(statistics.uncertainty, limit),
                     source=limit.source,
                 )
+
+
+def _select_value(values: Mapping[ResponseQuantity, float], limit: ComparisonLimit) -> float | None:
+    return next((value for name, value in values.items() if name == limit.quantity), None)

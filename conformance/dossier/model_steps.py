@@ -5,17 +5,16 @@ from collections.abc import Iterator, Sequence
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS
 from pantocheck.conformance.comparison.response_comparison import compare_responses
-from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.criterion import Criterion, Requirement
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_file import PantographEntry, ParameterTable
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import StepResult, convert_criterion
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion, skip_unlimited
+from pantocheck.conformance.dossier.step_result import StepResult, grade_again
+from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison
+from pantocheck.conformance.results.comparison_format import ResponseComparison
 from pantocheck.conformance.results.procedure_format import DeclaredParameter
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -47,7 +46,7 @@ def check_pantographs(dossier: Dossier) -> StepResult:
         except InputError as error:
             text = " ".join(str(error).split())
             return StepResult("pantograph_model", "error", text, responses=tuple(responses))
-        criteria += [_convert(row, entry, number, dossier.file.trust) for row in responses[-1].criteria]
+        criteria += [grade_again(row, _state(row, entry, number), dossier.file.trust) for row in responses[-1].criteria]
         criteria += _skip_unlimited(dossier, entry, number)
     notes = ("A frequency response is unverified: it has no second channel that could confirm it.",)
     return StepResult("pantograph_model", criteria=tuple(criteria), responses=tuple(responses), notes=notes)
@@ -58,21 +57,17 @@ def _compare(dossier: Dossier, entry: PantographEntry) -> ResponseComparison:
     return compare_responses(records, dossier.pantographs[entry.name], entry.limit)
 
 
-def _convert(row: ComparisonCriterion, entry: PantographEntry, number: int, trust: Trust) -> Criterion:
+def _state(row: Criterion, entry: PantographEntry, number: int) -> dict[str, str | int]:
+    """Name of a criterion with its place, number of its pantograph, trust and source."""
     where = row.where
     low, high = where.band_Hz or (0.0, 0.0)
     height = "" if where.height_m is None else f", {where.height_m:g} m"
-    requirement = Requirement(
-        f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
-        number,
-        None,
-        row.lower,
-        row.upper,
-        entry.trust,
-        source_text(row.source or NO_SOURCE),
-        unit=row.unit,
-    )
-    return convert_criterion(row, requirement, trust)
+    return {
+        "quantity": f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
+        "pantograph": number,
+        "trust": entry.trust,
+        "source": source_text(row.source),
+    }
 
 
 def _skip_unlimited(dossier: Dossier, entry: PantographEntry, number: int) -> Iterator[Criterion]:
@@ -168,5 +163,8 @@ def _build_criterion(
     unit: str,
     trust: Trust,
 ) -> Criterion:
-    requirement = Requirement(name, LINE, None, *bounds, "primary", DECLARED, unit=unit)
+    lower, upper = bounds
+    requirement = Requirement(
+        quantity=name, pantograph=LINE, unit=unit, lower=lower, upper=upper, trust="primary", source=DECLARED
+    )
     return build_criterion(requirement, value, missing, trust)

@@ -9,13 +9,11 @@ from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_file import LineEntry, StaticTolerance
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.step_result import StepResult, convert_criterion
-from pantocheck.conformance.grading.criterion_grading import Requirement, skip_unlimited
-from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, StaticComparison, StaticQuantity
+from pantocheck.conformance.dossier.step_result import StepResult, grade_again
+from pantocheck.conformance.grading.criterion_grading import skip_unlimited
+from pantocheck.conformance.results.comparison_format import StaticComparison, StaticQuantity
 
 NEEDED_BY_STATIC_CHECK = "needed by the static check of this suite"
 """Source of a criterion without a tolerance."""
@@ -44,7 +42,8 @@ def check_statics(dossier: Dossier) -> StepResult:
             statics.append(_compare(dossier, entry, entry.statics))
         except InputError as error:
             return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
-        criteria += [_convert(row, entry.tolerance, item, dossier.file.trust) for row in statics[-1].criteria]
+        stated = {"item": item, "trust": entry.tolerance.trust, "source": source_text(entry.tolerance.source)}
+        criteria += [grade_again(row, stated, dossier.file.trust) for row in statics[-1].criteria]
         criteria += _skip_ungraded(entry.tolerance, item)
     notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)
     return StepResult("static_check", criteria=tuple(criteria), statics=tuple(statics), notes=notes)
@@ -64,13 +63,6 @@ def _list_tolerances(tolerance: StaticTolerance) -> dict[StaticQuantity, float]:
         "contact_wire_height_difference_mm": tolerance.height_mm,
     }
     return {name: value for name, value in stated.items() if value is not None}
-
-
-def _convert(row: ComparisonCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
-    requirement = Requirement(
-        row.quantity, LINE, item, row.lower, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
-    )
-    return convert_criterion(row, requirement, trust)
 
 
 def _skip_ungraded(tolerance: StaticTolerance, item: int | None) -> Iterator[Criterion]:

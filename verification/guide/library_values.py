@@ -54,7 +54,7 @@ def list_case_values(case: Case, result: CaseResult) -> LibraryCase:
         superseded_by=case.file.superseded_by,
         input_digest=case.digest,
         quantities=result.quantities,
-        published=[_compare_with_range(row, limits[row.quantity, row.pantograph, row.item]) for row in result.criteria],
+        published=[_compare_with_range(row, limits[row.target]) for row in result.criteria],
         converged=list_converged(result),
         simulated_s=result.run.simulated_s,
         wall_s=result.run.wall_s,

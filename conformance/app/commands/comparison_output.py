@@ -14,12 +14,13 @@ from pantocheck.conformance.app.commands.console import (
     style_verdict,
 )
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.pages.comparison_page import build_comparison, find_headline
 from pantocheck.conformance.pages.comparison_parts import list_remarks, name_criterion
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.quantities.limit_text import format_graded
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ModelComparison
+from pantocheck.conformance.results.comparison_format import ModelComparison
 
 
 def write_comparison_files(comparison: ModelComparison, stem: Path) -> list[Path]:
@@ -47,7 +48,7 @@ def build_comparison_output(
     )
 
 
-def _list_criteria(criteria: tuple[ComparisonCriterion, ...]) -> Iterator[RenderableType]:
+def _list_criteria(criteria: tuple[Criterion, ...]) -> Iterator[RenderableType]:
     """Criteria as a table, and their reasons."""
     if criteria:
         table = build_table("criterion", "value", "limit", "verdict", right=("value", "limit"))

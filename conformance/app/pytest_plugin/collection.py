@@ -148,7 +148,7 @@ def list_targets(case: Case) -> list[Target]:
     converged = find_converged(case.id)
     if converged is None or find_obstacle(case, converged) is not None:
         return []
-    return [(entry.quantity, entry.owner, entry.item) for entry in build_requirements(converged, case.is_static)]
+    return [entry.target for entry in build_requirements(converged, case.is_static)]
 
 
 class OneLineItem(pytest.Item):
