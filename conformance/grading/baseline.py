@@ -8,8 +8,7 @@ from typing import NamedTuple
 from pantocheck.conformance.core.criterion import BASELINE, Criterion, Requirement
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_verdict import judge_baseline, read_participation
-from pantocheck.conformance.grading.criterion_grading import build_criterion
-from pantocheck.conformance.quantities.evaluation import LINE
+from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -132,10 +131,7 @@ def _verification_digest(case: CaseResult) -> str | None:
 
 def _skipped_comparison(reason: str) -> Criterion:
     """Skipped criterion, without which a case could pass by the baseline of another one."""
-    requirement = Requirement(
-        quantity=BASELINE, pantograph=LINE, unit="", lower=None, upper=None, trust=None, source="baseline"
-    )
-    return build_criterion(requirement, None, reason, "primary")
+    return skip_unlimited(BASELINE, reason, "baseline", trust=None)
 
 
 def _skip_comparison(case: CaseResult, reason: str, drift_pct: float, name: str) -> CaseResult:

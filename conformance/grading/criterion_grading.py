@@ -151,6 +151,8 @@ def skip_unlimited(
     item: int | None = None,
     unit: str | None = None,
     value: float | None = None,
+    trust: Trust | None = "primary",
+    lowest_trust: Trust = "primary",
 ) -> Criterion:
     """Skipped criterion of a quantity that is demanded and has no limit or no record, so that its lack is noticed.
 
@@ -162,6 +164,8 @@ def skip_unlimited(
         item: Number among several values.
         unit: Unit of a value that is no quantity of a run.
         value: Value without a limit.
+        trust: Trust of the demand; None: a baseline.
+        lowest_trust: Lowest trust of the demands that count.
     """
     requirement = Requirement(
         quantity=quantity,
@@ -170,10 +174,10 @@ def skip_unlimited(
         unit=unit_of(quantity) if unit is None else unit,
         lower=None,
         upper=None,
-        trust="primary",
+        trust=trust,
         source=source,
     )
-    return build_criterion(requirement, value, reason, "primary")
+    return build_criterion(requirement, value, reason, lowest_trust)
 
 
 def criterion_name(criterion: Criterion) -> str:
