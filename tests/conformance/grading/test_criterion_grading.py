@@ -62,6 +62,8 @@ def test_value_belongs_to_the_pantograph_of_the_limit() -> None:
         (31.0, None, 31.0, "pass", 0.0, None),
         (28.0, None, None, "skip", None, "no data"),
         (None, 26.0, 31.0, "skip", None, "no data"),
+        (28.5, 26.0, 31.0, "skip", 1.0, "no data"),
+        (33.5, 26.0, 31.0, "skip", -1.0, "no data; 2.5 N above the upper limit"),
     ],
 )
 def test_criterion_states_verdict_margin_and_distance(
@@ -79,9 +81,14 @@ def test_criterion_states_verdict_margin_and_distance(
     hypothetical = build_criterion(
         build_requirement("std_force_N", lower, upper, trust="provisional"), value, missing, "secondary"
     )
-    expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": "not graded: no data"}[verdict]
+    expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
     assert hypothetical.verdict == "info"
     assert hypothetical.reason == f"{expected}; the limit is provisional and does not count"
+
+
+def test_place_of_a_value_follows_its_distance() -> None:
+    found = build_criterion(build_requirement("std_force_N", None, 31.0), 33.5, None, "secondary", place=", at 3 m")
+    assert found.reason == "2.5 N above the upper limit, at 3 m"
 
 
 def test_quantity_without_a_unit_has_no_double_space() -> None:
