@@ -8,8 +8,6 @@ import numpy as np
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_deviation import (
-    BandStatistics,
-    ResponseBand,
     grade_responses,
     response_deviation,
     summarise_band,
@@ -65,8 +63,8 @@ def compare_responses(
     ]
     criteria = grade_responses(limits, list(zip(records, bands, strict=True)))
     responses = tuple(
-        _describe_response(record, deviation, statistics, pantograph)
-        for record, deviation, statistics in zip(records, deviations, bands, strict=True)
+        _describe_response(record, deviation, tuple(by_band.values()), pantograph)
+        for record, deviation, by_band in zip(records, deviations, bands, strict=True)
     )
     return ResponseComparison(
         suite=build_suite(),
@@ -110,7 +108,7 @@ def _deviate(record: ResponseRecord, pantograph: PantographFile) -> ComplexArray
 def _describe_response(
     record: ResponseRecord,
     deviation: ComplexArray,
-    bands: dict[ResponseBand, BandStatistics],
+    bands: tuple[BandDeviation, ...],
     pantograph: PantographFile,
 ) -> ComparedResponse:
     """Part of the report on one response."""
@@ -140,7 +138,7 @@ def _describe_response(
         modulus_deviation_pct=tuple(100 * deviation.real),
         phase_deviation_deg=tuple(np.degrees(deviation.imag)),
         model=_build_model_curve(form, curve_frequency, model_stiffness(pantograph, curve_frequency)),
-        bands=tuple(_describe_band(band, statistics) for band, statistics in bands.items()),
+        bands=bands,
     )
 
 
@@ -161,21 +159,6 @@ def _build_curve(
         frequency_Hz=tuple(frequency),
         modulus=tuple(np.abs(form.from_stiffness(stiffness, frequency))),
         phase_deg=tuple(np.degrees(form.shift_phase(stiffness_phase))),
-    )
-
-
-def _describe_band(band: ResponseBand, statistics: BandStatistics) -> BandDeviation:
-    modulus_at, phase_at = statistics.largest_at or (None, None)
-    beyond = statistics.beyond_uncertainty
-    return BandDeviation(
-        band_Hz=band,
-        rows=statistics.rows,
-        missing=statistics.missing,
-        deviations=dict(statistics.values),
-        uncertainty=dict(statistics.uncertainty),
-        largest_modulus_at_Hz=modulus_at,
-        largest_phase_at_Hz=phase_at,
-        beyond_uncertainty_pct=None if beyond is None else 100 * beyond,
     )
 
 
