@@ -6,7 +6,7 @@ from pydantic import ConfigDict, Field, WrapSerializer
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart
-from pantocheck.conformance.core.json_file import Rounded, RoundedModel, round_numbers
+from pantocheck.conformance.core.json_file import Rounded, RoundedModel, round_tree
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pantograph.response_record import HeadPoint, ResponseKind
@@ -49,7 +49,7 @@ class ComparedSource(RoundedModel):
     """SHA-256 of the content; null: a simulation, or not read."""
 
 
-RoundedCriterion = Annotated[Criterion, WrapSerializer(lambda criterion, dump: round_numbers(dump(criterion)))]
+RoundedCriterion = Annotated[Criterion, WrapSerializer(lambda criterion, dump: round_tree(dump(criterion)))]
 """Difference between a model and a measurement, against a limit of the user.
 
 Its components are the change of the value with half the element length and half the time step. Its `limit_uncertainty`
