@@ -5,6 +5,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import AfterValidator, Field
 
+from pantocheck.conformance.core.criterion import LimitTarget
 from pantocheck.conformance.core.findings import PublishedFinding
 from pantocheck.conformance.core.input_error import suggest_names
 from pantocheck.conformance.core.sourced_table import (
@@ -86,7 +87,7 @@ class Limit(InputTable):
         return self.finding is not None and self.finding.role == "imposed"
 
     @property
-    def target(self) -> tuple[str, int, int | None]:
+    def target(self) -> LimitTarget:
         """Quantity, pantograph and item of this limit; a later limit with the same target replaces it."""
         return self.quantity, self.owner, self.item
 

@@ -8,11 +8,19 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pantocheck.conformance.comparison.drop_motion import MOTION_BANDS
-from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.core.criterion import (
+    EVERYWHERE,
+    ComparedMotion,
+    ComponentName,
+    Criterion,
+    CriterionPlace,
+    Requirement,
+)
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.near_limit import ValueErrors, grade_value
+from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
+    NO_TRUST,
     InputTable,
     NonNegative,
     NonNegativeList,
@@ -24,14 +32,13 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.grading.criterion_grading import build_criterion
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.comparison_format import (
     DROP_QUANTITIES,
     RESPONSE_QUANTITIES,
     STATIC_QUANTITIES,
-    ComparedMotion,
     ComparedQuantityName,
-    ComparisonCriterion,
-    CriterionPlace,
 )
 
 RESPONSE_BANDS: tuple[tuple[float, float], ...] = ((0.5, 5.0), (5.0, 20.0), (20.0, 50.0))
@@ -170,53 +177,39 @@ def unit_of_difference(quantity: str) -> str:
     return next((unit for end, unit in LIMIT_UNITS.items() if quantity.endswith(f"_{end}")), "")
 
 
-def describe_errors(discretisation: float | None, measurement: float | None) -> ValueErrors:
-    """Errors of a difference: that of the mesh widens the value, that of the measurement the limit."""
-    components: dict[ComponentName, float] = {} if discretisation is None else {"discretisation": discretisation}
-    return ValueErrors(components=components, limit_uncertainty=measurement or 0.0)
-
-
-def build_comparison_criterion(
+def grade_difference(
     limit: ComparisonLimit,
-    where: CriterionPlace,
     value: float | None,
+    where: CriterionPlace = EVERYWHERE,
     *,
     missing: str | None,
     discretisation: float | None = None,
     measurement: float | None = None,
     place: str = "",
-    source: str | None = None,
-) -> ComparisonCriterion:
-    """Grade a value by a limit at one of its places.
+    source: str = "",
+) -> Criterion:
+    """Grade a difference by a limit at one of its places. The limits of the user always count.
 
     Args:
         limit: The limit.
-        where: Place of the value.
         value: Graded value, in the unit of the quantity; None if there is none.
+        where: Place of the value.
         missing: Data that the criterion needs and the record does not have; None if it is complete.
-        discretisation: Change of the value with a finer mesh; None if it is not known.
-        measurement: Half-width of the 95 % interval by the measurement; None if it is not stated.
+        discretisation: Change of the value with a finer mesh, which widens the value; None if it is not known.
+        measurement: Half-width of the 95 % interval by the measurement, which widens the limit; None if not stated.
         place: Place in words, behind the distance beyond the limit.
         source: Source of the limit in the report.
-
-    Returns:
-        The criterion.
     """
-    errors = describe_errors(discretisation, measurement)
-    unit = unit_of_difference(limit.quantity)
-    grade = grade_value(value, (limit.lower, limit.upper), unit, errors, missing, place)
-    return ComparisonCriterion(
+    requirement = Requirement(
         quantity=limit.quantity,
-        unit=unit,
+        pantograph=LINE,
         where=where,
-        value=value,
+        unit=unit_of_difference(limit.quantity),
         lower=limit.lower,
         upper=limit.upper,
+        trust=NO_TRUST,
         source=source,
-        verdict=grade.verdict,
-        reason=grade.reason,
-        margin=grade.margin,
-        discretisation=discretisation,
-        measurement=measurement,
-        close=grade.close,
     )
+    components: dict[ComponentName, float] = {} if discretisation is None else {"discretisation": discretisation}
+    errors = ValueErrors(components=components, limit_uncertainty=measurement)
+    return build_criterion(requirement, value, missing, NO_TRUST, errors, place)

@@ -16,6 +16,7 @@ from pantocheck.conformance.comparison.drop_motion import (
 )
 from pantocheck.conformance.comparison.drop_statistics import compute_energies, compute_statistics, sample_curves
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop, locate_drop
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.step_log import ShareCallback, follow_part, ignore_progress
@@ -28,7 +29,7 @@ from pantocheck.conformance.line.elements.damping import Damping, overlay_dampin
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, is_observable
 from pantocheck.conformance.records.force_checks import find_clipping
-from pantocheck.conformance.results.comparison_format import ComparedSource, ComparisonCriterion
+from pantocheck.conformance.results.comparison_format import ComparedSource
 from pantocheck.conformance.results.drop_comparison_format import (
     ComparedDrop,
     ComparedModel,
@@ -222,7 +223,7 @@ def _grade(
     motion: DropMotion,
     statistics: tuple[WindowStatistics, ...],
     progress: ShareCallback,
-) -> tuple[ComparisonCriterion, ...]:
+) -> tuple[Criterion, ...]:
     """Criteria of the limits; a refined simulation of the first model gives the error of the mesh and time step."""
     if not task.limits:
         return ()

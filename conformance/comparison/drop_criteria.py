@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow, build_comparison_criterion
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow, grade_difference
 from pantocheck.conformance.comparison.drop_motion import MotionBand
 from pantocheck.conformance.comparison.drop_statistics import is_buried
+from pantocheck.conformance.core.criterion import ComparedMotion, Criterion, CriterionPlace
 from pantocheck.conformance.core.sourced_table import NO_SOURCE
-from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparisonCriterion, CriterionPlace
 from pantocheck.conformance.results.drop_comparison_format import WindowStatistics
 
 StatisticsKey = tuple[int, ComparedMotion, TimeWindow, MotionBand]
@@ -21,7 +21,7 @@ def grade_drop(
     computed: GradedStatistics,
     fine: GradedStatistics,
     clipped: frozenset[tuple[int, TimeWindow]],
-) -> tuple[ComparisonCriterion, ...]:
+) -> tuple[Criterion, ...]:
     """Grade the first model at every sensor of every limit.
 
     Args:
@@ -40,14 +40,14 @@ def grade_drop(
         value, fine_value = (_read_value(limit, statistics.get(key)) for statistics in (computed, fine))
         missing = next(_list_missing(key, computed, (sensor, window) in clipped), None)
         criteria.append(
-            build_comparison_criterion(
+            grade_difference(
                 limit,
-                CriterionPlace(sensor=sensor, motion=key[1], window_s=window, band_Hz=band),
                 value,
+                CriterionPlace(sensor=sensor, motion=key[1], window_s=window, band_Hz=band),
                 missing=missing,
                 discretisation=None if value is None or fine_value is None else abs(value - fine_value),
                 measurement=0.0 if missing is not None else _noise_error(computed[key]),
-                source=None if limit.source == NO_SOURCE else limit.source,
+                source="" if limit.source == NO_SOURCE else limit.source,
             )
         )
     return tuple(criteria)

@@ -7,8 +7,8 @@ import numpy as np
 from pantocheck.conformance.comparison.comparison_limits import TimeWindow
 from pantocheck.conformance.comparison.drop_motion import GRAPHIC_BAND, DropMotion, MotionBand
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.criterion import ComparedMotion
 from pantocheck.conformance.drops.repeatability import round_curve
-from pantocheck.conformance.results.comparison_format import ComparedMotion
 from pantocheck.conformance.results.drop_comparison_format import (
     EnergyCurve,
     ModelAgreement,

@@ -8,13 +8,12 @@ import numpy as np
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
 from pantocheck.conformance.comparison.response_deviation import (
-    BandStatistics,
-    ResponseBand,
     grade_responses,
     response_deviation,
     summarise_band,
 )
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import worst_verdict
@@ -26,7 +25,6 @@ from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
     ComparedResponse,
     ComparedSource,
-    ComparisonCriterion,
     HeadResponse,
     ResponseComparison,
 )
@@ -65,8 +63,8 @@ def compare_responses(
     ]
     criteria = grade_responses(limits, list(zip(records, bands, strict=True)))
     responses = tuple(
-        _describe_response(record, deviation, statistics, pantograph)
-        for record, deviation, statistics in zip(records, deviations, bands, strict=True)
+        _describe_response(record, deviation, tuple(by_band.values()), pantograph)
+        for record, deviation, by_band in zip(records, deviations, bands, strict=True)
     )
     return ResponseComparison(
         suite=build_suite(),
@@ -110,7 +108,7 @@ def _deviate(record: ResponseRecord, pantograph: PantographFile) -> ComplexArray
 def _describe_response(
     record: ResponseRecord,
     deviation: ComplexArray,
-    bands: dict[ResponseBand, BandStatistics],
+    bands: tuple[BandDeviation, ...],
     pantograph: PantographFile,
 ) -> ComparedResponse:
     """Part of the report on one response."""
@@ -140,7 +138,7 @@ def _describe_response(
         modulus_deviation_pct=tuple(100 * deviation.real),
         phase_deviation_deg=tuple(np.degrees(deviation.imag)),
         model=_build_model_curve(form, curve_frequency, model_stiffness(pantograph, curve_frequency)),
-        bands=tuple(_describe_band(band, statistics) for band, statistics in bands.items()),
+        bands=bands,
     )
 
 
@@ -164,22 +162,7 @@ def _build_curve(
     )
 
 
-def _describe_band(band: ResponseBand, statistics: BandStatistics) -> BandDeviation:
-    modulus_at, phase_at = statistics.largest_at or (None, None)
-    beyond = statistics.beyond_uncertainty
-    return BandDeviation(
-        band_Hz=band,
-        rows=statistics.rows,
-        missing=statistics.missing,
-        deviations=dict(statistics.values),
-        uncertainty=dict(statistics.uncertainty),
-        largest_modulus_at_Hz=modulus_at,
-        largest_phase_at_Hz=phase_at,
-        beyond_uncertainty_pct=None if beyond is None else 100 * beyond,
-    )
-
-
-def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[ComparisonCriterion]) -> Iterator[str]:
+def _list_warnings(responses: Sequence[ComparedResponse], criteria: Sequence[Criterion]) -> Iterator[str]:
     """Caveats: informative responses, missing uncertainty and rows, responses without a limit."""
     graded = {criterion.where.record for criterion in criteria}
     for response in responses:

@@ -8,15 +8,15 @@ has no effect.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, build_comparison_criterion
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, grade_difference
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
+from pantocheck.conformance.core.criterion import Criterion, CriterionPlace
 from pantocheck.conformance.core.validation_messages import name_rows
 from pantocheck.conformance.pantograph.response_record import ResponseRecord, ResponseUncertainty
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, CriterionPlace, ResponseQuantity
+from pantocheck.conformance.results.comparison_format import BandDeviation, ResponseQuantity
 
 ResponseBand = tuple[float, float]
 
@@ -24,26 +24,7 @@ LARGEST_FREQUENCY_RATIO = 1.2
 """Largest ratio of neighbouring frequencies in a complete band: the half-power width of a mode with a damping ratio of
 0.1, which would be missed with fewer rows."""
 
-
-@dataclass(frozen=True)
-class BandStatistics:
-    """Deviations in one band."""
-
-    rows: int
-    """Number of measured values in the band."""
-    values: Mapping[ResponseQuantity, float]
-    """Deviations; empty without a measured value."""
-    uncertainty: Mapping[ResponseQuantity, float]
-    """Half-widths of their 95 % intervals by the measurement; empty if it states none."""
-    largest_at: tuple[float, float] | None
-    """Frequencies of the largest deviation of modulus and phase [Hz]."""
-    beyond_uncertainty: float | None
-    """Share of deviations larger than the uncertainty of the measurement [-]; 0.05 with noise alone."""
-    missing: str | None
-    """Data that a complete band needs and the record does not have."""
-
-
-GradedResponse = tuple[ResponseRecord, Mapping[ResponseBand, BandStatistics]]
+GradedResponse = tuple[ResponseRecord, Mapping[ResponseBand, BandDeviation]]
 """Record, and its deviations by band."""
 
 
@@ -55,7 +36,7 @@ def response_deviation(model: ComplexArray, measured: ComplexArray) -> ComplexAr
     return deviation
 
 
-def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: ResponseBand) -> BandStatistics:
+def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: ResponseBand) -> BandDeviation:
     """Summarise the deviations in a band.
 
     Args:
@@ -70,18 +51,23 @@ def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: Respon
     present = inside & np.isfinite(deviation)
     missing = _find_missing_data(record, band, inside, present)
     if not present.any():
-        return BandStatistics(0, {}, {}, None, None, missing)
+        return BandDeviation(
+            band_Hz=band, rows=0, missing=missing, deviations={}, uncertainty={},
+            largest_modulus_at_Hz=None, largest_phase_at_Hz=None, beyond_uncertainty_pct=None,
+        )  # fmt: skip
     frequency, modulus, phase = record.frequency[present], deviation[present].real, deviation[present].imag
     weights = band_weights(frequency, band)
     errors = _select_rows(record.uncertainty, present)
-    return BandStatistics(
+    return BandDeviation(
+        band_Hz=band,
         rows=int(present.sum()),
-        values=_deviation_norms(modulus, phase, weights),
+        missing=missing,
+        deviations=_deviation_norms(modulus, phase, weights),
         # Both norms obey the triangle inequality: an error of the measurement changes them by its own norm at most.
         uncertainty={} if errors is None else _deviation_norms(errors.modulus, errors.phase, weights),
-        largest_at=tuple(float(frequency[np.argmax(np.abs(part))]) for part in (modulus, phase)),  # type: ignore[arg-type]
-        beyond_uncertainty=None if errors is None else _share_beyond(modulus, phase, errors),
-        missing=missing,
+        largest_modulus_at_Hz=float(frequency[np.argmax(np.abs(modulus))]),
+        largest_phase_at_Hz=float(frequency[np.argmax(np.abs(phase))]),
+        beyond_uncertainty_pct=None if errors is None else 100 * _share_beyond(modulus, phase, errors),
     )
 
 
@@ -130,9 +116,7 @@ def _find_missing_data(
     return None
 
 
-def grade_responses(
-    limits: Sequence[ComparisonLimit], responses: Sequence[GradedResponse]
-) -> tuple[ComparisonCriterion, ...]:
+def grade_responses(limits: Sequence[ComparisonLimit], responses: Sequence[GradedResponse]) -> tuple[Criterion, ...]:
     """Grade the responses at the centre of the head by every limit.
 
     Args:
@@ -146,7 +130,7 @@ def grade_responses(
     return tuple(criterion for limit in limits for criterion in _grade_limit(limit, at_head))
 
 
-def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) -> Iterator[ComparisonCriterion]:
+def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) -> Iterator[Criterion]:
     band = limit.band_Hz or (0.0, 0.0)
     for force in limit.static_forces_N or ():
         loaded = [response for response in responses if response[0].sidecar.static_force_N == force]
@@ -154,22 +138,24 @@ def _grade_limit(limit: ComparisonLimit, responses: Sequence[GradedResponse]) ->
             found = [item for item in loaded if height is None or item[0].sidecar.height_m == height]
             if not found:
                 place = "" if height is None else f" at {height:g} m"
-                yield build_comparison_criterion(
+                yield grade_difference(
                     limit,
-                    CriterionPlace(static_force_N=force, height_m=height, band_Hz=band),
                     None,
+                    CriterionPlace(static_force_N=force, height_m=height, band_Hz=band),
                     missing=f"no response at the centre of the head under {force:g} N{place}",
                     source=limit.source,
                 )
             for record, bands in found:
-                statistics, measured_at = bands[band], record.sidecar.height_m
-                yield build_comparison_criterion(
+                deviation, measured_at = bands[band], record.sidecar.height_m
+                yield grade_difference(
                     limit,
+                    _select_value(deviation.deviations, limit),
                     CriterionPlace(record=record.source, static_force_N=force, height_m=measured_at, band_Hz=band),
-                    next((value for name, value in statistics.values.items() if name == limit.quantity), None),
-                    missing=statistics.missing,
-                    measurement=next(
-                        (width for name, width in statistics.uncertainty.items() if name == limit.quantity), None
-                    ),
+                    missing=deviation.missing,
+                    measurement=_select_value(deviation.uncertainty, limit),
                     source=limit.source,
                 )
+
+
+def _select_value(values: Mapping[ResponseQuantity, float], limit: ComparisonLimit) -> float | None:
+    return next((value for name, value in values.items() if name == limit.quantity), None)

@@ -6,20 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.conformance.comparison.comparison_limits import (
-    ComparisonLimit,
-    build_comparison_criterion,
-    unit_of_difference,
-)
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, grade_difference, unit_of_difference
 from pantocheck.conformance.comparison.static_record import StaticRecord, StaticSidecar
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.results.comparison_format import (
-    ComparisonCriterion,
-    CriterionPlace,
-    StaticQuantity,
-    StaticValue,
-)
+from pantocheck.conformance.results.comparison_format import StaticQuantity, StaticValue
 
 CRITERIA: dict[StaticQuantity, StaticValue] = {
     "elasticity_difference_mm_N": "elasticity",
@@ -143,7 +135,7 @@ def refuse_other_unit(record: StaticRecord, name: StaticValue, measured: RealArr
 
 def grade_tolerance(
     limit: ComparisonLimit, pairs: Mapping[StaticValue, ValuePair], sidecar: StaticSidecar, section: tuple[float, float]
-) -> ComparisonCriterion:
+) -> Criterion:
     """Grade the largest difference in the evaluated section.
 
     The criterion is skipped unless the whole section was measured at the distances that the sidecar states, so that
@@ -163,15 +155,14 @@ def grade_tolerance(
     missing = _find_missing(name, pair, sidecar, section)
     inside = np.zeros(0, dtype=np.int64) if pair is None else np.flatnonzero(select_section(pair.position, section))
     if pair is None or not inside.size:
-        return build_comparison_criterion(limit, CriterionPlace(), None, missing=missing)
+        return grade_difference(limit, None, missing=missing)
     measured = pair.measured[inside]
     scale = 100 / measured if unit_of_difference(limit.quantity) == "%" else np.full(measured.size, 1e3)
     size, fine_size = (np.abs(values[inside] - measured) * scale for values in (pair.model, pair.fine_model))
     largest = int(np.argmax(size))
     width = sidecar.elasticity_uncertainty_mm_N if name == "elasticity" else sidecar.height_uncertainty_mm
-    return build_comparison_criterion(
+    return grade_difference(
         limit,
-        CriterionPlace(),
         float(size[largest]),
         missing=missing,
         discretisation=abs(float(size[largest]) - float(fine_size.max())),

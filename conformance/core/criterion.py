@@ -1,10 +1,10 @@
-"""Criterion of results.json: a value against its limits, with the components of its uncertainty."""
+"""Criterion: a value against its limits, with the components of its uncertainty, in results.json and in comparisons."""
 
-from typing import Literal, Self, get_args
+from typing import Annotated, Literal, Self, get_args
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
-from pantocheck.conformance.core.findings import GradedFinding
+from pantocheck.conformance.core.findings import GradedFinding, PublishedFinding
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
 from pantocheck.conformance.core.trust import Computed, Trust
 from pantocheck.conformance.core.verdicts import Verdict
@@ -18,40 +18,81 @@ ComponentName = Literal["discretisation", "start", "section", "length"]
 COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
 
 
-class Criterion(ResultsPart):
-    """A value against its limits. `pantograph` is 0 for the line; `item` counts droppers or modes from 1.
+ComparedMotion = Literal["velocity", "acceleration"]
 
-    `discretisation_error` is the change when element length and time step are halved. `spread` is the largest change
-    when the analysis section is shifted span by span; it is not part of `uncertainty`. `uncertainty` is the half-width
-    of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it was that from
-    the length of the record.
-    `limit_uncertainty` is that of a limit from a measured record. `close` has a remark if both combined exceed the
-    distance from the nearer limit.
-    `baseline` is the value of earlier results, if the limits bound the drift from it.
-    """
+LimitTarget = tuple[str, int, int | None]
+"""Quantity, pantograph (0: the line) and item (None: the only one, or the first) of a limit."""
+
+
+class CriterionPlace(ResultsPart):
+    """Place of a value that is compared with a measured one; a key that does not apply is null."""
+
+    record: str | None = None
+    """Name of the table of a response; null: no such response."""
+    static_force_N: FiniteNumber | None = None
+    height_m: FiniteNumber | None = None
+    sensor: int | None = None
+    motion: ComparedMotion | None = None
+    window_s: tuple[FiniteNumber, FiniteNumber] | None = None
+    band_Hz: tuple[FiniteNumber, FiniteNumber] | None = None
+
+
+EVERYWHERE = CriterionPlace()
+"""A value without such a place."""
+
+
+class Requirement(ResultsPart):
+    """Limits of one number, whichever table states them: of a case, profile, comparison, dossier or baseline."""
 
     quantity: str
+    """Name of the quantity, of a difference, or of a parameter."""
     pantograph: int
+    """Number of the pantograph; 0: the line."""
     item: int | None = None
-    value: FiniteNumber | None
+    """Number among several values (dropper, mode), from 1."""
+    where: Annotated[CriterionPlace, Field(exclude_if=lambda place: place == EVERYWHERE)] = EVERYWHERE
+    """Place of a compared value; left out of the file if there is none."""
     unit: str
     lower: FiniteNumber | None
     upper: FiniteNumber | None
-    verdict: Verdict
+    """Limits in the unit; both null if they are not known."""
     trust: Trust | Computed | None
     """Trust of the limits; null: the bounds are values of a baseline, without a published source."""
     source: str
+    """Source of the limits."""
+    baseline: float | None = None
+    """Earlier value, if the limits bound the drift from it."""
+    finding: PublishedFinding | None = None
+    """Finding of a publication that the limits grade; null: none."""
+
+    @property
+    def target(self) -> LimitTarget:
+        """Quantity, pantograph and item."""
+        return self.quantity, self.pantograph, self.item
+
+
+class Criterion(Requirement):
+    """A value against its limits."""
+
+    value: FiniteNumber | None
+    verdict: Verdict
     margin: float | None
     discretisation_error: float | None
+    """Change when element length and time step are halved."""
     spread: float | None = None
+    """Largest change when the analysis section is shifted span by span; it is not part of `uncertainty`."""
     reason: str | None
+    """Data that are missing, or distance beyond a limit."""
     uncertainty: float | None = None
+    """Half-width of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it
+    was that from the length of the record.
+    """
     components: dict[ComponentName, float] = {}
-    limit_uncertainty: float = 0.0
+    limit_uncertainty: float | None = 0.0
+    """Half-width of the 95 % interval of a limit from a measured record; null: the record states none."""
     close: list[str] = []
-    baseline: float | None = None
+    """Remark on a value whose `uncertainty` and `limit_uncertainty` combined exceed its distance from a limit."""
     finding: GradedFinding | None = None
-    """Finding of a publication that the limits grade; null: none."""
 
     @property
     def is_drift(self) -> bool:

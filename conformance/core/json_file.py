@@ -93,6 +93,15 @@ def round_significant(value: float) -> float:
     return float(f"{value:.{SIGNIFICANT_DIGITS}g}") if math.isfinite(value) else 0.0
 
 
+def round_tree(tree: object) -> object:
+    """Round every number of nested dictionaries and lists to `SIGNIFICANT_DIGITS`."""
+    if isinstance(tree, dict):
+        return {key: round_tree(part) for key, part in tree.items()}
+    if isinstance(tree, list | tuple):
+        return [round_tree(part) for part in tree]
+    return round_significant(tree) if isinstance(tree, float) else tree
+
+
 Rounded = Annotated[float, PlainSerializer(round_significant, return_type=float)]
 """Number with full precision in memory and `SIGNIFICANT_DIGITS` in a file."""
 

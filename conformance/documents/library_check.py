@@ -1,7 +1,6 @@
 """Check of cases, inputs and limits against the installed library."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator
 
 from pantocheck.conformance.cases.case import Case, CaseOrigin
 from pantocheck.conformance.cases.case_source import list_library
@@ -10,12 +9,17 @@ from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.library import load_case, load_entry, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
-from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.criterion import Criterion, LimitTarget
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck, judge_details, shorten_details
 from pantocheck.conformance.documents.document_reading import list_suite_differences
 from pantocheck.conformance.grading.case_grading import build_ungraded
-from pantocheck.conformance.grading.case_identity import describe_limit_change, limits_digest, profile_limits_digest
+from pantocheck.conformance.grading.case_identity import (
+    describe_limit_change,
+    limits_digest,
+    name_limit,
+    profile_limits_digest,
+)
 from pantocheck.conformance.grading.case_verification import (
     build_requirements,
     find_obstacle,
@@ -26,7 +30,7 @@ from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.validity_warnings import find_unvalidated, validity_warnings
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
-from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
+from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 STATED_FACTS = {
@@ -221,10 +225,6 @@ def _list_differences(result: CaseResult, entry: CaseEntry, stated: CaseOrigin) 
 
 
 # Limits of a result against those of the installed case.
-LimitTarget = tuple[str, int, int | None]
-"""Quantity, pantograph and item."""
-
-
 def compare_limits(case: Case, result: CaseResult) -> Iterator[str]:
     """Differences of the limits of a result from those of the installed case.
 
@@ -275,7 +275,7 @@ def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]
     requirements = build_requirements(converged, case.is_static)
     if result.record is not None and result.record.start == "differs":
         requirements = tuple(include_start(requirement, converged) for requirement in requirements)
-    rows, wanted = _by_target(stated.criteria), {(one.quantity, one.owner, one.item): one for one in requirements}
+    rows, wanted = _by_target(stated.criteria), {item.target: item for item in requirements}
     for target in rows.keys() - wanted.keys():
         yield f"{criterion_name(rows[target])}: no converged value in the library, a limit in the certificate"
     for target, requirement in wanted.items():
@@ -289,7 +289,7 @@ def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]
 
 
 def _compare_limit(limit: Limit, row: Criterion | None) -> Iterator[str]:
-    name = name_value(limit.quantity, limit.item) + (f" of pantograph {limit.owner}" if limit.owner else "")
+    name = name_limit(limit)
     if row is None:
         bounds = format_bounds(limit.lower, limit.upper)
         yield f"{name}: limit {bounds} in the library, no criterion in the certificate"
@@ -301,7 +301,7 @@ def _compare_limit(limit: Limit, row: Criterion | None) -> Iterator[str]:
         yield f"{name}: trust '{limit.trust}' in the library, '{row.trust}' in the certificate"
     if row.source != source_text(limit.source):
         yield f"{name}: the source of the limit is another one than in the library"
-    roles: list[Any] = [item and item.role for item in (limit.finding, row.finding)]
+    roles = [None if item is None else item.role for item in (limit.finding, row.finding)]
     if roles[0] != roles[1]:
         yield f"{name}: finding '{roles[0]}' in the library, '{roles[1]}' in the certificate"
 
@@ -314,8 +314,8 @@ def _replacing_limit(limit: Limit, row: Criterion | None) -> Limit | None:
     return limit.model_copy(update={"lower": row.lower, "upper": row.upper, "trust": row.trust, "finding": finding})
 
 
-def _by_target(rows: Any) -> dict[LimitTarget, Criterion]:
-    return {(row.quantity, row.pantograph, row.item): row for row in rows}
+def _by_target(rows: Iterable[Criterion]) -> dict[LimitTarget, Criterion]:
+    return {row.target: row for row in rows}
 
 
 def _bounds(row: Criterion) -> str:

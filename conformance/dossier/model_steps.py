@@ -9,9 +9,8 @@ from pantocheck.conformance.comparison.response_comparison import compare_respon
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
 from pantocheck.conformance.comparison.static_differences import CRITERIA
 from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
-from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.criterion import Criterion, Requirement
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_file import (
     LineEntry,
@@ -24,21 +23,16 @@ from pantocheck.conformance.dossier.dossier_reading import Dossier
 from pantocheck.conformance.dossier.step_result import (
     StepInterrupted,
     StepResult,
-    convert_criterion,
     describe_conditions,
+    grade_again,
 )
 from pantocheck.conformance.execution.runner import Progress, RunInterrupted, run_cases
 from pantocheck.conformance.grading.case_verdict import Participation
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion, skip_unlimited
+from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited
 from pantocheck.conformance.grading.procedure_verdict import is_reference
 from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.results.comparison_format import (
-    ComparisonCriterion,
-    ResponseComparison,
-    StaticComparison,
-    StaticQuantity,
-)
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison, StaticQuantity
 from pantocheck.conformance.results.procedure_format import DeclaredParameter, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.system import System
@@ -68,7 +62,7 @@ def check_pantographs(dossier: Dossier) -> StepResult:
         except InputError as error:
             text = " ".join(str(error).split())
             return StepResult("pantograph_model", "error", text, responses=tuple(responses))
-        criteria += [_convert(row, entry, number, dossier.file.trust) for row in responses[-1].criteria]
+        criteria += [grade_again(row, _state(row, entry, number), dossier.file.trust) for row in responses[-1].criteria]
         criteria += _skip_unlimited(dossier, entry, number)
     notes = ("A frequency response is unverified: it has no second channel that could confirm it.",)
     return StepResult("pantograph_model", criteria=tuple(criteria), responses=tuple(responses), notes=notes)
@@ -79,21 +73,17 @@ def _compare(dossier: Dossier, entry: PantographEntry) -> ResponseComparison:
     return compare_responses(records, dossier.pantographs[entry.name], entry.limit)
 
 
-def _convert(row: ComparisonCriterion, entry: PantographEntry, number: int, trust: Trust) -> Criterion:
+def _state(row: Criterion, entry: PantographEntry, number: int) -> dict[str, str | int]:
+    """Name of a criterion with its place, number of its pantograph, trust and source."""
     where = row.where
     low, high = where.band_Hz or (0.0, 0.0)
     height = "" if where.height_m is None else f", {where.height_m:g} m"
-    requirement = Requirement(
-        f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
-        number,
-        None,
-        row.lower,
-        row.upper,
-        entry.trust,
-        source_text(row.source or NO_SOURCE),
-        unit=row.unit,
-    )
-    return convert_criterion(row, requirement, trust)
+    return {
+        "quantity": f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
+        "pantograph": number,
+        "trust": entry.trust,
+        "source": source_text(row.source),
+    }
 
 
 def _skip_unlimited(dossier: Dossier, entry: PantographEntry, number: int) -> Iterator[Criterion]:
@@ -185,7 +175,10 @@ def _build_criterion(
     unit: str,
     trust: Trust,
 ) -> Criterion:
-    requirement = Requirement(name, LINE, None, *bounds, "primary", DECLARED, unit=unit)
+    lower, upper = bounds
+    requirement = Requirement(
+        quantity=name, pantograph=LINE, unit=unit, lower=lower, upper=upper, trust="primary", source=DECLARED
+    )
     return build_criterion(requirement, value, missing, trust)
 
 
@@ -214,7 +207,8 @@ def check_statics(dossier: Dossier) -> StepResult:
             statics.append(_compare_statics(dossier, entry, entry.statics))
         except InputError as error:
             return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
-        criteria += [_convert_static(row, entry.tolerance, item, dossier.file.trust) for row in statics[-1].criteria]
+        stated = {"item": item, "trust": entry.tolerance.trust, "source": source_text(entry.tolerance.source)}
+        criteria += [grade_again(row, stated, dossier.file.trust) for row in statics[-1].criteria]
         criteria += _skip_ungraded(entry.tolerance, item)
     notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)
     return StepResult("static_check", criteria=tuple(criteria), statics=tuple(statics), notes=notes)
@@ -234,13 +228,6 @@ def _list_tolerances(tolerance: StaticTolerance) -> dict[StaticQuantity, float]:
         "contact_wire_height_difference_mm": tolerance.height_mm,
     }
     return {name: value for name, value in stated.items() if value is not None}
-
-
-def _convert_static(row: ComparisonCriterion, tolerance: StaticTolerance, item: int | None, trust: Trust) -> Criterion:
-    requirement = Requirement(
-        row.quantity, LINE, item, row.lower, row.upper, tolerance.trust, source_text(tolerance.source), unit=row.unit
-    )
-    return convert_criterion(row, requirement, trust)
 
 
 def _skip_ungraded(tolerance: StaticTolerance, item: int | None) -> Iterator[Criterion]:

@@ -1,19 +1,19 @@
 """Result of one step of the procedure, before its verdict is decided."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.comparison.comparison_limits import describe_errors
-from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.criterion import EVERYWHERE, Criterion
+from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.criterion_grading import build_criterion
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ResponseComparison, StaticComparison
+from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
 from pantocheck.conformance.results.procedure_format import (
     DeclaredParameter,
     Evidence,
@@ -68,12 +68,19 @@ class StepResult:
         )
 
 
-def convert_criterion(row: ComparisonCriterion, requirement: Requirement, trust: Trust) -> Criterion:
-    """Criterion of the procedure; a value of an incomplete record is left out, because it must not be graded."""
+def grade_again(row: Criterion, changes: Mapping[str, object], lowest_trust: Trust) -> Criterion:
+    """Criterion of the procedure from one of a comparison.
+
+    Args:
+        row: Criterion of the comparison. A value of an incomplete record is left out, because it must not be graded.
+        changes: Name, owner, trust and source of the limits in the procedure.
+        lowest_trust: Lowest trust of the limits that count.
+    """
+    requirement = row.model_copy(update={"where": EVERYWHERE, **changes})
     if row.verdict == "skip":
-        return build_criterion(requirement, None, row.reason, trust)
-    errors = describe_errors(row.discretisation, row.measurement)
-    return build_criterion(requirement, row.value, None, trust, errors)
+        return build_criterion(requirement, None, row.reason, lowest_trust)
+    errors = ValueErrors(components=row.components, limit_uncertainty=row.limit_uncertainty or 0.0)
+    return build_criterion(requirement, row.value, None, lowest_trust, errors)
 
 
 class StepInterrupted(Exception):

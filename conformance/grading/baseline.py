@@ -5,12 +5,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from pantocheck.conformance.core.criterion import BASELINE, Criterion
+from pantocheck.conformance.core.criterion import BASELINE, Criterion, Requirement
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_verdict import judge_baseline, read_participation
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
-from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited
+from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -132,8 +131,7 @@ def _verification_digest(case: CaseResult) -> str | None:
 
 def _skipped_comparison(reason: str) -> Criterion:
     """Skipped criterion, without which a case could pass by the baseline of another one."""
-    requirement = Requirement(BASELINE, LINE, None, None, None, None, "baseline")
-    return build_criterion(requirement, None, reason, "primary")
+    return skip_unlimited(BASELINE, reason, "baseline", trust=None)
 
 
 def _skip_comparison(case: CaseResult, reason: str, drift_pct: float, name: str) -> CaseResult:
@@ -179,11 +177,7 @@ def bound_drift(quantity: str, earlier: float, drift_pct: float) -> tuple[float,
 
 def _scale(quantity: str, earlier: float) -> float:
     """Reference of a relative drift."""
-    return max(abs(earlier), SMALLEST_SCALE if _unit(quantity) else SMALLEST_RATIO_SCALE)
-
-
-def _unit(quantity: str) -> str:
-    return QUANTITIES[quantity].unit if quantity in QUANTITIES else ""
+    return max(abs(earlier), SMALLEST_SCALE if unit_of(quantity) else SMALLEST_RATIO_SCALE)
 
 
 def _grade_drift(
@@ -191,9 +185,19 @@ def _grade_drift(
 ) -> Criterion:
     """Grade a value (earlier, now) by the drift from its earlier value."""
     earlier, now = values
-    unit = _unit(key.quantity)
+    unit = unit_of(key.quantity)
     lower, upper = bound_drift(key.quantity, earlier, drift_pct)
-    requirement = Requirement(key.quantity, int(key.owner), key.item, lower, upper, None, source, baseline=earlier)
+    requirement = Requirement(
+        quantity=key.quantity,
+        pantograph=int(key.owner),
+        item=key.item,
+        unit=unit,
+        lower=lower,
+        upper=upper,
+        trust=None,
+        source=source,
+        baseline=earlier,
+    )
     if now is None:
         lost = case.skipped.get(key.owner, {}).get(key.quantity, "the system no longer delivers it")
         reason = f"the baseline has {earlier:.6g} {unit}".rstrip() + f"; now: {lost}"

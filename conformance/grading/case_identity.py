@@ -87,7 +87,7 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
         stated: Limit of the case or profile.
         limit: Limit of the user that replaces it; None if it was removed.
     """
-    name = name_value(stated.quantity, stated.item) + (f" of pantograph {stated.owner}" if stated.owner else "")
+    name = name_limit(stated)
     bounds = format_bounds(stated.lower, stated.upper)
     if limit is None:
         return f"{name}: the limit {bounds} is removed"
@@ -100,6 +100,11 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     if stated.is_imposed and not limit.is_imposed:
         parts.append("an imposed finding counts")
     return f"{name}: {', and '.join(parts)}" if parts else None
+
+
+def name_limit(limit: Limit) -> str:
+    """Name of a limit: its quantity and item, and its pantograph if it has one."""
+    return name_value(limit.quantity, limit.item) + (f" of pantograph {limit.owner}" if limit.owner else "")
 
 
 def _is_wider(stated: Limit, limit: Limit) -> bool:

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case, json_digest
 from pantocheck.conformance.cases.converged_file import ConvergedFile, ConvergedValue, find_converged
-from pantocheck.conformance.core.criterion import CaseVerification, Criterion
+from pantocheck.conformance.core.criterion import CaseVerification, Criterion, Requirement
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_verdict import judge_case
-from pantocheck.conformance.grading.criterion_grading import Requirement, grade_requirement
+from pantocheck.conformance.grading.criterion_grading import grade_requirement
 from pantocheck.conformance.grading.start_agreement import list_verification_components
-from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.quantities.registry import QUANTITIES, unit_of
 
 
 def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
@@ -150,8 +150,8 @@ def _build_requirement(converged: ConvergedValue, mean: float | None, source: st
     width = converged.half_width + tolerance(converged.quantity, converged.value, mean)
     return Requirement(
         quantity=converged.quantity,
-        owner=converged.owner,
-        item=None,
+        pantograph=converged.owner,
+        unit=unit_of(converged.quantity),
         lower=converged.value - width,
         upper=converged.value + width,
         trust="computed",
@@ -165,11 +165,12 @@ def include_start(requirement: Requirement, converged: ConvergedFile) -> Require
     A value whose change with the start is not known keeps its limits.
     """
     widths = {(value.owner, value.quantity): value.start_half_width for value in converged.value}
-    width = widths[requirement.owner, requirement.quantity]
+    width = widths[requirement.pantograph, requirement.quantity]
     if width is None or requirement.lower is None or requirement.upper is None:
         return requirement
     source = f"{requirement.source}; widened for the start that the record states, which is not checked"
-    return replace(requirement, lower=requirement.lower - width, upper=requirement.upper + width, source=source)
+    widened = {"lower": requirement.lower - width, "upper": requirement.upper + width, "source": source}
+    return requirement.model_copy(update=widened)
 
 
 def tolerance(quantity: str, value: float, mean: float | None) -> float:

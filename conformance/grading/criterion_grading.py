@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.core.criterion import Criterion
-from pantocheck.conformance.core.findings import IMPOSED_REASON, PublishedFinding, count_verdict, grade_finding
-from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, grade_value
+from pantocheck.conformance.core.criterion import Criterion, LimitTarget, Requirement
+from pantocheck.conformance.core.findings import IMPOSED_REASON, count_verdict, grade_finding
+from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.verdicts import Verdict, judge, margin
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
@@ -18,31 +19,6 @@ from pantocheck.conformance.quantities.uncertainty import Uncertainty
 
 ErrorsByQuantity = Mapping[int, Mapping[str, float]]
 """Errors of quantities, by pantograph (0: the line) and name."""
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """Limits of one number."""
-
-    quantity: str
-    """Name of the quantity."""
-    owner: int
-    """Number of the pantograph, 0 for the line."""
-    item: int | None
-    """Number among several values (dropper, mode), from 1."""
-    lower: float | None
-    upper: float | None
-    """Limits in the unit of the quantity; both None if they are not known."""
-    trust: Trust | Computed | None
-    """Trust of the limits; None: bounds of a baseline."""
-    source: str
-    """Source of the limits."""
-    finding: PublishedFinding | None = None
-    """Finding of a publication that the limits grade."""
-    unit: str | None = None
-    """Unit of a value that is no quantity of a run; None: that of the quantity."""
-    baseline: float | None = None
-    """Earlier value, if the limits bound the drift from it."""
 
 
 @dataclass(frozen=True)
@@ -59,38 +35,50 @@ class GradedValues:
     """Half-widths of the 95 % intervals by component."""
 
 
-def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
-    """Grade a quantity by a limit.
+def convert_limit(limit: Limit) -> Requirement:
+    """Requirement of a limit of a case, a user or a profile."""
+    return Requirement(
+        quantity=limit.quantity,
+        pantograph=limit.owner,
+        item=limit.item,
+        unit=unit_of(limit.quantity),
+        lower=limit.lower,
+        upper=limit.upper,
+        trust=limit.trust,
+        source=source_text(limit.source),
+        finding=limit.finding,
+    )
 
-    Args:
-        limit: Limit of one quantity.
-        values: Quantities of the run.
-        lowest_trust: Lowest trust of the limits that count.
-        limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
-    """
-    number, source = (limit.quantity, limit.owner, limit.item), source_text(limit.source)
-    requirement = Requirement(*number, limit.lower, limit.upper, limit.trust, source, limit.finding)
-    return grade_requirement(requirement, values, lowest_trust, limit_uncertainty)
+
+def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
+    """Grade a quantity by a limit; parameters as in `grade_requirement`."""
+    return grade_requirement(convert_limit(limit), values, lowest_trust, limit_uncertainty)
 
 
 def grade_requirement(
     requirement: Requirement, values: GradedValues, lowest_trust: Trust | Computed, limit_uncertainty: float = 0.0
 ) -> Criterion:
-    """Grade a quantity by a requirement; parameters as in `grade_limit`."""
-    owner, name = requirement.owner, requirement.quantity
-    value = find_value(requirement, values.evaluation.values)
-    components = values.uncertainty.list_components(owner, name)
+    """Grade a quantity of a run.
+
+    Args:
+        requirement: Limits of one quantity.
+        values: Quantities of the run.
+        lowest_trust: Lowest trust of the limits that count.
+        limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
+    """
+    name, owner, item = requirement.target
+    value = find_value(requirement.target, values.evaluation.values)
     if value is None:
         missing = values.evaluation.skipped.get(owner, {}).get(name, "the system does not deliver this quantity")
         return build_criterion(requirement, None, missing, lowest_trust)
-    refined = None if values.refined is None else find_value(requirement, values.refined.values)
+    refined = None if values.refined is None else find_value(requirement.target, values.refined.values)
     errors = ValueErrors(
         discretisation=None if refined is None else abs(value - refined),
         spread=values.spread.get(owner, {}).get(name),
         components={
-            part: item
-            for part, width in components.items()
-            if (item := select_item(width, requirement.item)) is not None
+            part: half_width
+            for part, width in values.uncertainty.list_components(owner, name).items()
+            if (half_width := select_item(width, item)) is not None
         },
         limit_uncertainty=limit_uncertainty,
     )
@@ -103,48 +91,55 @@ def build_criterion(
     missing: str | None,
     lowest_trust: Trust | Computed,
     errors: ValueErrors = NO_ERRORS,
+    place: str = "",
 ) -> Criterion:
-    """Grade a value by its limits.
+    """Grade a value by its limits: the one way to a verdict with its reason, margin and remarks near a limit.
 
     Args:
-        requirement: Limits of the value.
+        requirement: Limits of the value; a value without limits is skipped.
         value: Value; None if it is not available.
-        missing: Reason why there is no value or no limit.
+        missing: Missing data, or reason why there is no value or no limit: the criterion is skipped. A distance beyond
+            a limit is stated all the same.
         lowest_trust: Lowest trust of the limits that count.
         errors: Errors of the value.
+        place: Place of the value in words, behind the distance beyond a limit.
     """
-    name, lower, upper = requirement.quantity, requirement.lower, requirement.upper
-    unit = unit_of(name) if requirement.unit is None else requirement.unit
-    grade = grade_value(value, (lower, upper), unit, errors, missing, names_side=True)
-    verdict, reason = grade.verdict, grade.reason
+    limits, reasons = (requirement.lower, requirement.upper), [] if missing is None else [missing]
+    verdict: Verdict = "skip"
+    if value is not None and limits != (None, None):
+        verdict = judge(value, *limits)
+        if verdict == "fail":
+            reasons.append(_describe_distance(value, requirement) + place)
+        verdict = verdict if missing is None else "skip"
+    reason = "; ".join(reasons) or None
     finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
     if not limit_counts(requirement.trust, lowest_trust):
         hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
     elif finding is not None and (counted := count_verdict(finding.role, verdict)) != verdict:
         verdict, reason = counted, IMPOSED_REASON
+    stated = {key: part for key, part in requirement if key in Requirement.model_fields and key != "finding"}
     return Criterion(
-        quantity=name,
-        pantograph=requirement.owner,
-        item=requirement.item,
+        **stated,
         value=value,
-        unit=unit,
-        lower=lower,
-        upper=upper,
         verdict=verdict,
-        trust=requirement.trust,
-        source=requirement.source,
-        margin=grade.margin,
+        margin=None if value is None or limits == (None, None) else margin(value, *limits),
         discretisation_error=errors.discretisation,
         spread=errors.spread,
         reason=reason,
         uncertainty=errors.uncertainty,
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
-        close=list(grade.close),
-        baseline=requirement.baseline,
+        close=near_limit_remarks(value, limits, requirement.unit, errors),
         finding=finding,
     )
+
+
+def _describe_distance(value: float, limits: Requirement) -> str:
+    """Distance beyond a limit, with its unit and side."""
+    if limits.lower is not None and value < limits.lower:
+        return " ".join(filter(None, (f"{limits.lower - value:.3g}", limits.unit, "below the lower limit")))
+    return " ".join(filter(None, (f"{value - (limits.upper or 0.0):.3g}", limits.unit, "above the upper limit")))
 
 
 def skip_unlimited(
@@ -156,6 +151,8 @@ def skip_unlimited(
     item: int | None = None,
     unit: str | None = None,
     value: float | None = None,
+    trust: Trust | None = "primary",
+    lowest_trust: Trust = "primary",
 ) -> Criterion:
     """Skipped criterion of a quantity that is demanded and has no limit or no record, so that its lack is noticed.
 
@@ -167,9 +164,20 @@ def skip_unlimited(
         item: Number among several values.
         unit: Unit of a value that is no quantity of a run.
         value: Value without a limit.
+        trust: Trust of the demand; None: a baseline.
+        lowest_trust: Lowest trust of the demands that count.
     """
-    requirement = Requirement(quantity, owner, item, None, None, "primary", source, unit=unit)
-    return build_criterion(requirement, value, reason, "primary")
+    requirement = Requirement(
+        quantity=quantity,
+        pantograph=owner,
+        item=item,
+        unit=unit_of(quantity) if unit is None else unit,
+        lower=None,
+        upper=None,
+        trust=trust,
+        source=source,
+    )
+    return build_criterion(requirement, value, reason, lowest_trust)
 
 
 def criterion_name(criterion: Criterion) -> str:
@@ -178,12 +186,13 @@ def criterion_name(criterion: Criterion) -> str:
     return f"{name} of pantograph {criterion.pantograph}" if criterion.pantograph else f"{name} of the line"
 
 
-def find_value(requirement: Requirement | Limit, values: Mapping[int, Mapping[str, Value]]) -> float | None:
+def find_value(target: LimitTarget, values: Mapping[int, Mapping[str, Value]]) -> float | None:
     """Value that limits apply to; None if there is none, or no finite one.
 
     Args:
-        requirement: Limits of one quantity, or of one item of it.
+        target: Quantity, pantograph and item of the limits.
         values: Quantities by pantograph (0: the line) and name.
     """
-    number = select_item(values.get(requirement.owner, {}).get(requirement.quantity), requirement.item)
+    quantity, owner, item = target
+    number = select_item(values.get(owner, {}).get(quantity), item)
     return number if number is not None and math.isfinite(number) else None

@@ -91,7 +91,7 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
     if not counted:
         return {"closest": None, "margin": None, "uncertainty": None}
     case, row = min(counted, key=lambda item: item[1].margin or 0.0)
-    width = math.hypot(row.uncertainty or 0.0, row.limit_uncertainty)
+    width = math.hypot(row.uncertainty or 0.0, row.limit_uncertainty or 0.0)
     name = criterion_name(row) if case is None else f"{case}, {criterion_name(row)}"
     return {
         "closest": name,

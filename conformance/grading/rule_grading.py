@@ -12,7 +12,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
-from pantocheck.conformance.grading.criterion_grading import GradedValues, Requirement, build_criterion, grade_limit
+from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit, skip_unlimited
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.quantities.uncertainty import combine_half_widths
@@ -66,11 +66,18 @@ class RuleGrading:
         try:
             return self._grade_limit(self._resolve_rule(rule, owner))
         except BoundMissing as reason:
-            requirement = Requirement(rule.quantity, owner, None, None, None, rule.trust, source_text(rule.source))
             value = _finite_value(self.subject, owner, rule.quantity)
             unavailable = self.subject.values.skipped.get(owner, {}).get(rule.quantity) if value is None else None
             reasons = "; ".join(filter(None, (unavailable, str(reason))))
-            return build_criterion(requirement, value, reasons, self.trust)
+            return skip_unlimited(
+                rule.quantity,
+                reasons,
+                source_text(rule.source),
+                owner=owner,
+                value=value,
+                trust=rule.trust,
+                lowest_trust=self.trust,
+            )
 
     def _grade_limit(self, limit: Limit) -> Criterion:
         return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))

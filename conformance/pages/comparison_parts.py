@@ -6,6 +6,7 @@ from typing import Generic, TypeVar
 
 from pydantic import BaseModel
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.words import (
     clean_tree,
@@ -14,7 +15,7 @@ from pantocheck.conformance.pages.words import (
     format_value,
     quantity_label,
 )
-from pantocheck.conformance.results.comparison_format import ComparisonCriterion, ModelComparison
+from pantocheck.conformance.results.comparison_format import ModelComparison
 
 C = TypeVar("C", bound=ModelComparison)
 M = TypeVar("M", bound=BaseModel)
@@ -52,7 +53,7 @@ def list_remarks(comparison: ModelComparison) -> list[str]:
     return [*comparison.warnings, *close]
 
 
-def name_criterion(criterion: ComparisonCriterion) -> str:
+def name_criterion(criterion: Criterion) -> str:
     """Criterion in words: quantity, motion, sensor, window, band, static force, height and unit."""
     where = criterion.where
     parts = [
@@ -72,26 +73,28 @@ def format_range(pair: tuple[float, float]) -> str:
     return " to ".join(map(format_plain, pair))
 
 
-def build_criteria_sections(criteria: tuple[ComparisonCriterion, ...]) -> tuple[doc.Section, ...]:
+def build_criteria_sections(criteria: tuple[Criterion, ...]) -> tuple[doc.Section, ...]:
     """Section with the table of the criteria; none without criteria.
 
     The columns of the error of the model and of the source are left out if no criterion has them.
     """
     if not criteria:
         return ()
-    has_model = any(item.discretisation is not None for item in criteria)
-    has_source = any(item.source is not None for item in criteria)
-    columns = [doc.Column("Criterion", share=3), doc.Column("Value", number=True), doc.Column("Limit", number=True)]
-    columns += [doc.Column("± model", number=True)] if has_model else []
-    columns += [doc.Column("± measured", number=True), doc.Column("Verdict")]
-    columns += [doc.Column("Source", share=1)] if has_source else []
-    columns += [doc.Column("Remark", share=2)]
-    rows = []
-    for item in criteria:
-        row: list[doc.RichText] = [name_criterion(item), *format_beside_limits(item.value, item.lower, item.upper)]
-        row += [format_value(item.discretisation, 2)] if has_model else []
-        row += ["not stated" if item.measurement is None else format_value(item.measurement, 2)]
-        row += [doc.VerdictMark(item.verdict)]
-        row += [item.source or "–"] if has_source else []
-        rows.append((*row, item.reason or "–"))
-    return (doc.Section("Criteria", (doc.Table(tuple(columns), tuple(rows)),)),)
+    cells: dict[doc.Column, Callable[[Criterion], doc.RichText]] = {
+        doc.Column("Criterion", share=3): name_criterion,
+        doc.Column("Value", number=True): lambda item: format_beside_limits(item.value, item.lower, item.upper)[0],
+        doc.Column("Limit", number=True): lambda item: format_beside_limits(item.value, item.lower, item.upper)[1],
+    }
+    if any(item.uncertainty is not None for item in criteria):
+        cells[doc.Column("± model", number=True)] = lambda item: format_value(item.uncertainty, 2)
+    cells[doc.Column("± measured", number=True)] = _format_measured
+    cells[doc.Column("Verdict")] = lambda item: doc.VerdictMark(item.verdict)
+    if any(item.source for item in criteria):
+        cells[doc.Column("Source", share=1)] = lambda item: item.source or "–"
+    cells[doc.Column("Remark", share=2)] = lambda item: item.reason or "–"
+    return (doc.Section("Criteria", (doc.make_table(criteria, cells),)),)
+
+
+def _format_measured(criterion: Criterion) -> str:
+    width = criterion.limit_uncertainty
+    return "not stated" if width is None else format_value(width, 2)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MultipleLocator, NullFormatter, StrMethodFormatter
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_style import (
     FULL,
     GREY,
@@ -24,13 +25,12 @@ from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.comparison_format import (
     BandDeviation,
     ComparedResponse,
-    ComparisonCriterion,
     ResponseComparison,
     ResponseQuantity,
 )
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 
-Limits = Sequence[ComparisonCriterion]
+Limits = Sequence[Criterion]
 
 DRAWN_ROWS = 400
 """Largest number of drawn rows, two per millimetre of a figure; the numbers contain all rows."""
@@ -138,7 +138,7 @@ def _build_closing(comparison: ResponseComparison) -> tuple[doc.Block, ...]:
     return (doc.select_facts(facts),)
 
 
-def _build_section(response: ComparedResponse, criteria: tuple[ComparisonCriterion, ...]) -> doc.Section:
+def _build_section(response: ComparedResponse, criteria: tuple[Criterion, ...]) -> doc.Section:
     limits = [
         item for item in criteria if item.where.record == response.name and item.quantity == "complex_deviation_pct"
     ]

@@ -2,10 +2,11 @@
 
 from typing import Annotated, Literal, get_args
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, WrapSerializer
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart
-from pantocheck.conformance.core.json_file import Rounded, RoundedModel
+from pantocheck.conformance.core.json_file import Rounded, RoundedModel, round_tree
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pantograph.response_record import HeadPoint, ResponseKind
@@ -15,9 +16,6 @@ ComparedValue = Rounded | tuple[Rounded, ...]
 
 StaticValue = Literal["elasticity", "contact_wire_height"]
 """Value measured along a line."""
-
-
-ComparedMotion = Literal["velocity", "acceleration"]
 
 StaticQuantity = Literal["elasticity_difference_mm_N", "elasticity_difference_pct", "contact_wire_height_difference_mm"]
 """Largest absolute difference between model and measurement, in the unit at the end."""
@@ -51,41 +49,11 @@ class ComparedSource(RoundedModel):
     """SHA-256 of the content; null: a simulation, or not read."""
 
 
-class CriterionPlace(RoundedModel):
-    """Place at which a criterion of a comparison holds; a key that does not apply is null."""
+RoundedCriterion = Annotated[Criterion, WrapSerializer(lambda criterion, dump: round_tree(dump(criterion)))]
+"""Difference between a model and a measurement, against a limit of the user.
 
-    record: str | None = None
-    """Name of the table of a response; null: no such response."""
-    static_force_N: Rounded | None = None
-    height_m: Rounded | None = None
-    sensor: int | None = None
-    motion: ComparedMotion | None = None
-    window_s: NumberPair | None = None
-    band_Hz: NumberPair | None = None
-
-
-class ComparisonCriterion(RoundedModel):
-    """Difference between a model and a measurement, against a limit of the user."""
-
-    quantity: ComparedQuantityName
-    unit: str
-    where: CriterionPlace
-    value: Rounded | None
-    """null: no measured value."""
-    lower: Rounded | None
-    upper: Rounded | None
-    source: str | None
-    """Source of the limit; null: not stated."""
-    verdict: Verdict
-    reason: str | None
-    """Data that are missing, or distance beyond the limit."""
-    margin: Rounded | None
-    discretisation: Rounded | None
-    """Change of the value with half the element length and half the time step; null: not known."""
-    measurement: Rounded | None
-    """Half-width of the 95 % interval of the value by the measurement; null: not stated."""
-    close: tuple[str, ...]
-    """Remark on a value closer to its limit than its uncertainty."""
+Its components are the change of the value with half the element length and half the time step. Its `limit_uncertainty`
+is the half-width of the 95 % interval of the value by the measurement."""
 
 
 class ModelComparison(RoundedModel):
@@ -98,7 +66,7 @@ class ModelComparison(RoundedModel):
     """Line or pantograph."""
     verdict: Verdict
     """Worst verdict of the criteria; info: no limit is given."""
-    criteria: tuple[ComparisonCriterion, ...]
+    criteria: tuple[RoundedCriterion, ...]
     warnings: tuple[str, ...]
     """Caveats for the reader of the report."""
 

@@ -4,9 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from pantocheck.conformance.core.criterion import ComparedMotion
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.line.elements.damping import Damping
-from pantocheck.conformance.results.comparison_format import ComparedMotion, ComparedSource, ModelComparison, NumberPair
+from pantocheck.conformance.results.comparison_format import ComparedSource, ModelComparison, NumberPair
 from pantocheck.conformance.results.damping_format import LineComparison
 
 CurveValues = tuple[float, ...]

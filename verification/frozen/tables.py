@@ -44,6 +44,7 @@ def _rename_source(place: re.Match[str]) -> str:
 
 _SOURCES = "one type for the sources of all comparisons"
 _CRITERIA = "one type and one table for the criteria of all comparisons, by label, with a limit that has its sign"
+_CRITERION = "criteria of comparisons have the keys of all criteria, and a reason that names the side of the limit"
 _EVIDENCE = "evidence has its own place"
 _WIRE_SPRINGS = "springs between the wires are a new element"
 _DOSSIER = r"(?:validate|site/runs/[\w-]+)/\w+\.(?:json|html)/procedure"
@@ -72,6 +73,14 @@ RENAMED = (
         _CRITERIA,
     ),
     Rename(_DROP + r"/(line|record)(_digest|_source)?$", _rename_source, _SOURCES),
+    *(
+        Rename(comparison + r"/criteria/(\d+)/measurement$", r"\1/criteria/\2/limit_uncertainty", _CRITERION)
+        for comparison in (_STATIC, _RESPONSE, _DROP)
+    ),
+    *(
+        Rename(comparison + r"/criteria/(\d+)/discretisation$", r"\1/criteria/\2/uncertainty", _CRITERION)
+        for comparison in (_STATIC, _DROP)
+    ),
 )
 """Keys of JSON files, searched in the place of the old state."""
 
@@ -85,9 +94,11 @@ ADDED = (
     Omission(r".*/campaign\.parquet", "written if pyarrow is installed"),
     Omission(_COMPARISON + r"/warnings", "every comparison states its warnings"),
     Omission(
-        _COMPARISON + r"/criteria/\d+/(where/.*|unit|lower|upper|source|discretisation)",
+        _COMPARISON + r"/criteria/\d+/(where/.*|unit|lower|upper|source)",
         _CRITERIA,
     ),
+    Omission(_COMPARISON + r"/criteria/\d+/(pantograph|item|trust|baseline|finding|spread)", _CRITERION),
+    Omission(_COMPARISON + r"/criteria/\d+/(discretisation_error|uncertainty|components(/.*)?)", _CRITERION),
 )
 """Places of JSON files, or files, of the new state only."""
 
@@ -110,6 +121,8 @@ RENAMED_TEXT = (
     Rename(r"\bbenchmarks/(stand_in_search)\.py", r"verification/tables/\1.py", _EVIDENCE),
     Rename(r"\bbenchmarks/table_ ?search\.py", "verification/tables/table_search.py", _EVIDENCE),
     Rename(r"(?<=thresholds of )fit-damping\b", "drop fit", "commands stand in groups"),
+    Rename(r"(?<=[%°Nm] )beyond the limit\b", "above the upper limit", _CRITERION),
+    Rename(r"(?<=\d )beyond the limit\b", "below the lower limit", _CRITERION),
     Rename(r"(?<=Criterion Value )Tolerance(?= ± model ± measured)", "Limit", _CRITERIA),
     Rename(
         r"((?:to the measured one|contact wire height) ?\[(?:%|mm)\] [\d.]+ )(?=\d+ [\d.]+ [\d.]+ ✓)",

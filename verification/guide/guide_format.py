@@ -4,11 +4,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, ResultsPart, Suite
-from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.results_format import Platform
+
+INSIDE: tuple[Verdict, ...] = ("pass", "info")
+"""Verdicts of a value inside its published range; `info`: it was imposed on the inputs, so that it does not count."""
 
 
 class CheckedValue(ResultsPart):
@@ -69,25 +72,6 @@ class Topic(ResultsPart):
     charts: list[Chart] = []
 
 
-class PublishedRange(ResultsPart):
-    """Criterion of a library case: published range, and computed value with its uncertainty."""
-
-    quantity: str
-    pantograph: int
-    """Number of the pantograph; 0: the line."""
-    item: int | None
-    lower: FiniteNumber | None
-    upper: FiniteNumber | None
-    value: FiniteNumber | None
-    uncertainty: FiniteNumber | None
-    inside: bool | None
-    """Whether the value lies in the range; null: no value."""
-    trust: Trust
-    source: str
-    role: Literal["criterion", "imposed", "held_out"]
-    """Criterion, or finding of a publication: imposed on the inputs, or held out."""
-
-
 class ConvergedComparison(ResultsPart):
     """Value computed now beside the converged values of two formulations that are stored with the case."""
 
@@ -119,7 +103,8 @@ class LibraryCase(ResultsPart):
     superseded_by: str | None
     input_digest: str
     quantities: dict[str, dict[str, Number]]
-    published: list[PublishedRange]
+    published: list[Criterion]
+    """Computed values against the published ranges."""
     converged: list[ConvergedComparison]
     simulated_s: FiniteNumber | None
     wall_s: FiniteNumber | None

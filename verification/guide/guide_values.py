@@ -5,7 +5,7 @@ from typing import Any
 
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.core.json_file import round_significant
-from verification.guide.guide_format import Guide, LibraryCase, Topic
+from verification.guide.guide_format import INSIDE, Guide, LibraryCase, Topic
 
 
 def list_guide_values(guide: Guide) -> dict[str, float]:
@@ -57,7 +57,7 @@ def count_results(guide: Guide) -> dict[str, int]:
     topics = guide.verification.values()
     checked = [row.agrees for topic in topics for row in topic.comparisons]
     checked += [study.agrees for topic in topics for study in topic.convergence]
-    published = [row.inside is True for case in guide.library for row in case.published]
+    published = [row.verdict in INSIDE for case in guide.library for row in case.published]
     converged = [row for case in guide.library for row in case.converged]
     contained = [abs(row.value - row.first) <= row.discretisation for row in converged if row.discretisation]
     counts = {

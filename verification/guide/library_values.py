@@ -11,8 +11,6 @@ from pantocheck.conformance.app.self_test.numerical_faults import NumericalResul
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.cases.limits import Limit
-from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.results.results_format import CaseResult
@@ -25,7 +23,6 @@ from verification.guide.guide_format import (
     DetectedFault,
     LibraryCase,
     Performance,
-    PublishedRange,
     SelfTestSummary,
     Timing,
 )
@@ -46,7 +43,6 @@ def compute_library_case(case_id: str) -> LibraryCase:
 
 def list_case_values(case: Case, result: CaseResult) -> LibraryCase:
     """Values of a graded library case beside its published ranges and converged values."""
-    limits = {limit.target: limit for limit in case.limits}
     return LibraryCase(
         case=case.id,
         title=case.file.title,
@@ -54,27 +50,10 @@ def list_case_values(case: Case, result: CaseResult) -> LibraryCase:
         superseded_by=case.file.superseded_by,
         input_digest=case.digest,
         quantities=result.quantities,
-        published=[_compare_with_range(row, limits[row.quantity, row.pantograph, row.item]) for row in result.criteria],
+        published=result.criteria,
         converged=list_converged(result),
         simulated_s=result.run.simulated_s,
         wall_s=result.run.wall_s,
-    )
-
-
-def _compare_with_range(criterion: Criterion, limit: Limit) -> PublishedRange:
-    inside = None if criterion.value is None else _lies_between(criterion.value, limit.lower, limit.upper)
-    return PublishedRange(
-        quantity=criterion.quantity,
-        pantograph=criterion.pantograph,
-        item=criterion.item,
-        lower=limit.lower,
-        upper=limit.upper,
-        value=criterion.value,
-        uncertainty=criterion.uncertainty,
-        inside=inside,
-        trust=limit.trust,
-        source=criterion.source,
-        role="criterion" if limit.finding is None else limit.finding.role,
     )
 
 

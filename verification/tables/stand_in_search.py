@@ -107,7 +107,7 @@ def grade_damping(ratio: RealArray, line: GroupedLine, limits: Sequence[Limit]) 
     ]
     values = compute_group_findings(modes)
     values["reference_over_identified_damping"] = compare_reference(modes, line.modes, line.reference)
-    found = [find_value(limit, {LINE: values}) for limit in limits]
+    found = [find_value(limit.target, {LINE: values}) for limit in limits]
     return [
         -np.inf if value is None else margin(value, limit.lower, limit.upper)
         for value, limit in zip(found, limits, strict=True)

@@ -64,7 +64,7 @@ def is_plausible(run: InitialRun) -> bool:
 
 def count_reproduced(changes: ValuesByOwner) -> int:
     """Number of findings of the case that the changes reproduce."""
-    values = [(limit, find_value(limit, changes)) for limit in load_study().limits]
+    values = [(limit, find_value(limit.target, changes)) for limit in load_study().limits]
     return sum(value is not None and judge(value, limit.lower, limit.upper) == "pass" for limit, value in values)
 
 

@@ -28,6 +28,7 @@ from pantocheck.conformance.comparison.drop_motion import GRAPHIC_BAND
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
 from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.files import check_writable, produce_atomically
 from pantocheck.conformance.core.input_error import InputError
@@ -45,7 +46,6 @@ from pantocheck.conformance.pantograph.response_record import read_response
 from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.results.comparison_format import (
     ComparedValues,
-    ComparisonCriterion,
     ModelComparison,
     ResponseComparison,
     ResponseQuantity,
@@ -79,7 +79,7 @@ def build_comparison_output(
     )
 
 
-def _list_criteria(criteria: tuple[ComparisonCriterion, ...]) -> Iterator[RenderableType]:
+def _list_criteria(criteria: tuple[Criterion, ...]) -> Iterator[RenderableType]:
     """Criteria as a table, and their reasons."""
     if criteria:
         table = build_table("criterion", "value", "limit", "verdict", right=("value", "limit"))

@@ -16,6 +16,7 @@ from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
 )
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
+from pantocheck.conformance.core.criterion import LimitTarget
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.execution.plan import locate_plan, prepare_plan, read_plan, split_names
 from pantocheck.conformance.grading.case_verification import build_requirements, find_obstacle
@@ -25,9 +26,6 @@ from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_format import CaseResult, VerdictName
-
-Target = tuple[str, int, int | None]
-"""Quantity, pantograph (0: the line) and item of a criterion."""
 
 
 class CriterionNotMet(Exception):
@@ -73,7 +71,7 @@ class CaseNode(pytest.Collector):
 
     def collect(self) -> "Iterator[VerdictNode | PantographNode | CaseItem | BaselineItem]":
         """Pantographs of the criteria, and the line if a quantity of the line has a limit; then the verification."""
-        targets: dict[VerdictName, list[Target]] = {
+        targets: dict[VerdictName, list[LimitTarget]] = {
             "criteria": [limit.target for limit in self.case.limits],
             "verification": list_targets(self.case),
         }
@@ -106,7 +104,7 @@ class CaseNode(pytest.Collector):
 class VerdictNode(pytest.Collector):
     """Verification of a case."""
 
-    def __init__(self, targets: list[Target], **kwargs: Any) -> None:
+    def __init__(self, targets: list[LimitTarget], **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.targets = targets
 
@@ -118,7 +116,7 @@ class VerdictNode(pytest.Collector):
 class PantographNode(pytest.Collector):
     """Pantograph of a case, or its line (number 0)."""
 
-    def __init__(self, verdict_name: VerdictName, targets: list[Target], **kwargs: Any) -> None:
+    def __init__(self, verdict_name: VerdictName, targets: list[LimitTarget], **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.verdict_name, self.targets = verdict_name, targets
 
@@ -134,7 +132,9 @@ class PantographNode(pytest.Collector):
             )
 
 
-def group_by_owner(parent: pytest.Collector, name: VerdictName, targets: Sequence[Target]) -> Iterator[PantographNode]:
+def group_by_owner(
+    parent: pytest.Collector, name: VerdictName, targets: Sequence[LimitTarget]
+) -> Iterator[PantographNode]:
     """Targets by pantograph."""
     for number in dict.fromkeys(owner for _, owner, _ in targets):
         owned = [target for target in targets if target[1] == number]
@@ -143,12 +143,12 @@ def group_by_owner(parent: pytest.Collector, name: VerdictName, targets: Sequenc
         )
 
 
-def list_targets(case: Case) -> list[Target]:
+def list_targets(case: Case) -> list[LimitTarget]:
     """Quantities of a case that are verified."""
     converged = find_converged(case.id)
     if converged is None or find_obstacle(case, converged) is not None:
         return []
-    return [(entry.quantity, entry.owner, entry.item) for entry in build_requirements(converged, case.is_static)]
+    return [entry.target for entry in build_requirements(converged, case.is_static)]
 
 
 class OneLineItem(pytest.Item):
@@ -199,7 +199,7 @@ def list_drifts(case: CaseResult) -> list[str]:
 class CriterionItem(OneLineItem):
     """Test of one criterion of a case."""
 
-    def __init__(self, case_node: CaseNode, verdict_name: VerdictName, target: Target, **kwargs: Any) -> None:
+    def __init__(self, case_node: CaseNode, verdict_name: VerdictName, target: LimitTarget, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.case_node, self.verdict_name, self.target = case_node, verdict_name, target
 

@@ -29,11 +29,12 @@ def build_findings_table(limits: Sequence[Limit], computed: ValuesByOwner, print
     """
     rows = []
     for limit in limits:
-        value, unit = find_value(limit, computed), QUANTITIES[limit.quantity].unit
+        value, unit = find_value(limit.target, computed), QUANTITIES[limit.quantity].unit
         verdict = "not evaluated" if value is None else judge(value, limit.lower, limit.upper)
         agreement = {"pass": "reproduced", "fail": "not reproduced"}.get(verdict, verdict)
         texts = [
-            "-" if number is None else f"{number:.3g} {unit}".strip() for number in (find_value(limit, printed), value)
+            "-" if number is None else f"{number:.3g} {unit}".strip()
+            for number in (find_value(limit.target, printed), value)
         ]
         sentence = limit.finding.sentence if limit.finding else limit.note or limit.quantity
         rows.append([sentence, *texts, agreement])

@@ -70,7 +70,7 @@ def test_limits_follow_from_the_values(case: Case, converged: ConvergedFile) -> 
         assert requirement.lower is not None
         assert requirement.upper is not None
         half = (requirement.upper - requirement.lower) / 2
-        assert half_widths[requirement.owner, requirement.quantity] < 0.25 * half, requirement
+        assert half_widths[requirement.pantograph, requirement.quantity] < 0.25 * half, requirement
 
 
 def test_case_file_is_not_mistaken_for_values() -> None:

@@ -5,13 +5,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from pantocheck.conformance.comparison.comparison_limits import (
-    ComparisonLimit,
-    build_comparison_criterion,
-    unit_of_difference,
-)
-from pantocheck.conformance.core.near_limit import grade_value
-from pantocheck.conformance.results.comparison_format import CriterionPlace
+from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, grade_difference, unit_of_difference
 
 RESPONSE = {
     "quantity": "modulus_deviation_pct", "band_Hz": (5.0, 20.0), "static_forces_N": (70.0,), "upper": 3.0,
@@ -54,21 +48,9 @@ def test_unit_follows_from_the_name() -> None:
     assert [unit_of_difference(name) for name in names] == ["mm/N", "mm", "°", ""]
 
 
-def test_grade_states_the_distance_from_the_nearer_limit() -> None:
-    """Limits are included; missing data make a skip, which still tells that the value lies beyond the limit."""
-    assert grade_value(2.0, (1.0, 2.0), "N") == ("pass", None, 0.0, ())
-    assert grade_value(0.5, (1.0, 2.0), "N")[:3] == ("fail", "0.5 N beyond the limit", -1.0)
-    assert grade_value(2.25, (None, 2.0), "", place=", at 3 m").reason == "0.25 beyond the limit, at 3 m"
-    assert grade_value(2.25, (None, 2.0), "", missing="no data")[:2] == ("skip", "no data; 0.25 beyond the limit")
-    assert grade_value(1.0, (None, 2.0), "", missing="no data")[:2] == ("skip", "no data")
-    assert grade_value(None, (None, 2.0), "", missing="no data") == ("skip", "no data", None, ())
-
-
 def test_uncertainty_of_measurement_and_mesh_marks_a_close_criterion() -> None:
     """Half-widths 0.3 and 0.4 are 0.5 together: a value 0.45 below the limit is marked, one 0.55 below is not."""
     limit = ComparisonLimit.model_validate(RESPONSE)
     for value, marks in ((2.55, 1), (2.45, 0)):
-        item = build_comparison_criterion(
-            limit, CriterionPlace(), value, missing=None, discretisation=0.3, measurement=0.4
-        )
+        item = grade_difference(limit, value, missing=None, discretisation=0.3, measurement=0.4)
         assert (item.verdict, len(item.close)) == ("pass", marks)

@@ -118,13 +118,13 @@ def test_limits_grade_the_first_model() -> None:
     comparison = grade(record_drop(), limit(), limit(quantity="correlation", lower=0.99, upper=None))
     assert comparison.verdict == "pass"
     assert [item.where.sensor for item in comparison.criteria] == [1, 2, 1, 2]
-    assert all(item.discretisation is not None and item.discretisation > 0 for item in comparison.criteria)
+    assert all(item.uncertainty is not None and item.uncertainty > 0 for item in comparison.criteria)
     # Elements of 2.25 m: half of them change the late ratio of sensor 2 by more than 2 %.
-    assert comparison.criteria[0].close == ()
+    assert comparison.criteria[0].close == []
     assert "finer mesh and time step could reverse the verdict" in comparison.criteria[1].close[0]
     other = grade(record_drop(), limit(), model=0.11)
     assert other.verdict == "fail"
-    assert "beyond the limit" in str(other.criteria[0].reason)
+    assert "below the lower limit" in str(other.criteria[0].reason)
 
 
 def test_without_limits_nothing_is_judged(two_models: DropComparison) -> None:
@@ -203,7 +203,7 @@ def test_noise_marks_a_close_criterion() -> None:
     """Noise of 1 m/s2: 2 * 0.4 / 2.0 / sqrt(2 * 15 * 3) = 4 %, more than the distance from the limits."""
     comparison = grade(record_drop(noise=1.0), limit(band_Hz=(5.0, 20.0), sensors=[1], lower=0.9, upper=1.03))
     (item,) = comparison.criteria
-    assert item.measurement == pytest.approx(0.041, abs=0.003)
+    assert item.limit_uncertainty == pytest.approx(0.041, abs=0.003)
     assert "could reverse the verdict" in item.close[0]
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from helpers.criterion_fixtures import COMPARED
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_page import (
     DROP_PAGE,
@@ -46,10 +47,10 @@ def build_results(**changes: Any) -> DropComparison:
         for place in ("S1", "mass") for window in WINDOWS
     ]  # fmt: skip
     criterion = {
-        "quantity": "rms_ratio", "unit": "", "source": None, "value": 1.1,
+        **COMPARED, "quantity": "rms_ratio", "unit": "", "value": 1.1,
         "where": {"motion": "velocity", "sensor": 1, "window_s": WINDOWS[0], "band_Hz": [0.3, 20.0]},
-         "lower": 0.98, "upper": 1.02, "verdict": "fail", "reason": "0.08 beyond the limit",
-        "margin": -4.0, "discretisation": 0.001, "measurement": 0.002, "close": ["lies near"],
+        "lower": 0.98, "upper": 1.02, "verdict": "fail", "reason": "0.08 above the upper limit",
+        "margin": -4.0, "uncertainty": 0.001, "limit_uncertainty": 0.002,
     }  # fmt: skip
     places = [
         {"name": "S1", "sensor": 1, "wire": "CW", "position_m": 81.0},
@@ -89,7 +90,7 @@ def test_page_states_verdict_caveats_and_criteria() -> None:
     (table,) = find_sections(document)["Criteria"].blocks
     assert isinstance(table, doc.Table)
     assert table.rows == (
-        (name, "1.100", "0.98 to 1.02", "0.0010", "0.0020", doc.VerdictMark("fail"), "0.08 beyond the limit"),
+        (name, "1.100", "0.98 to 1.02", "0.0010", "0.0020", doc.VerdictMark("fail"), "0.08 above the upper limit"),
     )
 
 

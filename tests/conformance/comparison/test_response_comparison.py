@@ -215,10 +215,10 @@ def test_stated_uncertainty_marks_a_close_criterion(tmp_path: Path) -> None:
     stiffness = chain_stiffness(REFERENCE) * 1.02
     comparison = compare_responses([record(tmp_path, stiffness, **NOISE)], REFERENCE, limit())
     assert comparison.verdict == "pass"
-    assert comparison.criteria[0].measurement == pytest.approx(np.hypot(1.96, 100 * np.radians(0.98)))
+    assert comparison.criteria[0].limit_uncertainty == pytest.approx(np.hypot(1.96, 100 * np.radians(0.98)))
     assert "could reverse the verdict" in comparison.criteria[0].close[0]
     unknown = compare_responses([record(tmp_path, stiffness, "unknown")], REFERENCE, limit())
-    assert (unknown.criteria[0].measurement, unknown.criteria[0].close) == (None, ())
+    assert (unknown.criteria[0].limit_uncertainty, unknown.criteria[0].close) == (None, [])
     assert any("states no uncertainty" in text for text in unknown.warnings)
 
 

@@ -7,14 +7,15 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from helpers.criterion_fixtures import COMPARED
 from helpers.page_blocks import find_blocks
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_page import build_comparison
 from pantocheck.conformance.pages.pantograph_pages import RESPONSE_PAGE, draw_response, select_drawn_rows
 from pantocheck.conformance.results.comparison_format import (
     RESPONSE_QUANTITIES,
     ComparedResponse,
-    ComparisonCriterion,
     ResponseComparison,
 )
 
@@ -52,24 +53,16 @@ def build_response(**changes: Any) -> dict[str, Any]:
 
 def build_results(**changes: Any) -> ResponseComparison:
     """One response, one limit that fails and one without a response."""
-    common = {
-        "quantity": "complex_deviation_pct",
-        "unit": "%",
-        "lower": None,
-        "upper": 5.0,
-        "discretisation": None,
-        "source": "plan 3",
-        "close": [],
-    }
+    common = COMPARED | {"quantity": "complex_deviation_pct", "unit": "%", "upper": 5.0, "source": "plan 3"}
     failed = {
         "where": {"band_Hz": [0.5, 5.0], "record": "at-70N.csv", "static_force_N": 70.0, "height_m": 1.2},
         "value": 10.6,
-        "verdict": "fail", "reason": "5.6 % beyond the limit", "margin": -1.12, "measurement": 2.0,
-        "close": ["lies near"],
+        "verdict": "fail", "reason": "5.6 % above the upper limit", "margin": -1.12,
+        "limit_uncertainty": 2.0,
     }  # fmt: skip
     skipped = {
         "where": {"band_Hz": [0.5, 5.0], "static_force_N": 90.0}, "value": None,
-        "verdict": "skip", "reason": "no response", "margin": None, "measurement": None,
+        "verdict": "skip", "reason": "no response", "margin": None, "close": [],
     }  # fmt: skip
     content = {
         "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
@@ -89,7 +82,7 @@ def test_page_states_verdict_caveats_criteria_and_bands() -> None:
     assert warnings.sentences == ("a caveat", f"{name} lies near")
     criteria, bands = find_blocks(document.blocks, doc.Table)
     assert criteria.rows[0] == (
-        name, "10.60", "≤ 5", "2.0", doc.VerdictMark("fail"), "plan 3", "5.6 % beyond the limit"
+        name, "10.60", "≤ 5", "2.0", doc.VerdictMark("fail"), "plan 3", "5.6 % above the upper limit"
     )  # fmt: skip
     assert criteria.rows[1][:4] == ("RMS complex deviation, 0.5 to 5 Hz, 90 N [%]", "–", "≤ 5", "not stated")
     assert bands.rows[0] == (
@@ -108,7 +101,7 @@ def test_informative_response_is_marked_in_its_heading() -> None:
     assert facts["Force and motion"] == "left strip and head centre"
 
 
-def paint(content: dict[str, Any], limits: tuple[ComparisonCriterion, ...]) -> list[Axes]:
+def paint(content: dict[str, Any], limits: tuple[Criterion, ...]) -> list[Axes]:
     response = ComparedResponse.model_validate(content)
     figure = draw_response.__wrapped__(response, list(limits))  # type: ignore[attr-defined]
     assert isinstance(figure, Figure)

@@ -54,9 +54,9 @@ def test_model_agrees_with_itself(tmp_path: Path, computed: dict[str, Array]) ->
     for item in comparison.criteria:
         assert item.value is not None
         assert item.value < 1e-6
-        assert item.discretisation is not None
-        assert item.discretisation < 0.1
-        assert item.close == ()
+        assert item.uncertainty is not None
+        assert item.uncertainty < 0.1
+        assert item.close == []
     assert [span.values for span in comparison.values[0].spans] == [11, 10, 10, 10, 9, 11]
     assert all(not values.outlier_rows for values in comparison.values)
     ends = {(values.curve_position_m[0], values.curve_position_m[-1]) for values in comparison.values}
@@ -74,7 +74,7 @@ def test_known_differences_are_found_with_their_place_and_sign(tmp_path: Path, c
     assert elasticity.value == pytest.approx(0.08, rel=1e-4)
     assert height.value == pytest.approx(7.0, rel=1e-4)
     assert percent.value == pytest.approx(100 * 0.08 / measured, rel=1e-4)
-    assert "beyond the limit, at 121.5 m" in str(elasticity.reason)
+    assert "above the upper limit, at 121.5 m" in str(elasticity.reason)
     assert comparison.values[0].outlier_rows == (21,)
     assert comparison.values[1].outlier_rows == (31,)
     assert comparison.values[0].spans[1].largest_difference == pytest.approx(-0.08, rel=1e-4)
@@ -92,8 +92,8 @@ def test_common_offset_has_no_outliers_and_shows_the_error_of_the_mesh(
     assert comparison.values[0].outlier_rows == ()
     assert comparison.values[0].mean_difference == pytest.approx(4.2, abs=0.1)
     (height,) = comparison.criteria
-    assert height.discretisation is not None
-    assert 0.02 < height.discretisation < 1.0
+    assert height.uncertainty is not None
+    assert 0.02 < height.uncertainty < 1.0
 
 
 def test_difference_of_two_forces_is_the_slope_between_them(tmp_path: Path, computed: dict[str, Array]) -> None:

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from helpers.criterion_fixtures import COMPARED
 from helpers.page_blocks import find_blocks
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_page import build_comparison
@@ -36,10 +37,8 @@ def build_results(spans: int = 12, **changes: Any) -> StaticComparison:
         "curve_position_m": positions, "curve": model,
     }  # fmt: skip
     criterion = {
-        "quantity": "elasticity_difference_mm_N", "unit": "mm/N", "where": {}, "value": 0.2, "lower": None,
-        "upper": 0.1, "source": None, "verdict": "fail",
-        "reason": "0.1 mm/N beyond the limit, at 270 m", "margin": -1.0, "discretisation": 1e-4, "measurement": None,
-        "close": ["lies near"],
+        **COMPARED, "quantity": "elasticity_difference_mm_N", "unit": "mm/N", "value": 0.2, "upper": 0.1,
+        "verdict": "fail", "reason": "0.1 mm/N above the upper limit, at 270 m", "margin": -1.0, "uncertainty": 1e-4,
     }  # fmt: skip
     content = {
         "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
@@ -63,7 +62,7 @@ def test_page_states_verdict_caveats_and_every_span() -> None:
     )
     criteria, spans = find_blocks(document.blocks, doc.Table)
     assert criteria.rows[0][1:] == (
-        "0.2000", "≤ 0.1", "0.00010", "not stated", doc.VerdictMark("fail"), "0.1 mm/N beyond the limit, at 270 m"
+        "0.2000", "≤ 0.1", "0.00010", "not stated", doc.VerdictMark("fail"), "0.1 mm/N above the upper limit, at 270 m"
     )  # fmt: skip
     assert len(spans.rows) == 12
     assert spans.rows[2][3:] == ("0", "–", "–", "–", "–")

@@ -89,7 +89,7 @@ def test_tolerance_of_an_extreme_needs_the_mean() -> None:
 
 def test_limits_are_the_interval_widened_by_the_tolerance(twin: Case) -> None:
     converged = build_converged(twin, {1: {"mean_force_N": 120.0, "min_force_N": 50.0}, 2: {"rms_20_50_N": 10.0}})
-    limits = {(entry.owner, entry.quantity): entry for entry in build_requirements(converged, is_static=False)}
+    limits = {(entry.pantograph, entry.quantity): entry for entry in build_requirements(converged, is_static=False)}
     mean, low, band = limits[1, "mean_force_N"], limits[1, "min_force_N"], limits[2, "rms_20_50_N"]
     assert (mean.lower, mean.upper) == (pytest.approx(120 - 0.12 - 1.2), pytest.approx(120 + 0.12 + 1.2))
     assert (low.lower, low.upper) == (pytest.approx(50 - 0.05 - 3.5), pytest.approx(50 + 0.05 + 3.5))

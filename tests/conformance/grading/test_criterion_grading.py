@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
+from helpers.criterion_fixtures import build_requirement
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.criterion_grading import (
     GradedValues,
-    Requirement,
     build_criterion,
     criterion_name,
     find_value,
@@ -40,19 +40,13 @@ def limit(quantity: str = "std_force_N", **keys: Any) -> Limit:
 )
 def test_limit_applies_to_a_finite_item(item: int | None, values: Value, expected: float | None) -> None:
     """A limit without an item applies to the first one."""
-    target = limit("dropper_length_m", item=item)
+    target = limit("dropper_length_m", item=item).target
     assert find_value(target, {0: {"dropper_length_m": values}}) == expected
 
 
 def test_value_belongs_to_the_pantograph_of_the_limit() -> None:
     values: dict[int, dict[str, Value]] = {1: {"std_force_N": 28.0}, 2: {"std_force_N": 30.0}}
-    assert [find_value(limit(pantograph=number), values) for number in (1, 2, 3)] == [28.0, 30.0, None]
-
-
-def requirement(
-    lower: float | None, upper: float | None, trust: Any = "secondary", name: str = "std_force_N"
-) -> Requirement:
-    return Requirement(name, 2, None, lower, upper, trust, "test")
+    assert [find_value(limit(pantograph=number).target, values) for number in (1, 2, 3)] == [28.0, 30.0, None]
 
 
 @pytest.mark.parametrize(
@@ -68,6 +62,8 @@ def requirement(
         (31.0, None, 31.0, "pass", 0.0, None),
         (28.0, None, None, "skip", None, "no data"),
         (None, 26.0, 31.0, "skip", None, "no data"),
+        (28.5, 26.0, 31.0, "skip", 1.0, "no data"),
+        (33.5, 26.0, 31.0, "skip", -1.0, "no data; 2.5 N above the upper limit"),
     ],
 )
 def test_criterion_states_verdict_margin_and_distance(
@@ -79,19 +75,26 @@ def test_criterion_states_verdict_margin_and_distance(
     reason: str | None,
 ) -> None:
     missing = "no data" if verdict == "skip" else None
-    found = build_criterion(requirement(lower, upper), value, missing, "secondary")
+    found = build_criterion(build_requirement("std_force_N", lower, upper), value, missing, "secondary")
     assert (found.verdict, found.reason, found.unit, found.pantograph) == (verdict, reason, "N", 2)
     assert found.margin == (None if margin is None else pytest.approx(margin, abs=1e-12))
-    hypothetical = build_criterion(requirement(lower, upper, "provisional"), value, missing, "secondary")
-    expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": "not graded: no data"}[verdict]
+    hypothetical = build_criterion(
+        build_requirement("std_force_N", lower, upper, trust="provisional"), value, missing, "secondary"
+    )
+    expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
     assert hypothetical.verdict == "info"
     assert hypothetical.reason == f"{expected}; the limit is provisional and does not count"
 
 
+def test_place_of_a_value_follows_its_distance() -> None:
+    found = build_criterion(build_requirement("std_force_N", None, 31.0), 33.5, None, "secondary", place=", at 3 m")
+    assert found.reason == "2.5 N above the upper limit, at 3 m"
+
+
 def test_quantity_without_a_unit_has_no_double_space() -> None:
-    found = build_criterion(requirement(None, 0.3, name="cov_20"), 0.35, None, "secondary")
+    found = build_criterion(build_requirement("cov_20", None, 0.3), 0.35, None, "secondary")
     assert found.reason == "0.05 above the upper limit"
-    assert build_criterion(requirement(None, 0.3, name="old"), 0.2, None, "secondary").unit == ""
+    assert build_criterion(build_requirement("old", None, 0.3), 0.2, None, "secondary").unit == ""
 
 
 def test_errors_belong_to_the_quantity_and_pantograph_of_the_limit() -> None:
@@ -136,7 +139,5 @@ def test_missing_value_has_the_reason_of_its_evaluation() -> None:
     ],
 )
 def test_name_of_a_criterion(item: int | None, pantograph: int, name: str) -> None:
-    found = build_criterion(
-        Requirement("std_force_N", pantograph, item, 26.0, 31.0, "primary", "test"), 28.0, None, "primary"
-    )
-    assert criterion_name(found) == name
+    requirement = build_requirement("std_force_N", 26.0, 31.0, pantograph=pantograph, item=item)
+    assert criterion_name(build_criterion(requirement, 28.0, None, "secondary")) == name

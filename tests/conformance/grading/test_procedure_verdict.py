@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.criterion_fixtures import build_requirement
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, worst_verdict
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.criterion_grading import build_criterion
 from pantocheck.conformance.grading.procedure_verdict import (
     decide_procedure,
     describe_closest,
@@ -153,7 +154,7 @@ def test_a_step_for_information_decides_nothing() -> None:
 
 def test_an_exact_value_on_its_limit_has_no_margin() -> None:
     """An element length of 0.5 m as declared is not close to a limit; a smaller or uncertain one is compared."""
-    requirement = Requirement("largest_element_m", LINE, None, None, 0.5, "primary", "dossier", unit="m")
+    requirement = build_requirement("largest_element_m", None, 0.5, trust="primary", pantograph=LINE)
     exact, smaller = (build_criterion(requirement, value, None, "primary") for value in (0.5, 0.4))
     assert exact.margin == 0
     assert describe_closest([(None, exact)])["margin"] is None

@@ -19,7 +19,7 @@ def _dump(guide: Guide) -> dict[str, Any]:
 def test_static_case_of_the_guide_reproduces_its_published_lengths(guide: Guide) -> None:
     """All nine dropper lengths within 1 mm, and the elasticity of both formulations within 0.1 %."""
     (case,) = guide.library
-    assert [row.inside for row in case.published] == [True] * 9
+    assert [row.verdict for row in case.published] == ["pass"] * 9
     assert {row.quantity for row in case.published} == {"dropper_length_m"}
     elasticity = next(row for row in case.converged if row.quantity == "elasticity_mm_N")
     assert elasticity.value == pytest.approx(elasticity.second, rel=1e-3)
@@ -43,7 +43,7 @@ def test_wrong_number_turns_its_row_and_the_result(guide: Guide) -> None:
     data = _dump(guide)
     row = data["verification"]["wire-frequencies"]["comparisons"][0]
     row.update(computed=1.1 * row["computed"], agrees=False)
-    data["library"][0]["published"][0].update(value=2.0, inside=False)
+    data["library"][0]["published"][0].update(value=2.0, verdict="fail")
     data["failed"] = [{"part": "verification/waves", "reason": "ValueError: no value"}]
     changed = Guide.model_validate(data)
     assert list_deviations(changed) == ["verification/wire-frequencies/mode-1", "verification/waves"]

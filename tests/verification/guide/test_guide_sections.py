@@ -29,11 +29,14 @@ def _converged(quantity: str, value: float, discretisation: float, pantograph: i
     }
 
 
-def _published(value: float | None, role: str = "criterion") -> dict[str, Any]:
-    inside = None if value is None else 10.0 <= value <= 30.0
-    numbers = {"lower": 10.0, "upper": 30.0, "value": value, "uncertainty": 0.5, "inside": inside}
-    names = {"quantity": "std_force_N", "pantograph": 1, "item": None, "trust": "primary", "source": "a book"}
-    return {**names, **numbers, "role": role}
+def _published(value: float | None, role: str | None = None) -> dict[str, Any]:
+    verdict = "skip" if value is None else "pass" if 10.0 <= value <= 30.0 else "fail"
+    texts = {"section": "4", "sentence": "a sentence", "tolerance": "as printed", "outcome": "not_evaluated"}
+    return {
+        "quantity": "std_force_N", "pantograph": 1, "item": None, "unit": "N", "trust": "primary", "source": "a book",
+        "lower": 10.0, "upper": 30.0, "value": value, "uncertainty": 0.5, "verdict": verdict, "reason": None,
+        "margin": None, "discretisation_error": None, "finding": None if role is None else texts | {"role": role},
+    }  # fmt: skip
 
 
 def _fault(name: str, detected: bool, required: bool = True) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from typing import Any
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.words import clean_tree
+from verification.guide.guide_format import INSIDE
 from verification.guide.pages.confidence_sections import (
     build_limitations_section,
     build_performance_section,
@@ -51,7 +52,7 @@ def _build_headline(guide: dict[str, Any]) -> str:
     published = [row for case in guide["library"] for row in case["published"]]
     return (
         f"{sum(row['agrees'] for row in rows)} of {len(rows)} comparisons with closed forms agree within their "
-        f"tolerance; {sum(row['inside'] is True for row in published)} of {len(published)} values lie inside their "
+        f"tolerance; {sum(row['verdict'] in INSIDE for row in published)} of {len(published)} values lie inside their "
         "published range."
     )
 

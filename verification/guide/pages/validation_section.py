@@ -7,6 +7,7 @@ from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, quantity_label, quantity_unit
+from verification.guide.guide_format import INSIDE
 
 VALIDATION_SCOPE = (
     "Every library case with published limits runs on the reference simulator of this version. The limits stand with "
@@ -32,14 +33,14 @@ FAMILIES = {
 FEWEST_RANGES = 3
 """Fewest points of a figure: fewer are read from the table."""
 
-ROLES = {"criterion": "", "imposed": ", imposed", "held_out": ", held out"}
+ROLES = {"imposed": ", imposed", "held_out": ", held out"}
 
 
 def build_validation_section(library: list[dict[str, Any]]) -> doc.Section:
     """Section with scatter plots and one table per case."""
     cases = [case for case in library if case["published"]]
     rows = [row for case in cases for row in case["published"]]
-    inside = sum(row["inside"] is True for row in rows)
+    inside = sum(row["verdict"] in INSIDE for row in rows)
     summary = (
         f"{inside} of {len(rows)} values lie inside their published range. "
         f"{_count(rows, 'primary')} of the ranges are of trust primary, {_count(rows, 'secondary')} secondary, "
@@ -88,12 +89,13 @@ def _build_case(case: dict[str, Any]) -> doc.Section:
 
 def _list_cells(row: dict[str, Any]) -> tuple[doc.RichText, ...]:
     value, bounds = format_beside_limits(row["value"], row["lower"], row["upper"])
+    role = ROLES[row["finding"]["role"]] if row["finding"] else ""
     return (
-        _name_value(row) + ROLES[row["role"]],
+        _name_value(row) + role,
         value,
         format_value(row["uncertainty"], 2),
         bounds,
-        {True: "yes", False: "no", None: "–"}[row["inside"]],
+        "–" if row["value"] is None else "yes" if row["verdict"] in INSIDE else "no",
         doc.TrustMark(row["trust"]),
     )
 
@@ -136,7 +138,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
         }
         for family, points in families.items()
     ]
-    outside = [row for row in rows if row["inside"] is False]
+    outside = [row for row in rows if row["verdict"] == "fail"]
     missed = {
         "label": "outside its range",
         "style": "crosses",
@@ -156,7 +158,7 @@ def _draw_scatter(unit: str, families: dict[str, list[dict[str, Any]]]) -> doc.F
         "marks": [],
         "wide": True,
     }
-    inside = sum(row["inside"] is True for row in rows)
+    inside = sum(row["verdict"] in INSIDE for row in rows)
     return doc.Figure(
         draw_chart(Chart.model_validate({"caption": "", "alternative": ""} | chart), (low - margin, high + margin)),
         f"{inside} of {len(rows)} published ranges in {unit} contain the computed value, from {format_value(low, 3)} "

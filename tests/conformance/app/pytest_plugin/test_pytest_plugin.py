@@ -18,6 +18,7 @@ from _pytest.config import _iter_rewritable_modules
 
 from helpers.command_line import SKIPPER
 from helpers.converged_fixtures import StateConverged
+from helpers.criterion_fixtures import build_requirement
 from helpers.outside_cases import write_case
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
@@ -30,7 +31,7 @@ from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_selection import BOTH
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.grading.case_verification import build_requirements
-from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
+from pantocheck.conformance.grading.criterion_grading import build_criterion
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.model.dynamics.active_window import search
 
@@ -256,7 +257,7 @@ def test_verification_adds_a_test_for_every_converged_value(pytester: pytest.Pyt
     tested = set(re.findall(r"::verification::(\S+) (?:PASSED|FAILED)", text))
     converged = find_converged("en50318-2002/250")
     assert converged is not None
-    expected = {f"{row.owner or 'line'}::{row.quantity}" for row in build_requirements(converged, is_static=False)}
+    expected = {f"{row.pantograph or 'line'}::{row.quantity}" for row in build_requirements(converged, is_static=False)}
     assert tested == expected
     assert len(expected) == 10, "mean, standard deviation, three bands, four extremes, uplift"
     done.stdout.no_fnmatch_line("*250::1::*")
@@ -322,7 +323,7 @@ def test_criteria_of_a_case_are_one_group_of_xdist(pytester: pytest.Pytester, pl
 def test_line_of_a_criterion(
     value: float | None, lower: float | None, upper: float | None, name: str, line: str
 ) -> None:
-    requirement = Requirement(name, 2, None, lower, upper, "primary", "test")
+    requirement = build_requirement(name, lower, upper, trust="primary")
     assert (
         criterion_line(build_criterion(requirement, value, "not delivered" if value is None else None, "primary"))
         == line
