@@ -13,6 +13,7 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
+from pantocheck.conformance.core.table_sidecar import TableName, TableSidecar
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import suggest_key
 from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
@@ -31,7 +32,6 @@ from pantocheck.conformance.records.sidecar_tables import (
     Speed,
     StartTable,
     SystemTable,
-    TableSidecar,
     find_section_problems,
 )
 
@@ -41,6 +41,7 @@ RECORD_SCHEMA = "pantocheck.record/1"
 class RecordSidecar(TableSidecar):
     """Sidecar of a table of samples."""
 
+    file: TableName
     schema_: Annotated[Literal["pantocheck.record/1"], Field(alias="schema")]
     """Version of the format: "pantocheck.record/1"."""
     case: CaseName = None
