@@ -8,24 +8,13 @@ from pydantic import Discriminator, Field
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
+    NumberList,
     Positive,
     Problems,
     cross_check,
     validation_problem,
 )
 from pantocheck.conformance.records.column_values import ColumnTable, FileColumnName
-
-Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
-
-CaseName = Annotated[str | None, Field(max_length=200, description="id of the case that was run")]
-
-CaseDigest = Annotated[
-    str,
-    Field(
-        pattern="^sha256:[0-9a-f]{64}$",
-        description="digest of the inputs of this case, equal to input_digest in the results of the case",
-    ),
-]
 
 
 class SystemTable(InputTable):
@@ -82,12 +71,29 @@ class LineTable(InputTable):
     """Space for the uplift of the contact wire at the supports [mm]."""
 
 
-def find_section_problems(section: tuple[float, ...] | None) -> Problems:
-    """Problem of an analysis section [m] whose end is not behind its start."""
-    if section is not None and section[0] >= section[1]:
-        yield validation_problem(
-            "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
-        )
+class PassageTable(InputTable):
+    """Passage that a record or a summary belongs to."""
+
+    case: Annotated[str | None, Field(max_length=200)] = None
+    """Id of the case that was run."""
+    case_digest: Annotated[str | None, Field(pattern="^sha256:[0-9a-f]{64}$")] = None
+    """Digest of the inputs of this case, equal to input_digest in the results of the case."""
+    speed_km_h: Annotated[float, Field(ge=1, le=600)]
+    """Speed of the train [km/h]."""
+    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
+    """Start and end of the analysis section [m]; default: that of the case; `assess` requires it of a record."""
+    line: LineTable = LineTable()
+    system: SystemTable | None = None
+    run: RunTable = RunTable()
+    start: StartTable | None = None
+    """Start of the simulation, for cases with a short run-in."""
+
+    @cross_check
+    def _check_section(self) -> Problems:
+        if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
+            yield validation_problem(
+                "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
+            )
 
 
 # Tables `track` and `position` of a sidecar: the kilometres of the line, and the position of the train.
@@ -109,21 +115,11 @@ class KilometreTable(InputTable):
         return self.direction * 1000 * (kilometre - self.zero_km)
 
 
-class CounterPosition(InputTable):
-    """Position from a counter of distance pulses; it may count up or down."""
-
-    kind: Literal["counter"]
-    column: FileColumnName
-    metres_per_pulse: Annotated[Positive, Field(le=1000)]
-    """Distance per pulse [m]."""
-    start_m: float
-    """Position of the first pantograph at the first sample [m]."""
-
-
 class PulsePosition(InputTable):
-    """Position from a pulse train: the signal of a wheel sensor, whose rising edges are counted."""
+    """Position from distance pulses: a counter, which may count up or down, or a pulse train of a wheel sensor."""
 
-    kind: Literal["pulses"]
+    kind: Literal["counter", "pulses"]
+    """counter: the column counts the pulses; pulses: its rising edges are counted."""
     column: FileColumnName
     metres_per_pulse: Annotated[Positive, Field(le=1000)]
     """Distance per pulse [m]."""
@@ -153,7 +149,7 @@ class MarkPosition(InputTable):
             yield validation_problem("mark", "the times do not increase", "List the marks in the order of time.")
 
 
-PositionTable = Annotated[CounterPosition | PulsePosition | MarkPosition, Discriminator("kind")]
+PositionTable = Annotated[PulsePosition | MarkPosition, Discriminator("kind")]
 
 
 # Tables `event` and `event_channel` of a sidecar: places of the line that a measurement passes.

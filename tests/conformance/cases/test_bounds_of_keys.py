@@ -17,7 +17,6 @@ from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases import case_file, limits, profile_file, study_tables
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import BoundMissing, NamedBound, Rule, SpeedFormula, resolve_bounds
-from pantocheck.conformance.core import table_sidecar
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops import drop_sidecar
 from pantocheck.conformance.line import geometry, line_file
@@ -31,7 +30,7 @@ from pantocheck.conformance.runs.system import Errored
 
 MODULES = (
     *(case_file, damping, study_tables, force_law, geometry, limits, line_file, pantograph_file, profile_file),
-    *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables, table_sidecar),
+    *(study_tables, drop_sidecar, record_sidecar, record_summary, sidecar_tables),
 )
 STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 NUMBERS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
