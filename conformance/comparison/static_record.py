@@ -8,11 +8,12 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.sourced_table import Positive, PositiveList, Problems, cross_check, validation_problem
 from pantocheck.conformance.core.table_sidecar import (
     NamedTableSidecar,
+    TableRecord,
     read_named_columns,
     read_sidecar,
     record_digest,
@@ -73,16 +74,9 @@ class StaticSidecar(NamedTableSidecar):
 
 
 @dataclass(frozen=True)
-class StaticRecord:
+class StaticRecord(TableRecord[StaticSidecar]):
     """Values measured along a line, by increasing position; NaN marks a missing value."""
 
-    source: str
-    """Name of the table."""
-    digest: str
-    """SHA-256 of sidecar and table."""
-    sidecar: StaticSidecar
-    row: IntegerArray
-    """Number of each row below the head line, from 1, (n,)."""
     position: RealArray
     """Positions from the start of the line, (n,) [m]."""
     values: dict[StaticValue, RealArray]

@@ -2,12 +2,13 @@
 
 import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
-from typing import Annotated, NamedTuple, TypeVar
+from typing import Annotated, Generic, NamedTuple, TypeVar
 
 from pydantic import Field
 
-from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, read_tables
@@ -119,6 +120,22 @@ class NamedTableSidecar(TableSidecar):
     """
     note: Annotated[str | None, Field(max_length=4000)] = None
     """Remark for the reader."""
+
+
+N = TypeVar("N", bound=NamedTableSidecar)
+
+
+@dataclass(frozen=True)
+class TableRecord(Generic[N]):
+    """Rows of a table in the order of their axis."""
+
+    source: str
+    """Name of the table."""
+    digest: str
+    """SHA-256 of sidecar and table."""
+    sidecar: N
+    row: IntegerArray
+    """Number of each row below the head line, from 1, (n,)."""
 
 
 class NamedColumn(NamedTuple):

@@ -28,6 +28,7 @@ from pantocheck.conformance.core.sourced_table import (
 )
 from pantocheck.conformance.core.table_sidecar import (
     NamedTableSidecar,
+    TableRecord,
     read_named_columns,
     read_sidecar,
     record_digest,
@@ -155,16 +156,9 @@ class ResponseUncertainty:
 
 
 @dataclass(frozen=True)
-class ResponseRecord:
+class ResponseRecord(TableRecord[ResponseSidecar]):
     """Frequency response of a head, by increasing frequency; NaN marks a missing value."""
 
-    source: str
-    """Name of the table."""
-    digest: str
-    """SHA-256 of sidecar and table."""
-    sidecar: ResponseSidecar
-    row: IntegerArray
-    """Number of each row below the head line, from 1, (n,)."""
     frequency: RealArray
     """Frequencies, (n,) [Hz]."""
     stiffness: ComplexArray
