@@ -19,7 +19,7 @@ from pantocheck.conformance.grading.results_building import key_by_owner, list_c
 from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.record_facts import RecordState
+from pantocheck.conformance.results.case_facts_format import RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results, UncertaintyComponents
 from pantocheck.conformance.runs.record_folder import RecordFolder
 

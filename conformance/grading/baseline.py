@@ -11,7 +11,7 @@ from pantocheck.conformance.grading.case_verdict import judge_baseline, read_par
 from pantocheck.conformance.grading.criterion_grading import Requirement, build_criterion
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.results.scope import build_scope

@@ -20,13 +20,13 @@ from pantocheck.conformance.pages.words import (
     quantity_label,
     quantity_unit,
 )
-from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
-from pantocheck.conformance.results.measured_run_format import (
+from pantocheck.conformance.results.case_facts_format import (
     ForceStatistics,
     MeasuredPantograph,
     MeasuredRun,
     SpanStatistics,
 )
+from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.results_format import CaseResult
 
 

@@ -25,18 +25,18 @@ from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
-from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (
+    BaselineComparison,
     ContactLossFacts,
     DerivedFact,
     EventFacts,
     LawForces,
+    MeasuredRun,
+    RecordFacts,
+    ReferenceValues,
     StoredValues,
 )
-from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import Procedure
-from pantocheck.conformance.results.record_facts import RecordFacts
-from pantocheck.conformance.results.reference_format import ReferenceValues
 
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
