@@ -170,16 +170,17 @@ def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path)
 
 
 def _check_drop_sidecar(path: Path) -> str:
-    tables = [table for suffix in TABLE_SUFFIXES if (table := path.with_suffix(suffix)).is_file()]
+    named = read_model(path, DropSidecar, "sidecar").file
+    names = [f"{path.stem}{suffix}" for suffix in TABLE_SUFFIXES] if named is None else [named]
+    tables = [table for name in names if (table := path.with_name(name)).is_file()]
     if not tables:
-        read_model(path, DropSidecar, "sidecar")
         return "sidecar of a mass-drop record; its table is not beside it"
-    return "; ".join(map(_check_drops, tables))
+    return "; ".join(map(_check_drops, tables if named is None else [path]))
 
 
 def _check_drops(path: Path) -> str:
     records = read_drop_records(path)
-    return f"mass-drop record: {count_noun(len(records), 'run')} in {path.name}"
+    return f"mass-drop record: {count_noun(len(records), 'run')} in {records[0].source}"
 
 
 def _check_static(path: Path) -> str:

@@ -13,7 +13,7 @@ from pantocheck.conformance.quantities.line_signals import supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.traces import build_spectrum, thin_series
-from pantocheck.conformance.results.measured_run_format import (
+from pantocheck.conformance.results.case_facts_format import (
     ForceStatistics,
     MeasuredPantograph,
     MeasuredRun,

@@ -23,7 +23,7 @@ from pantocheck.conformance.grading.results_building import (
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.grading.validity_warnings import find_unvalidated
 from pantocheck.conformance.records.traces import build_pantograph_traces
-from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
 
 

@@ -8,14 +8,18 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from pydantic import Field
 
-from pantocheck.conformance.core.array_types import IntegerArray, RealArray
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.sourced_table import Positive, PositiveList, Problems, cross_check, validation_problem
-from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.table_sidecar import (
+    NamedTableSidecar,
+    TableRecord,
+    read_named_columns,
+    read_sidecar,
+    record_digest,
+)
 from pantocheck.conformance.core.validation_messages import MOST_NAMED_ROWS, name_rows
 from pantocheck.conformance.line.geometry import Geometry
-from pantocheck.conformance.records.record_reading import locate_table, record_digest
-from pantocheck.conformance.records.sidecar_tables import NamedTableSidecar, read_named_columns
 from pantocheck.conformance.results.comparison_format import StaticValue
 
 STATIC_SCHEMA = "pantocheck.static/1"
@@ -70,16 +74,9 @@ class StaticSidecar(NamedTableSidecar):
 
 
 @dataclass(frozen=True)
-class StaticRecord:
+class StaticRecord(TableRecord[StaticSidecar]):
     """Values measured along a line, by increasing position; NaN marks a missing value."""
 
-    source: str
-    """Name of the table."""
-    digest: str
-    """SHA-256 of sidecar and table."""
-    sidecar: StaticSidecar
-    row: IntegerArray
-    """Number of each row below the head line, from 1, (n,)."""
     position: RealArray
     """Positions from the start of the line, (n,) [m]."""
     values: dict[StaticValue, RealArray]
@@ -99,9 +96,7 @@ def read_static_table(path: Path) -> StaticRecord:
         InputError: A file is missing or damaged; a column is unknown, missing, repeated or empty; a value is infinite,
             a position is missing, or an elasticity is not positive; the sidecar lacks the force of the elasticities.
     """
-    sidecar_path = path.with_suffix(".toml")
-    sidecar = read_model(sidecar_path, StaticSidecar, "sidecar")
-    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
+    sidecar, table = read_sidecar(path, StaticSidecar)
     where = f"record '{table.name}'"
     known = [f"{stem}_{unit}" for stem, unit in COLUMN_UNITS.items()]
     named = read_named_columns(table, sidecar, known, USUAL_COLUMNS, LARGEST_TABLE)
@@ -121,13 +116,13 @@ def read_static_table(path: Path) -> StaticRecord:
             "Give the force of the elasticities, e.g. force_N = [100.0], or both forces of a difference; droppers that "
             "slacken make the elasticity depend on it."
         )
-        problems.insert(0, InputError(f"sidecar '{sidecar_path.name}', key force_N", "missing", hint))
+        problems.insert(0, InputError(f"sidecar '{path.with_suffix('.toml').name}', key force_N", "missing", hint))
     if problems:
         raise join_errors(problems)
     order = np.argsort(position, kind="stable")
     return StaticRecord(
         table.name,
-        record_digest(sidecar_path, table),
+        record_digest(path, table),
         sidecar,
         order + 1,
         position[order],

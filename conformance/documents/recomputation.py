@@ -16,8 +16,8 @@ from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_ca
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
-from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor

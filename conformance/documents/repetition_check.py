@@ -13,6 +13,7 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number
+from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.documents.authenticity_check import (
     DocumentCheck,
     NumberComparison,
@@ -25,10 +26,10 @@ from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
-from pantocheck.conformance.records.record_reading import open_record, record_digest
+from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.record_facts import RecordState
+from pantocheck.conformance.results.case_facts_format import RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results, UncertaintyComponents
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator

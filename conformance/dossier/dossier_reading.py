@@ -11,13 +11,13 @@ from pantocheck.conformance.cases.case_parts import locate_part, read_line_file,
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.table_sidecar import locate_table
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.dossier.dossier_file import CaseRun, DossierFile, LineEntry, PantographEntry, RecordRun
 from pantocheck.conformance.execution.plan import place_cases, place_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.records.record_reading import locate_table
 
 
 @dataclass(frozen=True)

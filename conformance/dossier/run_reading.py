@@ -21,7 +21,7 @@ from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.record_folder import SPACING_TOLERANCE_M
 from pantocheck.conformance.runs.system import Delivered, System, missing_record_reason
 

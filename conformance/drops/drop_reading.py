@@ -11,6 +11,7 @@ import numpy as np
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, parse_direction, read_tables
+from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 from pantocheck.conformance.drops.drop_record import (
     DropChannel,
@@ -18,7 +19,7 @@ from pantocheck.conformance.drops.drop_record import (
     DropRecord,
     find_sampling_rate,
 )
-from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns, read_drop_sidecar
+from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
@@ -30,16 +31,16 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
     """Read all runs of a file.
 
     Args:
-        path: File in one of the formats of `TABLE_FORMATS`; its sidecar has the same stem and the suffix .toml.
+        path: File in one of the formats of `TABLE_FORMATS`, with or without a sidecar of the same stem.
 
     Raises:
         InputError: The file cannot be read, is damaged, or does not describe its channels.
     """
-    sidecar = read_drop_sidecar(path)
+    sidecar, table = read_sidecar(path, DropSidecar) if path.with_suffix(".toml").is_file() else (None, path)
     names, layout = (sidecar.channel_names, sidecar.table) if sidecar else ((), None)
-    tables = read_tables(path, names, LARGEST_DROP, layout=layout)
-    file = str(path.resolve())
-    return tuple(replace(assemble_drop_record(table.separate_time(), sidecar), file=file) for table in tables)
+    tables = read_tables(table, names, LARGEST_DROP, layout=layout)
+    file = str(table.resolve())
+    return tuple(replace(assemble_drop_record(run.separate_time(), sidecar), file=file) for run in tables)
 
 
 # Mass-drop record from a measured table and its sidecar: contradictions are refused, signals are converted to SI.

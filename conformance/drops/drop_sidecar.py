@@ -1,39 +1,32 @@
 """Sidecar of a mass-drop record: TOML file with the descriptions of its columns, its mass drop and its line."""
 
-from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
-from pantocheck.conformance.core.text_settings import TextSettings
-from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.sourced_table import InputTable, Positive
+from pantocheck.conformance.core.table_sidecar import TableSidecar
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 
-PositiveNumber = Annotated[float, Field(gt=0)]
 
-
-class _OpenTable(BaseModel):
-    """Table in which further keys are permitted and ignored."""
-
-    model_config = ConfigDict(extra="ignore", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class DropTestTable(_OpenTable):
+class DropTestTable(InputTable):
     """Name of the test, and its line."""
 
     name: Annotated[str, Field(max_length=200)] = ""
     """Name of the test."""
-    spans_m: Annotated[tuple[PositiveNumber, ...], Field(strict=False, max_length=1000)] = ()
+    synthetic: bool = False
+    """true: the record is simulated."""
+    spans_m: Annotated[tuple[Positive, ...], Field(strict=False, max_length=1000)] = ()
     """Lengths of the spans [m]."""
-    cw_tension_n: Annotated[float | None, Field(gt=0)] = None
+    cw_tension_n: Positive | None = None
     """Tension of one contact wire [N]."""
-    mw_tension_n: Annotated[float | None, Field(gt=0)] = None
+    mw_tension_n: Positive | None = None
     """Tension of one messenger wire [N]."""
 
 
-class DropTable(_OpenTable):
+class DropTable(InputTable):
     """Dropped mass."""
 
     mass_kg: Annotated[float | None, Field(gt=0, le=1000)] = None
@@ -44,7 +37,7 @@ class DropTable(_OpenTable):
     """Distance of the mass from the first support [m]."""
 
 
-class DropRecordTable(_OpenTable):
+class DropRecordTable(InputTable):
     """Sampling of the record."""
 
     sampling_rate_hz: Annotated[float, Field(gt=0, le=1e6)]
@@ -57,7 +50,7 @@ class DropRecordTable(_OpenTable):
     """Measured quantity."""
 
 
-class DropChannelTable(_OpenTable):
+class DropChannelTable(InputTable):
     """Column of the record."""
 
     column: Annotated[int, Field(ge=1, le=10000)]
@@ -88,14 +81,12 @@ class DropChannelTable(_OpenTable):
         )
 
 
-class DropSidecar(_OpenTable):
+class DropSidecar(TableSidecar):
     """Sidecar of a mass-drop record."""
 
     test: DropTestTable = DropTestTable()
     drop: DropTable = DropTable()
     record: DropRecordTable
-    table: TextSettings = TextSettings()
-    """Layout of a text table, if it is not found from the file."""
     channel: Annotated[tuple[DropChannelTable, ...], Field(strict=False, min_length=1)]
     """Channels, one per column."""
 
@@ -118,16 +109,6 @@ class DropSidecar(_OpenTable):
             "mw_tension_n": self.test.mw_tension_n,
         }
         return {name: value for name, value in attributes.items() if value not in (None, "", ())}
-
-
-def read_drop_sidecar(record: Path) -> DropSidecar | None:
-    """Read the sidecar of a record, a TOML file with the same stem; None if there is no such file.
-
-    Raises:
-        InputError: The sidecar cannot be read or does not fit the model.
-    """
-    path = record.with_suffix(".toml")
-    return read_model(path, DropSidecar, "sidecar") if path.is_file() else None
 
 
 # Descriptions of the columns of a mass-drop record, from its sidecar, or from the file if it has no sidecar.

@@ -14,13 +14,10 @@ from pantocheck.conformance.core.measured_table import CSV, HDF5, UFF, TableForm
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.core.units import SI_UNITS
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_sidecar import DropSidecar
 
 UNWRITABLE = ",;\t\"'"
 """Characters that are not possible in the head line of a CSV file, because it is read without quoting."""
-
-
-SIDECAR_TABLES = frozenset({"test", "drop", "record", "channel"})
-"""Tables of a sidecar."""
 
 
 def write_drop_csv(record: DropRecord, path: Path) -> None:
@@ -83,7 +80,7 @@ def check_drop_sidecar(path: Path) -> None:
         InputError: The sidecar would overwrite a file that is not a sidecar of a drop record.
     """
     target = path.with_suffix(".toml")
-    if target.exists() and not read_toml(target, "sidecar").keys() <= SIDECAR_TABLES:
+    if target.exists() and not read_toml(target, "sidecar").keys() <= DropSidecar.model_fields.keys():
         raise InputError(
             f"record '{path}'",
             f"the sidecar would overwrite {target.name}, which is not a sidecar of a drop record",

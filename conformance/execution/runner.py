@@ -24,7 +24,7 @@ from pantocheck.conformance.grading.case_grading import build_ungraded, grade_ca
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation
 from pantocheck.conformance.grading.results_building import build_results, utc_now
 from pantocheck.conformance.records.traces import round_series
-from pantocheck.conformance.results.reference_format import ReferenceValues
+from pantocheck.conformance.results.case_facts_format import ReferenceValues
 from pantocheck.conformance.results.results_format import CaseResult, Results, SystemIdentity
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import System

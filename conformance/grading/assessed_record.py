@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.grading.record_uncertainty import assess_uncertainty
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, skip_record
 from pantocheck.conformance.quantities.filters import is_same_cutoff
@@ -19,7 +20,7 @@ from pantocheck.conformance.quantities.uncertainty import Uncertainty
 from pantocheck.conformance.records.events import RecordEvent, covered_share
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_preparation import PreparedRecord, prepare_record
-from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples, record_digest
+from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples

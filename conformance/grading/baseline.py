@@ -10,7 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_verdict import judge_baseline, read_participation
 from pantocheck.conformance.grading.criterion_grading import build_criterion, skip_unlimited
 from pantocheck.conformance.quantities.registry import unit_of
-from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.results.scope import build_scope

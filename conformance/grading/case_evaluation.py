@@ -30,7 +30,7 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty, map_items
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.record_checks import check_record, record_state
 from pantocheck.conformance.runs.record_folder import find_other_case, find_record_mismatch

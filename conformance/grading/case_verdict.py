@@ -6,7 +6,7 @@ from typing import get_args
 
 from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
 from pantocheck.conformance.grading.procedure_verdict import decide_procedure, judge_procedure
-from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.record_facts import StartState
+from pantocheck.conformance.results.case_facts_format import StartState
 
 START_TOLERANCE_M = 0.1
 """Tolerance of the place and the ramp of a start [m].

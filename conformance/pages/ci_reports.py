@@ -19,9 +19,9 @@ from pantocheck.conformance.pages.two_verdicts import NAMES, list_criteria, sele
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.pages.words import name_owner
 from pantocheck.conformance.quantities.limit_text import format_graded, is_relative_margin
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 from pantocheck.conformance.results.procedure_format import ValidityClaim
-from pantocheck.conformance.results.record_facts import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 TEST_ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}

@@ -19,8 +19,8 @@ from pantocheck.conformance.pages.words import (
     quantity_unit,
 )
 from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
+from pantocheck.conformance.results.case_facts_format import ReferenceValues
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
-from pantocheck.conformance.results.reference_format import ReferenceValues
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 BAND_CAPTION = (

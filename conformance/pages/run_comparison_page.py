@@ -22,6 +22,12 @@ from pantocheck.conformance.pages.words import (
     quantity_label,
     quantity_unit,
 )
+from pantocheck.conformance.results.case_facts_format import (
+    ForceStatistics,
+    MeasuredPantograph,
+    MeasuredRun,
+    SpanStatistics,
+)
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
     ComparedQuantity,
@@ -29,12 +35,6 @@ from pantocheck.conformance.results.comparison_format import (
     RunComparison,
 )
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
-from pantocheck.conformance.results.measured_run_format import (
-    ForceStatistics,
-    MeasuredPantograph,
-    MeasuredRun,
-    SpanStatistics,
-)
 from pantocheck.conformance.results.results_format import CaseResult
 
 RUN_COMPARISON_SCOPE = (

@@ -21,8 +21,8 @@ from pantocheck.conformance.pages.words import (
     read_words,
 )
 from pantocheck.conformance.quantities.limit_text import is_relative_margin
+from pantocheck.conformance.results.case_facts_format import MeasuredRun
 from pantocheck.conformance.results.comparison_format import ModelComparison
-from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import (
     Evidence,
     JoinedQuantity,

@@ -10,7 +10,7 @@ from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.words import name_verdict
-from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 NAMES = {

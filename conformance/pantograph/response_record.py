@@ -26,10 +26,14 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
-from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.table_sidecar import (
+    NamedTableSidecar,
+    TableRecord,
+    read_named_columns,
+    read_sidecar,
+    record_digest,
+)
 from pantocheck.conformance.core.validation_messages import name_rows
-from pantocheck.conformance.records.record_reading import locate_table, record_digest
-from pantocheck.conformance.records.sidecar_tables import NamedTableSidecar, read_named_columns
 
 HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
 """Point of the head: its centre, one of its contact strips, or another one."""
@@ -152,16 +156,9 @@ class ResponseUncertainty:
 
 
 @dataclass(frozen=True)
-class ResponseRecord:
+class ResponseRecord(TableRecord[ResponseSidecar]):
     """Frequency response of a head, by increasing frequency; NaN marks a missing value."""
 
-    source: str
-    """Name of the table."""
-    digest: str
-    """SHA-256 of sidecar and table."""
-    sidecar: ResponseSidecar
-    row: IntegerArray
-    """Number of each row below the head line, from 1, (n,)."""
     frequency: RealArray
     """Frequencies, (n,) [Hz]."""
     stiffness: ComplexArray
@@ -181,9 +178,7 @@ def read_response(path: Path) -> ResponseRecord:
             the stated one; a frequency is missing, repeated or not positive, a modulus is not positive, or a value is
             infinite; force and motion evidently have other signs.
     """
-    sidecar_path = path.with_suffix(".toml")
-    sidecar = read_model(sidecar_path, ResponseSidecar, "sidecar")
-    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
+    sidecar, table = read_sidecar(path, ResponseSidecar)
     where = f"record '{table.name}'"
     columns = _read_columns(table, sidecar)
     if "frequency_Hz" not in columns:
@@ -202,7 +197,7 @@ def read_response(path: Path) -> ResponseRecord:
     _refuse_other_signs(where, stiffness)
     return ResponseRecord(
         table.name,
-        record_digest(sidecar_path, table),
+        record_digest(path, table),
         sidecar,
         order + 1,
         frequency,

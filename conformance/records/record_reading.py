@@ -1,13 +1,11 @@
 """Reading of records: tables of samples with a sidecar, and summaries."""
 
-import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.measured_table import (
     EVERY_CHANNEL,
@@ -17,6 +15,7 @@ from pantocheck.conformance.core.measured_table import (
     TableColumn,
     read_tables,
 )
+from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.texts import DocumentationPage, count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.units import find_key_units, suggest_key
@@ -118,41 +117,9 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
     Raises:
         InputError: A file is missing or damaged, or table and sidecar contradict each other.
     """
-    sidecar_path = path.with_suffix(".toml")
-    sidecar = read_model(sidecar_path, RecordSidecar, "sidecar")
-    table = locate_table(sidecar_path, sidecar.file, sidecar.sha256)
+    sidecar, table = read_sidecar(path, RecordSidecar)
     rows, unused = read_channel_rows(table, sidecar)
     return _build_samples(rows, sidecar, unused), sidecar, table
-
-
-def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
-    """Find the table of a sidecar.
-
-    Args:
-        sidecar_path: The sidecar.
-        name: Name of the table, from the sidecar.
-        digest: Its SHA-256 by the sidecar.
-
-    Raises:
-        InputError: The table is missing, is a link to a file in another folder, or has another SHA-256.
-    """
-    table = sidecar_path.parent / name
-    check_file(table, f"record '{table.name}'", MAX_FILE_BYTES)
-    if not table.resolve().is_relative_to(sidecar_path.parent.resolve()):
-        raise InputError(f"record '{table.name}'", "is a link to a file outside its folder", "Copy the table itself.")
-    if digest is not None and file_digest(table) != digest:
-        raise InputError(
-            f"record '{table.name}'",
-            "the content does not agree with sha256 in the sidecar",
-            "Copy table and sidecar again, or write them again.",
-        )
-    return table
-
-
-def record_digest(sidecar_path: Path, table: Path | None = None) -> str:
-    """SHA-256 of the sidecar and the table of a record, or of a summary alone."""
-    paths = [sidecar_path.with_suffix(".toml"), *([] if table is None else [table])]
-    return "sha256:" + hashlib.sha256("\n".join(map(file_digest, paths)).encode()).hexdigest()
 
 
 def build_record_error(table: Path, error: RecordInvalid) -> InputError:

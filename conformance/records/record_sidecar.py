@@ -13,38 +13,30 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
+from pantocheck.conformance.core.table_sidecar import TableName, TableSidecar
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import suggest_key
 from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
 from pantocheck.conformance.records.record import CHANNELS, find_column
 from pantocheck.conformance.records.sidecar_tables import (
     ArcTable,
-    CaseDigest,
-    CaseName,
     EventChannel,
     EventTable,
     KilometreTable,
-    LineTable,
     MarkPosition,
+    PassageTable,
     PositionTable,
-    RunTable,
-    Speed,
-    StartTable,
-    SystemTable,
-    TableSidecar,
-    find_section_problems,
 )
 
 RECORD_SCHEMA = "pantocheck.record/1"
 
 
-class RecordSidecar(TableSidecar):
+class RecordSidecar(PassageTable, TableSidecar):
     """Sidecar of a table of samples."""
 
+    file: TableName
     schema_: Annotated[Literal["pantocheck.record/1"], Field(alias="schema")]
     """Version of the format: "pantocheck.record/1"."""
-    case: CaseName = None
-    case_digest: CaseDigest | None = None
     changes: Annotated[tuple[str, ...], Field(strict=False, max_length=100)] = ()
     """Inputs of the case that were changed with --set."""
     columns: Annotated[dict[str, ColumnSource] | None, Field(min_length=1, max_length=200)] = None
@@ -59,11 +51,8 @@ class RecordSidecar(TableSidecar):
     """Columns of the file that mark such places."""
     arc: Annotated[tuple[ArcTable, ...], Field(strict=False, max_length=20)] = ()
     """Arc detectors of the pantographs."""
-    speed_km_h: Speed
     pantographs: Annotated[int, Field(ge=1, le=20)]
     """Number of pantographs."""
-    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
-    """Start and end of the analysis section [m]; default: that of the case; required by `assess`."""
     filter_applied_Hz: float | Literal["none"]
     """Cut-off of the low-pass filter applied to the force before delivery [Hz], or "none"."""
     start_m: float | None = None
@@ -72,11 +61,6 @@ class RecordSidecar(TableSidecar):
     """Distances between successive pantographs in running order, if not in the table [m]."""
     support_position_m: NumberList | None = None
     """Positions of the supports with an uplift, in the order of the table [m]."""
-    line: LineTable = LineTable()
-    system: SystemTable | None = None
-    run: RunTable = RunTable()
-    start: StartTable | None = None
-    """Start of the simulation, for cases with a short run-in."""
 
     @cross_check
     def _check_consistency(self) -> Problems:
@@ -86,7 +70,6 @@ class RecordSidecar(TableSidecar):
                 f"found {self.low_passed_Hz:g} Hz, expected a positive cut-off",
                 'Write filter_applied_Hz = "none" for an unfiltered force.',
             )
-        yield from find_section_problems(self.evaluated_m)
         if self.spacing_m is not None and len(self.spacing_m) != self.pantographs - 1:
             yield validation_problem(
                 "spacing_m",

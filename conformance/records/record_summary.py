@@ -6,7 +6,6 @@ from pydantic import Field
 
 from pantocheck.conformance.core.input_error import suggest_names
 from pantocheck.conformance.core.sourced_table import (
-    NumberList,
     Problems,
     SourcedTable,
     cross_check,
@@ -18,42 +17,23 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.stated_quantities import STATED_QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
 from pantocheck.conformance.records.record import LARGEST_NUMBER
-from pantocheck.conformance.records.sidecar_tables import (
-    CaseDigest,
-    CaseName,
-    LineTable,
-    RunTable,
-    Speed,
-    StartTable,
-    SystemTable,
-    find_section_problems,
-)
+from pantocheck.conformance.records.sidecar_tables import PassageTable
 
 SummaryValue = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER)]
 SummaryValues = Annotated[dict[str, SummaryValue], Field(max_length=100)]
 
 
-class RecordSummary(SourcedTable):
+class RecordSummary(PassageTable, SourcedTable):
     """Quantities of a passage by name, for each pantograph and for the line."""
 
     schema_: Annotated[Literal["pantocheck.summary/1"], Field(alias="schema")]
     """Version of the format: "pantocheck.summary/1"."""
-    case: CaseName = None
-    case_digest: CaseDigest | None = None
-    speed_km_h: Speed
     filter_cutoff_Hz: Annotated[float, Field(gt=0, le=1000)]
     """Cut-off of the low-pass filter of the force statistics [Hz]."""
-    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
-    """Start and end of the analysis section [m]."""
     pantograph: Annotated[tuple[SummaryValues, ...], Field(strict=False, min_length=1, max_length=20)]
     """Quantities by name, one table per pantograph."""
     quantities: Annotated[SummaryValues, Field(default_factory=dict)]
     """Quantities of the line by name."""
-    line: LineTable = LineTable()
-    system: SystemTable | None = None
-    run: RunTable = RunTable()
-    start: StartTable | None = None
-    """Start of the simulation, for cases with a short run-in."""
 
     @cross_check
     def _check_values(self) -> Problems:
@@ -63,7 +43,6 @@ class RecordSummary(SourcedTable):
         static = [quantity.name for quantity in QUANTITIES.values() if quantity.scope == "static"]
         known = [*(quantity.name for quantity in LINE_QUANTITIES), *static]
         yield from _find_table_problems(self.quantities, "quantities", known)
-        yield from find_section_problems(self.evaluated_m)
 
     @property
     def evaluation(self) -> Evaluation:

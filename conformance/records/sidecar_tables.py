@@ -1,44 +1,20 @@
-"""Common tables and keys of sidecars and summaries: table, system, run and line."""
+"""Common tables and keys of sidecars and summaries of contact-force records: system, run, line, position, events."""
 
-from collections.abc import Sequence
 from itertools import pairwise
-from pathlib import Path, PureWindowsPath
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, read_tables
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
+    NumberList,
     Positive,
     Problems,
     cross_check,
     validation_problem,
 )
-from pantocheck.conformance.core.text_settings import TextSettings
-from pantocheck.conformance.core.units import convert_key, find_unit, suggest_key
 from pantocheck.conformance.records.column_values import ColumnTable, FileColumnName
-
-Speed = Annotated[float, Field(ge=1, le=600, description="speed of the train [km/h]")]
-
-TableName = Annotated[str, Field(min_length=1, max_length=500, description="name of the table beside the sidecar")]
-
-TableDigest = Annotated[
-    str | None, Field(pattern="^[0-9a-f]{64}$", description="SHA-256 of the table, to detect a damaged copy")
-]
-
-CaseName = Annotated[str | None, Field(max_length=200, description="id of the case that was run")]
-
-CaseDigest = Annotated[
-    str,
-    Field(
-        pattern="^sha256:[0-9a-f]{64}$",
-        description="digest of the inputs of this case, equal to input_digest in the results of the case",
-    ),
-]
 
 
 class SystemTable(InputTable):
@@ -95,21 +71,29 @@ class LineTable(InputTable):
     """Space for the uplift of the contact wire at the supports [mm]."""
 
 
-def find_table_name_problems(name: str) -> Problems:
-    """Problem of the name of a table that is a path."""
-    # On Windows, `C:table.csv` is a path, too; the same record must be valid on all systems.
-    if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name or PureWindowsPath(name).drive:
-        yield validation_problem(
-            "file", f"found the path {name!r}", "Put the table beside its sidecar, and give its name only."
-        )
+class PassageTable(InputTable):
+    """Passage that a record or a summary belongs to."""
 
+    case: Annotated[str | None, Field(max_length=200)] = None
+    """Id of the case that was run."""
+    case_digest: Annotated[str | None, Field(pattern="^sha256:[0-9a-f]{64}$")] = None
+    """Digest of the inputs of this case, equal to input_digest in the results of the case."""
+    speed_km_h: Annotated[float, Field(ge=1, le=600)]
+    """Speed of the train [km/h]."""
+    evaluated_m: Annotated[NumberList | None, Field(min_length=2, max_length=2)] = None
+    """Start and end of the analysis section [m]; default: that of the case; `assess` requires it of a record."""
+    line: LineTable = LineTable()
+    system: SystemTable | None = None
+    run: RunTable = RunTable()
+    start: StartTable | None = None
+    """Start of the simulation, for cases with a short run-in."""
 
-def find_section_problems(section: tuple[float, ...] | None) -> Problems:
-    """Problem of an analysis section [m] whose end is not behind its start."""
-    if section is not None and section[0] >= section[1]:
-        yield validation_problem(
-            "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
-        )
+    @cross_check
+    def _check_section(self) -> Problems:
+        if self.evaluated_m is not None and self.evaluated_m[0] >= self.evaluated_m[1]:
+            yield validation_problem(
+                "evaluated_m", "the end is not greater than the start", "Give the start, then the end of the section."
+            )
 
 
 # Tables `track` and `position` of a sidecar: the kilometres of the line, and the position of the train.
@@ -131,21 +115,11 @@ class KilometreTable(InputTable):
         return self.direction * 1000 * (kilometre - self.zero_km)
 
 
-class CounterPosition(InputTable):
-    """Position from a counter of distance pulses; it may count up or down."""
-
-    kind: Literal["counter"]
-    column: FileColumnName
-    metres_per_pulse: Annotated[Positive, Field(le=1000)]
-    """Distance per pulse [m]."""
-    start_m: float
-    """Position of the first pantograph at the first sample [m]."""
-
-
 class PulsePosition(InputTable):
-    """Position from a pulse train: the signal of a wheel sensor, whose rising edges are counted."""
+    """Position from distance pulses: a counter, which may count up or down, or a pulse train of a wheel sensor."""
 
-    kind: Literal["pulses"]
+    kind: Literal["counter", "pulses"]
+    """counter: the column counts the pulses; pulses: its rising edges are counted."""
     column: FileColumnName
     metres_per_pulse: Annotated[Positive, Field(le=1000)]
     """Distance per pulse [m]."""
@@ -175,7 +149,7 @@ class MarkPosition(InputTable):
             yield validation_problem("mark", "the times do not increase", "List the marks in the order of time.")
 
 
-PositionTable = Annotated[CounterPosition | PulsePosition | MarkPosition, Discriminator("kind")]
+PositionTable = Annotated[PulsePosition | MarkPosition, Discriminator("kind")]
 
 
 # Tables `event` and `event_channel` of a sidecar: places of the line that a measurement passes.
@@ -267,100 +241,3 @@ class ArcTable(InputTable):
                 "current and nominal_current_A belong together",
                 "Give both; without them there is no arc share.",
             )
-
-
-# Sidecar of any measured table: the keys that all kinds share, and the reading of its named columns.
-ColumnName = Annotated[str, Field(min_length=1, max_length=200)]
-
-
-class TableSidecar(InputTable):
-    """Keys of the sidecar of a measured table: its file and the layout of the file."""
-
-    file: TableName
-    sha256: TableDigest = None
-    table: TextSettings = TextSettings()
-    """Layout of a text table, if it is not found from the file."""
-
-    @cross_check
-    def _check_file(self) -> Problems:
-        yield from find_table_name_problems(self.file)
-
-
-class NamedTableSidecar(TableSidecar):
-    """Sidecar of a table whose columns have the names of this suite with their unit, or are named here."""
-
-    columns: Annotated[dict[str, ColumnName], Field(default_factory=dict, max_length=10)]
-    """Names of the columns in the table, where they are others: the name of this suite, with its unit, then that of
-    the table; further columns are ignored then.
-    """
-    note: Annotated[str | None, Field(max_length=4000)] = None
-    """Remark for the reader."""
-
-
-class NamedColumn(NamedTuple):
-    """Column of a table, in the unit of its name."""
-
-    values: RealArray
-    place: str
-    """Column in messages."""
-
-
-def read_named_columns(
-    table: Path, sidecar: NamedTableSidecar, known: Sequence[str], usual: Sequence[str], largest: int
-) -> dict[str, NamedColumn]:
-    """Read the columns of a table with one run.
-
-    Args:
-        table: The table.
-        sidecar: Its sidecar.
-        known: Names of the columns of this kind, with their unit.
-        usual: Names that messages suggest.
-        largest: Largest accepted number of values.
-
-    Returns:
-        Columns by their known name, in its unit.
-
-    Raises:
-        InputError: The table is damaged; a column is unknown, missing or repeated.
-    """
-    tables = read_tables(table, (), largest, (CSV, HDF5), sidecar.table)
-    where = f"record '{table.name}'"
-    if len(tables) > 1:
-        raise InputError(where, f"holds {len(tables)} runs", "Write one file per measurement.")
-    columns: dict[str, NamedColumn] = {}
-    for name, values, place in _name_columns(tables[0], sidecar.columns, table.with_suffix(".toml").name):
-        if (converted := convert_key(name, list(known))) is None:
-            raise InputError(place, "unknown column", _suggest_column(name, known, usual))
-        if converted[0] in columns:
-            raise InputError(place, f"repeats {converted[0]}", "Store each value once.")
-        columns[converted[0]] = NamedColumn(converted[1] * values, place)
-    return columns
-
-
-def _name_columns(table: MeasuredTable, mapping: dict[str, str], sidecar_name: str) -> list[tuple[str, RealArray, str]]:
-    """Name in this suite, values and place in messages of each column that is used."""
-    by_name: dict[str, RealArray] = {}
-    for column, values in zip(table.columns, table.values.T, strict=True):
-        if column.name is None:
-            raise InputError(table.where, "has no head line", "Write the names of the columns in the first line.")
-        if column.name in by_name:
-            raise InputError(table.where, f"has two columns {column.name[:80]!r}", "Give each column its own name.")
-        by_name[column.name] = values
-    if not mapping:
-        return [(name, values, f"{table.where}, column {name[:80]!r}") for name, values in by_name.items()]
-    for key, name in mapping.items():
-        if name not in by_name:
-            raise InputError(
-                f"sidecar '{sidecar_name}', key columns.{key[:80]}",
-                f"the table has no column {name[:80]!r}",
-                suggest_names(name, list(by_name)),
-            )
-    return [(key, by_name[name], f"sidecar '{sidecar_name}', key columns.{key[:80]}") for key, name in mapping.items()]
-
-
-def _suggest_column(name: str, known: Sequence[str], usual: Sequence[str]) -> str:
-    stem = name.split("_", 1)[0]
-    if (hint := suggest_key(name, None, list(usual))) is not None:
-        return hint
-    other_kind = [column for column in known if column.startswith(f"{stem}_") and find_unit(name) is not None]
-    return f"For this kind, the column is {other_kind[0]}." if other_kind else suggest_names(name, list(usual))

@@ -11,7 +11,6 @@ from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import (
     LOADED_SHARE,
     ArcTable,
-    CounterPosition,
     KilometreTable,
     MarkPosition,
     PulsePosition,
@@ -175,7 +174,7 @@ def _read_arc(arc: ArcTable, file: FileColumns) -> tuple[RealArray, RealArray]:
 
 
 def _find_position(
-    source: CounterPosition | PulsePosition | MarkPosition,
+    source: PulsePosition | MarkPosition,
     rows: ChannelRows,
     table: MeasuredTable,
     track: KilometreTable | None,
@@ -190,7 +189,7 @@ def _find_position(
     file = FileColumns(table, where)
     values = table.values[:, file.find(source.column, "position.column")]
     try:
-        find = count_distance if isinstance(source, CounterPosition) else pulse_distance
+        find = count_distance if source.kind == "counter" else pulse_distance
         return source.start_m + find(values, source.metres_per_pulse)
     except PulsesUnusable as error:
         raise InputError(

@@ -1,10 +1,12 @@
-"""Facts on a case in results.json: contact losses, events, derived values, inputs and forces of force laws."""
+"""Facts on a case in results.json: contact losses, events, derived values, inputs, force laws, record, other runs."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pantocheck.conformance.core.results_part import FiniteNumber, Owner, ResultsPart
+from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
+from pantocheck.conformance.core.verdicts import Verdict
 
 
 class ContactLossFacts(ResultsPart):
@@ -105,3 +107,109 @@ class EventFacts(ResultsPart):
     """Whether the statistics of the contact force leave it out."""
     remark: str = ""
     """Stated reason of the exclusion, or why it is not applied."""
+
+
+# Record of the case.
+RecordState = Literal["verified", "unverified", "contradicted"]
+"""Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
+
+StartState = Literal["as in the case", "differs", "not stated"]
+"""Start of a record against that of its case; `not stated` is never treated better than `as in the case`."""
+
+
+class RecordFacts(ResultsPart):
+    """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
+
+    `demanded` is false if a profile shows the state `unverified` without lowering the verdict. `digest` is that of the
+    record. `case_digest` is that of the case for which the record was made, as the record states it. `measured_digest`
+    is that of the measured record, if a profile compares with one. `start` compares the stated start of the record with
+    that of its case, null without a case; `start_text` is the remark on it.
+    """
+
+    state: RecordState
+    reason: str
+    demanded: bool = True
+    digest: str | None = None
+    case_digest: str | None = None
+    measured_digest: str | None = None
+    start: StartState | None = None
+    start_text: str | None = None
+
+
+# Earlier results, a measured run and the reference simulator beside the case.
+class BaselineComparison(ResultsPart):
+    """Comparison of the values of a case with earlier results.
+
+    Its criteria stand among those of the case: their `trust` is null, because their bounds are earlier values and no
+    limits of a standard. A value that has not drifted has no such criterion.
+    """
+
+    verdict: Verdict
+    """Worst of its criteria; info: no value was compared."""
+    name: str
+    """Name of the file with the earlier results."""
+    drift_pct: Annotated[FiniteNumber, Field(gt=0)]
+    """Largest accepted drift of a value [%]."""
+    values: Annotated[int, Field(ge=0)]
+    """Number of values of the baseline; 0: no comparison is possible."""
+    drifted: Annotated[int, Field(ge=0)]
+    """Number of values that drifted or are missing."""
+
+
+class ForceStatistics(ResultsPart):
+    """Statistics of the filtered contact force over one span [N]."""
+
+    mean_N: FiniteNumber
+    std_N: FiniteNumber
+    max_N: FiniteNumber
+    min_N: FiniteNumber
+
+
+class SpanStatistics(ResultsPart):
+    """Statistics of both runs over one span."""
+
+    start_m: FiniteNumber
+    end_m: FiniteNumber
+    simulated: ForceStatistics
+    measured: ForceStatistics
+
+
+class MeasuredPantograph(ResultsPart):
+    """Filtered contact force of one pantograph in both runs, at the same positions of their common track."""
+
+    position_m: list[float]
+    simulated_N: list[float]
+    measured_N: list[float]
+    simulated_spectrum: Spectrum
+    measured_spectrum: Spectrum
+    spans: list[SpanStatistics]
+
+
+class MeasuredRun(ResultsPart):
+    """Measured run beside the simulated one of its case."""
+
+    name: str
+    """Name of the measured record."""
+    cutoff_Hz: float
+    """Cut-off of the filter of the drawn forces [Hz]."""
+    quantities: dict[Owner, dict[str, Number]]
+    """Quantities of the measured run, as those of the case."""
+    uncertainty: dict[Owner, dict[str, Number]]
+    """Half-widths of their 95 % intervals, as in `quantities`."""
+    pantographs: dict[Owner, MeasuredPantograph]
+
+
+class ReferenceValues(ResultsPart):
+    """Run of the reference simulator on the same case. It takes part in no verdict."""
+
+    name: str
+    """Name of the reference simulator."""
+    version: str
+    reason: str | None
+    """Reason why there are no values; null: there are."""
+    quantities: dict[Owner, dict[str, Number]]
+    """As `quantities` of the case."""
+    uncertainty: dict[Owner, dict[str, Number]]
+    """Half-widths of the 95 % intervals, as in `quantities`."""
+    force_20_N: dict[Owner, list[float]]
+    """Filtered force at the positions of `traces` of the case, which has the same pantograph."""

@@ -13,23 +13,30 @@ from pantocheck.conformance.core.criterion import CaseVerification, ComponentNam
 from pantocheck.conformance.core.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.core.findings import FindingCounts
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
-from pantocheck.conformance.core.sourced_table import is_absent
+from pantocheck.conformance.core.sourced_table import (
+    NonNegative,
+    Problems,
+    cross_check,
+    is_absent,
+    validation_problem,
+)
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
-from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.case_facts_format import (
+    BaselineComparison,
     ContactLossFacts,
     DerivedFact,
     EventFacts,
     LawForces,
+    MeasuredRun,
+    RecordFacts,
+    ReferenceValues,
     StoredValues,
 )
-from pantocheck.conformance.results.measured_run_format import MeasuredRun
 from pantocheck.conformance.results.procedure_format import Procedure
-from pantocheck.conformance.results.record_facts import RecordFacts
-from pantocheck.conformance.results.reference_format import ReferenceValues
 
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
@@ -78,18 +85,22 @@ class InputGroup(ResultsPart):
     values: StoredValues = {}
 
 
-class RunFacts(ResultsPart):
-    """Computation of a case; unknown facts are null."""
+class RunFacts(RunTable):
+    """Computation of a case: facts of the system, and of the suite; unknown ones are null."""
 
-    simulated_s: float | None
-    wall_s: float | None
-    dt_s: float | None
-    element_m: float | None
+    simulated_s: NonNegative | None
+    """Simulated or assessed time [s]."""
     speed_km_h: float | None
     rate_Hz: float | None
     filter: Filter
-    evaluated_m: tuple[float, float] | None
+    evaluated_m: Annotated[tuple[float, float] | None, Field(strict=False)]
     law_forces: LawForces = {}
+
+    @cross_check
+    def _check_completeness(self) -> Problems:
+        for key in RunTable.model_fields:
+            if key not in self.model_fields_set:
+                yield validation_problem(key, f"{key} is missing", "Write null for an unknown fact.")
 
 
 LibraryIdentity = Literal["identical", "modified", "own"]

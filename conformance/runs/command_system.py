@@ -13,8 +13,8 @@ from pantocheck.conformance.cases.lift_force import AppliedForces
 from pantocheck.conformance.core.files import NO_LINK, file_digest
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.sourced_table import PROVENANCE
+from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw
-from pantocheck.conformance.records.record_reading import record_digest
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.derived_values import build_derived
 from pantocheck.conformance.runs.program import Program, ProgramFailed, split_arguments

@@ -10,13 +10,14 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record
-from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record, record_digest
+from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, open_record, read_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.runs.system import Delivered, Errored, Outcome, Skipped, note_case_version

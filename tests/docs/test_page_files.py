@@ -15,9 +15,9 @@ from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
 from pantocheck.conformance.core.extras import EXTRA_OF_PACKAGE
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS
 from pantocheck.conformance.core.text_settings import TextSettings
-from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.units import convert_key
-from pantocheck.conformance.drops.drop_sidecar import read_drop_sidecar
+from pantocheck.conformance.drops.drop_sidecar import DropSidecar
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.response_record import (
@@ -48,7 +48,7 @@ def test_limits_of_a_compared_drop() -> None:
 def test_sidecar_of_a_mass_drop(tmp_path: Path) -> None:
     text = list_blocks("identification.md", "toml")[0]
     (tmp_path / "drop.toml").write_text(text, encoding="utf-8")
-    sidecar = read_drop_sidecar(tmp_path / "drop.csv")
+    sidecar = read_model(tmp_path / "drop.toml", DropSidecar, "sidecar")
     assert (sidecar.drop.mass_kg, sidecar.record.trigger_nominal_s) == (40.0, 6.0)
     assert [channel.unit for channel in sidecar.channel] == ["m/s2"]
     read_tables(text, "mass-drop")

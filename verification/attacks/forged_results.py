@@ -15,7 +15,7 @@ from pantocheck.conformance.core.verdicts import judge, margin
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.results.record_facts import RecordFacts
+from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.scope import build_scope
 

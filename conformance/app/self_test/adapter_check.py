@@ -10,7 +10,7 @@ from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
+from pantocheck.conformance.results.case_facts_format import RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.derived_values import build_derived
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator

@@ -187,9 +187,15 @@ def test_mass_drop_record_is_checked(tmp_path: Path) -> None:
     write_drop_sidecar(build_drop_record(), tmp_path / "drop.toml")
     for path in (tmp_path / "drop.csv", tmp_path / "drop.toml"):
         assert "valid mass-drop record: 1 run in drop.csv" in check(path).stdout
-    edit_toml(tmp_path / "drop.toml", {"record.sampling_rate_hz": -1.0, "channel.0.column": 0})
+    shutil.copy(tmp_path / "drop.csv", tmp_path / "drop.txt")
+    edit_toml(tmp_path / "drop.toml", {"file": "drop.txt"})
+    assert "valid mass-drop record: 1 run in drop.txt" in check(tmp_path / "drop.toml").stdout
+    assert "key file: found 'drop.txt', but the record is 'drop.csv'" in check(tmp_path / "drop.csv").stderr
+    changes = {"record.sampling_rate_hz": -1.0, "channel.0.column": 0, "drop.mas_kg": 40.0, "file": None}
+    edit_toml(tmp_path / "drop.toml", changes)
     result = check(tmp_path / "drop.csv")
     assert result.exit_code == 2
+    assert "sidecar 'drop.toml', key drop.mas_kg: unknown key.\n  Did you mean mass_kg ?" in result.stderr
     assert "key record.sampling_rate_hz: -1 must be greater than 0" in result.stderr
     assert "key channel[1].column: 0 must be at least 1" in result.stderr
 

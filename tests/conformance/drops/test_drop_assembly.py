@@ -1,4 +1,4 @@
-"""Mass-drop records in SI units: units, directions, clipping, dead channels, keys of other tools."""
+"""Mass-drop records in SI units: units, directions, clipping, dead channels, sidecars."""
 
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,7 @@ import pytest
 
 from helpers.drop_records import RATE, assert_same_record
 from helpers.toml_edit import edit_toml
+from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
 from pantocheck.conformance.drops.drop_reading import read_drop_records
@@ -49,10 +50,34 @@ def test_dead_channel_is_refused(tmp_path: Path, record: DropRecord) -> None:
         read_drop_records(tmp_path / "r.csv")
 
 
-def test_unknown_keys_of_a_measuring_team_are_ignored(tmp_path: Path, record: DropRecord) -> None:
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"drop.position_mm": 2500.0}, r"key drop\.position_mm: unknown key\.\n.*did you mean position_m = 2\.5"),
+        ({"weather": {"wind_m_s": 2.0}}, "key weather: unknown key"),
+        ({"file": "other.csv"}, r"record 'other\.csv': cannot be read"),
+        ({"file": "../r.csv"}, r"key file: found the path '\.\./r\.csv'"),
+        ({"file": "copy.csv"}, r"key file: found 'copy\.csv', but the record is 'r\.csv'"),
+        ({"file": "r.csv", "sha256": 64 * "0"}, "the content does not agree with sha256"),
+        ({"sha256": 64 * "0"}, "key file: missing, although sha256 is given"),
+    ],
+)
+def test_wrong_keys_and_other_tables_are_refused(
+    tmp_path: Path, record: DropRecord, changes: dict[str, Any], message: str
+) -> None:
+    """An ignored key would hide a misspelt position, which changes the mode shapes."""
     write_drop_csv(record, tmp_path / "r.csv")
-    edit_toml(tmp_path / "r.toml", {"weather": {"wind_m_s": 2.0}})
-    assert_same_record(read_drop_records(tmp_path / "r.csv")[0], record, 1e-8)
+    (tmp_path / "copy.csv").write_bytes((tmp_path / "r.csv").read_bytes())
+    edit_toml(tmp_path / "r.toml", changes)
+    with pytest.raises(InputError, match=message):
+        read_drop_records(tmp_path / "r.csv")
+
+
+def test_sidecar_may_name_its_table(tmp_path: Path, record: DropRecord) -> None:
+    write_drop_csv(record, tmp_path / "r.csv")
+    edit_toml(tmp_path / "r.toml", {"file": "r.csv", "sha256": file_digest(tmp_path / "r.csv"), "test.synthetic": True})
+    for path in (tmp_path / "r.csv", tmp_path / "r.toml"):
+        assert_same_record(read_drop_records(path)[0], record, 1e-8)
 
 
 # Columns of a mass-drop record: file and sidecar agree in number, name and unit.

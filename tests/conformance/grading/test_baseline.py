@@ -23,7 +23,7 @@ from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.pages.certificate_page import build_summary
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.results.baseline_format import BaselineComparison
+from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runs.system_choice import choose_system

@@ -21,8 +21,7 @@ from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
-from pantocheck.conformance.results.baseline_format import BaselineComparison
-from pantocheck.conformance.results.record_facts import RecordFacts, RecordState
+from pantocheck.conformance.results.case_facts_format import BaselineComparison, RecordFacts, RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 from pantocheck.conformance.results.results_reading import read_results
 

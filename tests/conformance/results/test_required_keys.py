@@ -6,6 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from helpers.example_results import example
+from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.results_format import Results
 
 
@@ -13,5 +14,18 @@ from pantocheck.conformance.results.results_format import Results
 def test_case_without_a_key_of_its_verdict_is_refused(key: str) -> None:
     results: dict[str, Any] = Results.model_validate(example()).to_dict()
     del results["cases"][0][key]
+    with pytest.raises(ValidationError, match=key):
+        Results.model_validate(results)
+
+
+@pytest.mark.parametrize("key", ["simulated_s", "wall_s", "dt_s", "element_m"])
+def test_case_without_a_fact_of_its_run_is_refused(key: str) -> None:
+    """An unknown fact is null. An assessed record without a usable sample has 0 s; a simulation has not."""
+    results: dict[str, Any] = Results.model_validate(example()).to_dict()
+    results["cases"][0]["run"] |= {"simulated_s": 0.0, "wall_s": None}
+    assert Results.model_validate(results).cases[0].run.simulated_s == 0.0
+    with pytest.raises(ValidationError, match="greater than 0"):
+        RunTable.model_validate({"simulated_s": 0.0})
+    del results["cases"][0]["run"][key]
     with pytest.raises(ValidationError, match=key):
         Results.model_validate(results)

@@ -11,10 +11,10 @@ from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.records.record_reading import record_digest
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.runs.record_folder import find_other_case, find_record_mismatch, open_record_folder
 from pantocheck.conformance.runs.system import Delivered, Errored, Skipped

@@ -18,9 +18,9 @@ import pytest
 from pantocheck.conformance.app.commands.output_settings import REPLACEMENTS, accept_all_characters
 from pantocheck.conformance.core import processes
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.table_sidecar import find_table_name_problems
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.records.sidecar_tables import find_table_name_problems
 from pantocheck.conformance.runs import program
 
 ROOT = Path(__file__).parents[4]
