@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
@@ -26,6 +27,7 @@ from pantocheck.conformance.line.elements.element import (
     find_position_problems,
     list_key,
 )
+from pantocheck.conformance.line.elements.tension_section import TensionSections
 from pantocheck.model import Catenary, Kind, PointMass
 
 
@@ -60,6 +62,7 @@ class PointMasses(Element):
     """Masses on the wires."""
 
     derived: ClassVar[DerivedKeys] = {"point_masses": list_key(DerivedPointMass, "masses on the wires; absent: none")}
+    symbol: ClassVar[DrawnSymbol] = DrawnSymbol(name="mass", marker="v")
 
     point_mass: Annotated[
         tuple[PointMassTable, ...],
@@ -70,7 +73,8 @@ class PointMasses(Element):
 
     @cross_check
     def _check_point_masses(self) -> Problems:
-        yield from find_position_problems(self.line, "point_mass", [mass.x_m for mass in self.point_mass])
+        overlaps, positions = self.part(TensionSections).overlaps, [mass.x_m for mass in self.point_mass]
+        yield from find_position_problems(self.line, overlaps, "point_mass", positions)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the masses, each to every parallel wire."""
@@ -88,10 +92,10 @@ class PointMasses(Element):
             "point_masses": tuple(_derive(section.line.catenary, mass) for mass in section.line.catenary.point_masses)
         }
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Masses with their sizes."""
-        return (DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+        return (DrawnMark(cls.symbol, part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
 
 
 def _derive(catenary: Catenary, mass: PointMass) -> DerivedPointMass:

@@ -17,11 +17,10 @@ MOST_SPANS = 1000
 """Largest number of spans of a line."""
 
 
-def create_changes(name: str, table: type[SourcedTable], key: str) -> Any:
+def create_changes(table: type[SourcedTable], key: str) -> type[InputTable]:
     """Create the model of the values at one support that differ from a table of the line.
 
     Args:
-        name: Name of the model.
         table: Table of the line; its keys need their descriptions as part of their types.
         key: Key of the table in the line file.
 
@@ -34,6 +33,7 @@ def create_changes(name: str, table: type[SourcedTable], key: str) -> Any:
             limits = (item for item in field.metadata if not isinstance(item, Feature))
             value = getitem(cast(Any, Annotated), (field.annotation, *limits, Field(description=field.description)))
             fields[own] = (Annotated[value | None, find_declaration(field) or SINGLE_SUPPORTS], None)
+    name = f"{table.__name__.removesuffix('Table')}Changes"
     title = f"Values of the {key.replace('_', ' ')} at one support that differ from the table {key} of the line."
     return create_model(name, __base__=InputTable, __doc__=title, **fields)
 

@@ -25,6 +25,7 @@ from pantocheck.conformance.line.elements.element import (
     find_position_problems,
     list_key,
 )
+from pantocheck.conformance.line.elements.tension_section import TensionSections
 from pantocheck.model import Catenary, Kind, Spring
 
 WIRE_SPRINGS = Feature("wire_springs")
@@ -72,7 +73,8 @@ class WireSprings(Element):
 
     @cross_check
     def _check_wire_springs(self) -> Problems:
-        yield from find_position_problems(self.line, "wire_spring", [spring.x_m for spring in self.wire_spring])
+        overlaps, positions = self.part(TensionSections).overlaps, [spring.x_m for spring in self.wire_spring]
+        yield from find_position_problems(self.line, overlaps, "wire_spring", positions)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the springs between the parallel wires at each position."""

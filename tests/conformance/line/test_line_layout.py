@@ -40,11 +40,10 @@ def test_supports_have_their_own_values_and_those_of_the_line() -> None:
     assert [limit.contact_wire_stagger for limit in layout.limits] == [0.2, -0.2, -0.25, -0.2, 0.2]
     assert [limit.messenger_wire_stagger for limit in layout.limits] == [0.0, 0.0, 0.05, 0.0, 0.0]
     assert [limit.messenger_wire_height for limit in layout.limits] == [1.2, 1.2, 1.1, 1.2, 1.2]
-    first, second, third = layout.supports
-    assert (first.steady_arm, first.messenger_support) == (line.steady_arm, line.messenger_support)
-    assert (third.steady_arm, third.messenger_support) == (line.steady_arm, line.messenger_support)
-    assert second.steady_arm == line.steady_arm.model_copy(update=arm)
-    assert second.messenger_support == line.messenger_support.model_copy(update={"stiffness_N_m": 2e5})
+    arms = [line.steady_arm, line.steady_arm.model_copy(update=arm), line.steady_arm]
+    assert [line.steady_arm_at(support) for support in layout.supports] == arms
+    stiffness = [500e3, 2e5, 500e3]
+    assert [line.messenger_support_at(support).stiffness_N_m for support in layout.supports] == stiffness
 
 
 def test_gradients_add_to_the_heights_of_the_supports() -> None:
