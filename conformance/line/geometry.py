@@ -20,13 +20,14 @@ from pantocheck.conformance.core.sourced_table import (
 from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
 from pantocheck.conformance.line.elements.element import choose_by_key
 from pantocheck.conformance.line.elements.line_layout import (
+    MOST_SPANS,
+    SINGLE_SUPPORTS,
     LineLayout,
     SpanLayout,
     SpanLimit,
     SpanPositions,
     SupportLayout,
 )
-from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS
 from pantocheck.conformance.line.support_table import Encumbrance, Height, SupportTable
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from operator import getitem
+from typing import Annotated, Any, cast
 
 from pydantic import Field, create_model
 
-from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.features import Feature, find_declaration
 from pantocheck.conformance.core.key_paths import find_model
-from pantocheck.conformance.core.sourced_table import InputTable, SourcedTable
+from pantocheck.conformance.core.sourced_table import PROVENANCE, InputTable, SourcedTable
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
-from pantocheck.conformance.line.elements.line_layout import SpanLimit
-from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS, create_changes
+from pantocheck.conformance.line.elements.line_layout import MOST_SPANS, SINGLE_SUPPORTS, SpanLimit
 
 Encumbrance = Annotated[
     float,
@@ -68,7 +68,28 @@ def _list_changes() -> Iterator[tuple[str, type[InputTable]]]:
             table, _ = find_model(element.model_fields[key].annotation, set())
             if table is None or not issubclass(table, SourcedTable):
                 raise TypeError(f"{element.__name__}: {key} is not a table of the line file")
-            yield key, create_changes(table, key)
+            yield key, _create_changes(table, key)
+
+
+def _create_changes(table: type[SourcedTable], key: str) -> type[InputTable]:
+    """Create the model of the values at one support that differ from a table of the line.
+
+    Args:
+        table: Table of the line; its keys need their descriptions as part of their types.
+        key: Key of the table in the line file.
+
+    Returns:
+        Model with the keys of the table, all of them optional.
+    """
+    fields: dict[str, Any] = {}
+    for own, field in table.model_fields.items():
+        if own not in PROVENANCE:
+            limits = (item for item in field.metadata if not isinstance(item, Feature))
+            value = getitem(cast(Any, Annotated), (field.annotation, *limits, Field(description=field.description)))
+            fields[own] = (Annotated[value | None, find_declaration(field) or SINGLE_SUPPORTS], None)
+    name = f"{table.__name__.removesuffix('Table')}Changes"
+    title = f"Values of the {key.replace('_', ' ')} at one support that differ from the table {key} of the line."
+    return create_model(name, __base__=InputTable, __doc__=title, **fields)
 
 
 SUPPORT_CHANGES = dict(_list_changes())

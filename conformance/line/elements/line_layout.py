@@ -12,14 +12,29 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import accumulate
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.sourced_table import InputTable
 from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
-from pantocheck.conformance.line.elements.single_support import Table, overlay_changes
+
+Table = TypeVar("Table", bound=InputTable)
+
+SINGLE_SUPPORTS = Feature("single_supports")
+"""Feature of values of single supports, in place of those of the line."""
+
+MOST_SPANS = 1000
+"""Largest number of spans of a line."""
+
+
+def overlay_changes(table: Table, changes: InputTable | None) -> Table:
+    """Table of the line with the values that differ at one support, or in one tension section."""
+    if changes is None:
+        return table
+    return type(table).model_validate(table.model_dump() | changes.model_dump(exclude_none=True))
 
 
 class SpanPositions:

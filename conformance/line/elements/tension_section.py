@@ -20,7 +20,7 @@ from pydantic import Field
 from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, is_absent, validation_problem
 from pantocheck.conformance.line.elements.element import BuiltSection, Element
-from pantocheck.conformance.line.elements.single_support import MOST_SPANS, overlay_changes
+from pantocheck.conformance.line.elements.line_layout import MOST_SPANS, overlay_changes
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension, Wires
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.description.catenary import Termination
