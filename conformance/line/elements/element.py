@@ -56,6 +56,11 @@ class BuiltSection:
         """Wires of a kind."""
         return [wire for wire in self.line.catenary.wires if wire.kind is kind]
 
+    def number(self, name: str) -> int:
+        """Number of a wire among the parallel ones, from 1."""
+        kind = self.line.catenary.wire(name).kind
+        return 1 + [wire.name for wire in self.wires(kind)].index(name)
+
 
 @dataclass(frozen=True)
 class DrawnMark:

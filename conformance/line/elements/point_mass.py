@@ -88,23 +88,21 @@ class PointMasses(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Masses with the numbers of their wires."""
-        return {
-            "point_masses": tuple(_derive(section.line.catenary, mass) for mass in section.line.catenary.point_masses)
-        }
+        catenary = section.line.catenary
+        masses = (
+            DerivedPointMass(
+                position_m=round_position(mass.position),
+                wire="contact_wire" if kind is Kind.CONTACT_WIRE else "messenger_wire",
+                number=section.number(mass.wire),
+                mass_kg=round_number(mass.mass),
+                mass_coefficient_1_s=catenary.rayleigh(kind).mass_coefficient,
+            )
+            for mass in catenary.point_masses
+            for kind in [catenary.wire(mass.wire).kind]
+        )
+        return {"point_masses": tuple(masses)}
 
     @classmethod
     def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Masses with their sizes."""
         return (DrawnMark(cls.symbol, part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
-
-
-def _derive(catenary: Catenary, mass: PointMass) -> DerivedPointMass:
-    wire = catenary.wire(mass.wire)
-    parallel = [other.name for other in catenary.wires if other.kind is wire.kind]
-    return DerivedPointMass(
-        position_m=round_position(mass.position),
-        wire="contact_wire" if wire.kind is Kind.CONTACT_WIRE else "messenger_wire",
-        number=1 + parallel.index(wire.name),
-        mass_kg=round_number(mass.mass),
-        mass_coefficient_1_s=catenary.rayleigh(wire.kind).mass_coefficient,
-    )

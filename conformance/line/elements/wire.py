@@ -205,13 +205,13 @@ class Wires(Element):
                         "Give stretches that do not overlap.",
                     )
 
-    def table(self, kind: Kind) -> ContactWireTable | MessengerWireTable:
+    def wire_table(self, kind: Kind) -> ContactWireTable | MessengerWireTable:
         """Table of the contact or the messenger wires."""
         return self.contact_wire if kind is Kind.CONTACT_WIRE else self.messenger_wire
 
     def wire_names(self, kind: Kind) -> list[str]:
         """Names of the parallel contact or messenger wires of a section."""
-        name, number = kind.value.replace("_", " "), self.table(kind).number
+        name, number = kind.value.replace("_", " "), self.wire_table(kind).number
         return [name] if number == 1 else [f"{name} {i + 1}" for i in range(number)]
 
     def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
@@ -220,7 +220,7 @@ class Wires(Element):
         return replace(catenary, wires=(*catenary.wires, *wires))
 
     def _build_wires(self, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
-        table = self.table(kind)
+        table = self.wire_table(kind)
         places = [_wire_place(limit, kind) for limit in layout.limits]
         for i, name in enumerate(self.wire_names(kind)):
             offset = (table.spacing_m or 0.0) * (i - (table.number - 1) / 2)
@@ -267,7 +267,7 @@ class Wires(Element):
             wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
             height_m=round_numbers(line.state.deflection[row, stations, 0]),
             lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
-            stretches=_derive_stretches(section, first, self.table(kind)),
+            stretches=_derive_stretches(section, first, self.wire_table(kind)),
         )
 
     @classmethod

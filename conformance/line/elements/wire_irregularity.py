@@ -137,13 +137,14 @@ class Irregularities(Element):
     """Irregularity of the contact wires; parallel wires have the same."""
 
     @property
-    def _table(self) -> IrregularityTable | None:
+    def _irregularity_table(self) -> IrregularityTable | None:
         return cast(IrregularLine, self).contact_wire.irregularity
 
     @property
     def built_irregularity(self) -> Irregularity | None:
         """Irregularity of the contact wires; None: smooth wires."""
-        return None if self._table is None else _realise(self._table, self.line.geometry.length)
+        table = self._irregularity_table
+        return None if table is None else _realise(table, self.line.geometry.length)
 
     def irregularity_at(self, position: RealArray) -> RealArray:
         """Heights of the irregularity at positions (n,) [m]; zero on smooth wires [m]."""
@@ -154,8 +155,8 @@ class Irregularities(Element):
 
     @cross_check
     def _check_irregularity(self) -> Problems:
-        if isinstance(self._table, SpectralIrregularity):
-            yield from self._table.check_resolution(self.line.geometry.length)
+        if isinstance(self._irregularity_table, SpectralIrregularity):
+            yield from self._irregularity_table.check_resolution(self.line.geometry.length)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Give the irregularity to the contact wires."""

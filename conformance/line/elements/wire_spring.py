@@ -87,14 +87,11 @@ class WireSprings(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Springs with the numbers of their wires."""
-        contact, messenger = (
-            [wire.name for wire in section.wires(kind)] for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
-        )
         springs = (
             DerivedWireSpring(
                 position_m=round_position(spring.position),
-                contact_wire=1 + contact.index(spring.lower),
-                messenger_wire=1 + messenger.index(spring.upper),
+                contact_wire=section.number(spring.lower),
+                messenger_wire=section.number(spring.upper),
                 stiffness_N_m=spring.stiffness,
                 damping_N_s_m=spring.damping,
             )

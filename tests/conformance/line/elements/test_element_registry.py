@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import fields
 from inspect import get_annotations
@@ -121,6 +122,9 @@ def test_every_element_is_declared_completely() -> None:
     """Keys are tables with features; symbols, derived values and columns of single supports have all their parts."""
     gaps = [f"{element.__name__}: {gap}" for element in ELEMENTS for gap in find_gaps(element)]
     assert not gaps, "\n".join(gaps)
+    own = Counter(name for element in ELEMENTS for name in vars(element).keys() - vars(Element).keys())
+    clashes = {name for name, count in own.items() if count > 1 and not name.startswith("__")}
+    assert not clashes, "one of these would hide the other on every line"
     symbols = [element.symbol for element in ELEMENTS if element.symbol is not None]
     assert len({symbol.name for symbol in symbols}) == len({symbol.marker for symbol in symbols}) == len(symbols) >= 4
     derived = [key for element in ELEMENTS for key in element.derived]
