@@ -129,10 +129,20 @@ class DrawnDroppers(ResultsPart):
         return _check_lengths(self, self.x_m, self.lower_m, self.upper_m)
 
 
+class DrawnSymbol(ResultsPart):
+    """Symbol of the points of one kind."""
+
+    name: Annotated[str, Field(pattern="^[a-z][a-z -]{1,39}$")]
+    marker: Literal["^", "v", "<", ">", "o", "s", "D", "d", "p", "h", "P", "X", "*"]
+    """Marker of matplotlib."""
+    filled: bool = True
+
+
 class DrawnPoint(ResultsPart):
     """Part that is drawn as a point, with a text beside it."""
 
-    symbol: Literal["anchor", "messenger support", "steady arm", "mass"]
+    symbol: str
+    """Name of its symbol."""
     x_m: FiniteNumber
     y_m: FiniteNumber
     text: str = ""
@@ -155,6 +165,15 @@ class LineShape(ResultsPart):
     supports_m: Annotated[list[FiniteNumber], Field(min_length=2)]
     side: DrawnView
     plan: DrawnView | None
+    symbols: list[DrawnSymbol]
+    """Symbols of the points of both views."""
+
+    @model_validator(mode="after")
+    def _known_symbols(self) -> Self:
+        points = [point for view in (self.side, self.plan) if view is not None for point in view.points]
+        if unknown := {point.symbol for point in points} - {symbol.name for symbol in self.symbols}:
+            raise ValueError(f"points without a symbol: {', '.join(sorted(unknown))}")
+        return self
 
 
 class TextTable(ResultsPart):

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.core.texts import TEMPLATES
 
@@ -30,6 +31,17 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 PlotStyle = dict[str, Any]
 """Keyword arguments of a drawing function of matplotlib."""
+
+
+def marker_style(symbol: DrawnSymbol) -> PlotStyle:
+    """Style of the points of a symbol, without their size."""
+    return {
+        "marker": symbol.marker,
+        "linestyle": "",
+        "color": INK,
+        "markerfacecolor": INK if symbol.filled else "white",
+    }
+
 
 Arguments = ParamSpec("Arguments")
 Content = TypeVar("Content")

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.conformance.line.elements.line_layout import LineLayout
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.line.line_layout import LineLayout
 from pantocheck.model import Catenary, DiscretisedLine, discretise
 
 

@@ -53,13 +53,13 @@ def build_derived_line(file: LineFile, line: DiscretisedLine) -> DerivedLine:
         file: Content of the line file.
         line: Its finite elements.
     """
-    first, *further = (_derive_section(section) for section in file.divide_line(line))
+    first, *further = (_derive_section(part, section) for part, section in file.divide_line(line))
     return DerivedLine(**dict(first), gravity_m_s2=GRAVITY, further_sections=tuple(further))
 
 
-def _derive_section(section: BuiltSection) -> Any:
-    """Derived values of one tension section."""
+def _derive_section(part: LineFile, section: BuiltSection) -> Any:
+    """Derived values of one tension section, for the line file with its wires."""
     values: dict[str, Any] = {"span_limits_m": round_positions(section.limits)}
     for element in ELEMENTS:
-        values |= element.derive(section.file, section)
+        values |= element.derive(part, section)
     return DerivedSection(**values)

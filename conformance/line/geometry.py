@@ -1,13 +1,9 @@
 """Geometry of a line: spans, heights and stagger; the spans are equal, or listed one by one."""
 
-from abc import abstractmethod
-from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
-from functools import lru_cache
-from itertools import accumulate
 from typing import Annotated, Self
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.core.features import Feature, always
@@ -21,10 +17,18 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.line.elements.dropper import DropperSchedule
+from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
 from pantocheck.conformance.line.elements.element import choose_by_key
-from pantocheck.conformance.line.elements.single_support import MOST_SPANS, SINGLE_SUPPORTS
-from pantocheck.conformance.line.elements.support_table import Encumbrance, Height, SupportTable
+from pantocheck.conformance.line.elements.line_layout import (
+    MOST_SPANS,
+    SINGLE_SUPPORTS,
+    LineLayout,
+    SpanLayout,
+    SpanLimit,
+    SpanPositions,
+    SupportLayout,
+)
+from pantocheck.conformance.line.support_table import Encumbrance, Height, SupportTable
 
 SpanLength = Annotated[float, Field(ge=10, le=120)]
 Stagger = Annotated[
@@ -33,80 +37,6 @@ Stagger = Annotated[
     Feature("stagger"),
 ]
 ScheduleName = Annotated[str, Field(min_length=1, max_length=100)]
-
-
-class SpanPositions:
-    """Positions of spans, supports and sections along a line, from the lengths of its spans."""
-
-    @property
-    @abstractmethod
-    def span_lengths(self) -> tuple[float, ...]:
-        """Length of every span [m]."""
-
-    @abstractmethod
-    def shorten(self, spans: int) -> Self:
-        """Same geometry with the first spans only."""
-
-    @property
-    def own_supports(self) -> Mapping[int, SupportTable]:
-        """Supports and ends of the line with their own values, by number."""
-        return {}
-
-    @property
-    def level_height(self) -> float:
-        """Height of the contact wire at supports without their own height [m]."""
-        return 0.0
-
-    def rise(self, x: float) -> float:
-        """Rise of the contact wire by gradients between the start of the line and a position [m]."""
-        return 0.0
-
-    @property
-    def span_limits(self) -> tuple[float, ...]:
-        """Positions of both ends of the line and of the supports between them, in increasing order [m], from 0."""
-        return _sum_lengths(self.span_lengths)
-
-    @property
-    def supports(self) -> tuple[float, ...]:
-        """Positions of the supports between the ends of the line [m]."""
-        return self.span_limits[1:-1]
-
-    @property
-    def length(self) -> float:
-        """Length of the line from end to end [m]."""
-        return self.span_limits[-1]
-
-    @property
-    def longest_span(self) -> float:
-        """Length of the longest span [m]."""
-        return max(self.span_lengths)
-
-    @property
-    def shortest_span(self) -> float:
-        """Length of the shortest span [m]."""
-        return min(self.span_lengths)
-
-    @property
-    def middle_span(self) -> int:
-        """Number of the span in the middle of the line, from 1."""
-        return len(self.span_lengths) // 2 + 1
-
-    def span(self, number: int) -> tuple[float, float]:
-        """Start and end of a span, numbered from 1 [m]."""
-        return self.section(number, number)
-
-    def mid_span(self, number: int) -> float:
-        """Middle of a span, numbered from 1 [m]."""
-        return sum(self.span(number)) / 2
-
-    def section(self, first: int, last: int) -> tuple[float, float]:
-        """Start of the first span and end of the last span of a section, numbered from 1 [m]."""
-        return self.span_limits[first - 1], self.span_limits[last]
-
-    def spans_of_section(self, start: float, end: float) -> tuple[int, int]:
-        """Numbers of the first and the last span of which a section has a part, from 1; its ends are positions [m]."""
-        inner = self.span_limits[1:-1]
-        return bisect_right(inner, start) + 1, bisect_left(inner, end) + 1
 
 
 class EqualSpans(SpanPositions, SourcedTable):
@@ -124,6 +54,11 @@ class EqualSpans(SpanPositions, SourcedTable):
     def span_lengths(self) -> tuple[float, ...]:
         """Length of every span [m]."""
         return (self.span_m,) * self.spans
+
+    @property
+    def own_supports(self) -> Mapping[int, SupportTable]:
+        """Supports and ends of the line with their own values, by number."""
+        return {}
 
     def shorten(self, spans: int) -> Self:
         """Same geometry with the first spans only."""
@@ -279,9 +214,9 @@ class ListedSpans(SpanPositions, SourcedTable):
                 yield validation_problem(
                     f"{key}.number", f"support {number} is listed twice", "Join both tables of this support."
                 )
-            if number in (0, self.spans) and (support.steady_arm or support.messenger_support):
+            if number in (0, self.spans) and support.changes:
                 yield validation_problem(
-                    f"{key}.{'steady_arm' if support.steady_arm else 'messenger_support'}",
+                    f"{key}.{next(iter(support.changes))}",
                     f"{number} is an end of the line, where the wires are anchored",
                     "Leave it out: an end has a stagger, an encumbrance and a contact wire height only.",
                 )
@@ -304,7 +239,50 @@ GeometryTable = Annotated[
 ]
 
 
-@lru_cache(maxsize=64)
-def _sum_lengths(lengths: Sequence[float]) -> tuple[float, ...]:
-    """Exact sums of lengths, rounded once: n equal lengths give the product, as of equal spans."""
-    return tuple(map(float, accumulate(map(Fraction, lengths), initial=Fraction())))
+def build_layout(geometry: Geometry, schedules: Sequence[DropperSchedule]) -> LineLayout:
+    """Build the layout of a line.
+
+    Args:
+        geometry: Spans, heights and staggers.
+        schedules: Dropper schedule of every span.
+    """
+    own = geometry.own_supports
+    limits = tuple(_build_limit(geometry, number, x, own) for number, x in enumerate(geometry.span_limits))
+    supports = (
+        SupportLayout(limit, own[limit.number].changes if limit.number in own else {}) for limit in limits[1:-1]
+    )
+    spans = zip(limits[:-1], limits[1:], schedules, strict=True)
+    has_stagger = any(limit.contact_wire_stagger or limit.messenger_wire_stagger for limit in limits)
+    return LineLayout(limits, tuple(_build_span(*span) for span in spans), tuple(supports), has_stagger)
+
+
+def _build_limit(geometry: Geometry, number: int, position: float, own: Mapping[int, SupportTable]) -> SpanLimit:
+    """Support or end of the line.
+
+    Staggers without an own value alternate in sign. An end of the line without own heights has those of its next
+    support; gradients add to both.
+    """
+    next_support = min(max(number, 1), max(geometry.spans - 1, 1))
+    here, level = own.get(number, SupportTable(number=number)), own.get(next_support, SupportTable(number=number))
+    side = 1.0 if number % 2 == 0 else -1.0
+    height = _first(here.contact_wire_height_m, level.contact_wire_height_m, geometry.level_height)
+    height += geometry.rise(position)
+    return SpanLimit(
+        number=number,
+        position=position,
+        contact_wire_height=height,
+        encumbrance=_first(here.encumbrance_m, level.encumbrance_m, geometry.encumbrance_m),
+        contact_wire_stagger=_first(here.stagger_contact_wire_m, side * geometry.stagger_contact_wire_m),
+        messenger_wire_stagger=_first(here.stagger_messenger_m, side * geometry.stagger_messenger_m),
+    )
+
+
+def _first(*values: float | None) -> float:
+    """First given value."""
+    return next(value for value in values if value is not None)
+
+
+def _build_span(start: SpanLimit, end: SpanLimit, schedule: DropperSchedule) -> SpanLayout:
+    share = np.array(schedule.x_m) / (end.position - start.position)
+    chord = start.contact_wire_height + share * (end.contact_wire_height - start.contact_wire_height)
+    return SpanLayout(start, end, start.position + np.array(schedule.x_m), schedule.prescribed_heights(chord))

@@ -5,25 +5,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from pydantic import BaseModel
-
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.key_paths import find_model
 from pantocheck.conformance.core.spreadsheet import Spreadsheet
 from pantocheck.conformance.core.units import convert_key, find_unit, suggest_key
-from pantocheck.conformance.line.elements.dropper import DropperSchedule
-from pantocheck.conformance.line.elements.support_table import SupportTable
-
-INNER_TABLES: dict[str, type[BaseModel]] = {
-    key: model
-    for key, field in SupportTable.model_fields.items()
-    if (model := find_model(field.annotation, set())[0]) is not None
-}
-"""Tables inside the table of a support."""
+from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
+from pantocheck.conformance.line.support_table import LIMIT_VALUES, SUPPORT_CHANGES
 
 SUPPORT_KEYS: dict[str, tuple[str, ...]] = {
-    **{key: (key,) for key in SupportTable.model_fields if key != "number" and key not in INNER_TABLES},
-    **{f"{table}_{key}": (table, key) for table, model in INNER_TABLES.items() for key in model.model_fields},
+    **{key: (key,) for key in LIMIT_VALUES},
+    **{f"{table}_{key}": (table, key) for table, model in SUPPORT_CHANGES.items() for key in model.model_fields},
 }
 """Path inside the table of a support, by the name of a column: `steady_arm_length_m` is `steady_arm.length_m`."""
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pantocheck.conformance.core.figure_style import GREY, INK, PALE, render_pdf_pages, render_svg
+from pantocheck.conformance.core.figure_style import GREY, INK, PALE, marker_style, render_pdf_pages, render_svg
 from pantocheck.conformance.line.elements.element import DrawnMark
 from pantocheck.conformance.line.elements.tension_section import SectionPlace
 from pantocheck.conformance.line.geometry import Geometry
@@ -61,8 +61,6 @@ def divide_into_pages(rows: tuple[DrawingRow, ...], plan_view: bool) -> list[tup
 
 
 WIDTHS = {Kind.CONTACT_WIRE: 1.6, Kind.MESSENGER_WIRE: 1.0, Kind.STITCH_WIRE: 0.7}
-SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "sensor": "s", "mass": "v"}
-"""Marker of each part that is drawn as a point."""
 LABEL_OFFSET = 0.42
 """Distance of the names of the vertical axes from the axes [in]."""
 LABEL_LENGTH = 0.22
@@ -178,22 +176,15 @@ def _write_heading(figure: Figure, drawing: LineDrawing, height: float) -> None:
     figure.text(place, 1 - 0.2 / height, drawing.title, fontsize=9, va="center")
     text = f"side view{' and plan view' if len(views) > 1 else ''}; along the track [m]; {', '.join(scales)} enlarged"
     figure.text(place, 1 - 0.4 / height, text, fontsize=7, color=GREY, va="center")
-    shown = {"messenger support", "steady arm", "anchor", *(mark.symbol for mark in drawing.marks)}
+    marks = (*list_element_marks(drawing.line.catenary), *drawing.marks)
     handles = [
-        Line2D(
-            [], [], linestyle="", marker=marker, color=INK, markersize=4, label=name, markerfacecolor=_fill_colour(name)
-        )
-        for name, marker in SYMBOLS.items()
-        if name in shown
+        Line2D([], [], markersize=4, label=symbol.name, **marker_style(symbol))
+        for symbol in dict.fromkeys(mark.symbol for mark in marks if mark in drawing.marks or not mark.text)
     ]
     figure.legend(
         handles=handles, loc="upper right", bbox_to_anchor=(1 - RIGHT / SHEET[0], 1 - 0.05 / height),
         ncols=len(handles), borderaxespad=0.0,
     )  # fmt: skip
-
-
-def _fill_colour(name: str) -> str:
-    return "white" if name == "steady arm" else INK
 
 
 def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str, bottom: float) -> Axes:
@@ -217,10 +208,7 @@ def _add_view(figure: Figure, drawing: LineDrawing, row: DrawingRow, field: str,
         axes.plot([position] * 2, [lower, upper], color=GREY, linewidth=0.7)
     for mark, height in view.marks():
         if not mark.text:
-            axes.plot(
-                mark.position, height, SYMBOLS[mark.symbol], color=INK, markersize=3, clip_on=False,
-                markerfacecolor=_fill_colour(mark.symbol),
-            )  # fmt: skip
+            axes.plot(mark.position, height, markersize=3, clip_on=False, **marker_style(mark.symbol))
     return axes
 
 
@@ -269,7 +257,7 @@ def _draw_marks(axes: Axes, drawing: LineDrawing, row: DrawingRow) -> None:
     labels: list[tuple[DrawnMark, list[str]]] = []
     for mark in marks:
         height = view.deflection(mark.wire, mark.position)
-        axes.plot(mark.position, height, SYMBOLS[mark.symbol], color=INK, markersize=4, clip_on=False, zorder=5)
+        axes.plot(mark.position, height, markersize=4, clip_on=False, zorder=5, **marker_style(mark.symbol))
         last = labels[-1][0] if labels else None
         if last and last.wire == mark.wire and drawing.scale * (mark.position - last.position) < MARK_SPACE:
             labels[-1][1].append(mark.text)

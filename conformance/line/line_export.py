@@ -5,9 +5,15 @@ import io
 from collections.abc import Sequence
 from typing import Literal
 
-from pantocheck.conformance.line.line_columns import DROPPER_COLUMNS, SUPPORT_COLUMNS, SUPPORT_KEYS
+from pantocheck.conformance.line.line_columns import (
+    DROPPER_COLUMNS,
+    POSITION,
+    SPAN_LENGTH,
+    SUPPORT_COLUMNS,
+    SUPPORT_KEYS,
+)
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.line.line_layout import LineLayout, SpanLimit
+from pantocheck.conformance.line.support_table import LIMIT_VALUES, SUPPORT_CHANGES
 
 DecimalMark = Literal["point", "comma"]
 Cell = float | int | str | None
@@ -26,11 +32,15 @@ def export_supports(line: LineFile, mark: DecimalMark = "point") -> str:
     Returns:
         CSV text; a column without any value is left out. Numbers have all digits of the line file.
     """
-    layout = line.layout
-    rows = [
-        _list_support(limit, length, layout)
-        for limit, length in zip(layout.limits, (*line.geometry.span_lengths, None), strict=True)
-    ]
+    layout, rows = line.layout, list[dict[str, Cell]]()
+    for limit, length in zip(layout.limits, (*line.geometry.span_lengths, None), strict=True):
+        places: dict[str, Cell] = {"number": limit.number, POSITION: limit.position, SPAN_LENGTH: length}
+        rows.append(places | {key: value.read(limit) for key, value in LIMIT_VALUES.items()})
+    inner = {column: path for column, path in SUPPORT_KEYS.items() if len(path) == 2}
+    for support in layout.supports:
+        tables = {key: support.overlay(key, table) for key in SUPPORT_CHANGES if (table := getattr(line, key))}
+        values = {column: getattr(tables.get(table), key, None) for column, (table, key) in inner.items()}
+        rows[support.limit.number] |= values
     return _write_table(SUPPORT_COLUMNS, rows, mark)
 
 
@@ -38,28 +48,9 @@ def export_droppers(line: LineFile, mark: DecimalMark = "point") -> str:
     """Write the table of the droppers of every span; parameters and return value as in `export_supports`."""
     rows: list[dict[str, Cell]] = []
     for number, schedule in enumerate(line.dropper_schedules, 1):
-        level = {} if schedule.contact_wire_height_m is not None else {"presag_m": (0.0,) * len(schedule.x_m)}
-        lists = level | schedule.model_dump(exclude_none=True)
+        lists = schedule.list_values()
         rows += ({"span": number} | {key: values[i] for key, values in lists.items()} for i in range(len(schedule.x_m)))
     return _write_table(DROPPER_COLUMNS, rows, mark)
-
-
-def _list_support(limit: SpanLimit, length: float | None, layout: LineLayout) -> dict[str, Cell]:
-    """Values of a support or end of the line by column."""
-    row: dict[str, Cell] = {
-        "number": limit.number,
-        "x_m": limit.position,
-        "span_m": length,
-        "stagger_contact_wire_m": limit.contact_wire_stagger + 0.0,  # no negative zero
-        "stagger_messenger_m": limit.messenger_wire_stagger + 0.0,
-        "contact_wire_height_m": limit.contact_wire_height,
-        "encumbrance_m": limit.encumbrance,
-    }
-    support = next((support for support in layout.supports if support.limit.number == limit.number), None)
-    if support is not None:
-        inner = {column: path for column, path in SUPPORT_KEYS.items() if len(path) == 2}
-        row |= {column: getattr(getattr(support, table), key) for column, (table, key) in inner.items()}
-    return row
 
 
 def _write_table(columns: Sequence[str], rows: list[dict[str, Cell]], mark: DecimalMark) -> str:

@@ -5,10 +5,10 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.core.features import NO_FEATURE
-from pantocheck.conformance.core.sourced_table import InputTable
+from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
 from pantocheck.conformance.line.elements.element_registry import LineElements
-from pantocheck.conformance.line.geometry import GeometryTable
-from pantocheck.conformance.line.line_layout import LineLayout, build_layout
+from pantocheck.conformance.line.elements.line_layout import LineLayout
+from pantocheck.conformance.line.geometry import GeometryTable, build_layout
 
 
 class LineHead(InputTable):
@@ -28,4 +28,15 @@ class LineFile(LineElements, LineHead):
     @property
     def layout(self) -> LineLayout:
         """Spans and supports with all their values, in either form of the geometry."""
-        return build_layout(self.geometry, self.dropper_schedules, self.steady_arm, self.messenger_support)
+        return build_layout(self.geometry, self.dropper_schedules)
+
+    @cross_check
+    def _check_changed_tables(self) -> Problems:
+        for i, support in enumerate(self.geometry.own_supports.values(), 1):
+            for key in support.changes:
+                if getattr(self, key) is None:
+                    yield validation_problem(
+                        f"geometry.support[{i}].{key}",
+                        f"the line has no table {key}",
+                        f"Give [{key}] for the whole line; a support changes its values.",
+                    )

@@ -28,6 +28,7 @@ from pantocheck.conformance.line.line_columns import (
 )
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.support_rows import build_support_tables, locate_supports, read_span_lengths
+from pantocheck.conformance.line.support_table import LIMIT_VALUES
 
 REPLACED = frozenset({"span_m", "spans", "span_list", "schedule", "support", "gradient"}) | PROVENANCE
 """Keys of `geometry` in the base file that the tables replace."""
@@ -167,15 +168,6 @@ def _locate(key: str, places: dict[str, str]) -> str | None:
 
 
 # Short form of an imported line: named dropper schedules, and values of all supports in one place.
-ALTERNATING = {
-    "stagger_contact_wire_m": -1.0,
-    "stagger_messenger_m": -1.0,
-    "contact_wire_height_m": 1.0,
-    "encumbrance_m": 1.0,
-}
-"""Keys of all supports in the table `geometry`, and the factor from one support to the next."""
-
-
 def shorten_line(line: dict[str, Any], base: LineFile) -> dict[str, Any]:
     """Shorten a line without a change of its meaning.
 
@@ -208,8 +200,8 @@ def shorten_line(line: dict[str, Any], base: LineFile) -> dict[str, Any]:
 def _move_common_values(geometry: dict[str, Any]) -> dict[str, Any]:
     """Geometry with the heights that all supports share, and with staggers that alternate, as values of the line."""
     supports, moved = geometry["support"], {}
-    for key, factor in ALTERNATING.items():
-        first = supports[0].get(key)
+    for key, value in LIMIT_VALUES.items():
+        first, factor = supports[0].get(key), value.factor
         if first is not None and all(support.get(key) == first * factor ** support["number"] for support in supports):
             moved[key] = first
     short = [{key: value for key, value in support.items() if key not in moved} for support in supports]
@@ -222,7 +214,7 @@ def _drop_base_values(support: dict[str, Any], base: LineFile) -> dict[str, Any]
     for key, value in support.items():
         if not isinstance(value, dict):
             short[key] = value
-        elif own := {name: item for name, item in value.items() if getattr(getattr(base, key), name) != item}:
+        elif own := {name: item for name, item in value.items() if getattr(getattr(base, key), name, None) != item}:
             short[key] = own
     return short
 

@@ -2,13 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import get_args
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import DrawnCurve, DrawnDroppers, DrawnPoint, DrawnView, LineShape
-from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark, Symbol
+from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, DiscretisedLine, Wire
@@ -42,10 +41,10 @@ def find_deflection(line: DiscretisedLine, wire: str, field: str, position: Real
 
 
 def list_element_marks(catenary: Catenary) -> list[DrawnMark]:
-    """Points of all elements of a line, by their kinds in the order of `Symbol`."""
-    order = get_args(Symbol)
-    marks = [mark for element in ELEMENTS for mark in element.mark(catenary)]
-    return sorted(marks, key=lambda mark: order.index(mark.symbol))
+    """Points of all elements of a line, the element that was added last first; points with a text behind the others."""
+    return sorted(
+        (mark for element in ELEMENTS[::-1] for mark in element.mark(catenary)), key=lambda mark: mark.text != ""
+    )
 
 
 def list_connections(catenary: Catenary) -> list[DrawnConnection]:
@@ -113,6 +112,7 @@ def build_line_shape(file: LineFile, analysed_spans: tuple[int, int], line: Disc
         supports_m=[round(x, 2) for x in geometry.span_limits if side.contains(x)],
         side=_store_view(side, tolerance),
         plan=_store_view(LineView(line, "y", *limits), tolerance) if line.catenary.has_lateral_field else None,
+        symbols=list(dict.fromkeys(mark.symbol for mark, _ in side.marks())),
     )
 
 
@@ -132,7 +132,7 @@ def _store_view(view: LineView, tolerance: float) -> DrawnView:
             upper_m=[round(upper, 3) for _, _, upper in connections],
         ),
         points=[
-            DrawnPoint(symbol=mark.symbol, x_m=round(mark.position, 2), y_m=round(w, 3), text=mark.text)
+            DrawnPoint(symbol=mark.symbol.name, x_m=round(mark.position, 2), y_m=round(w, 3), text=mark.text)
             for mark, w in view.marks()
         ],
     )

@@ -1,6 +1,7 @@
 """Drawings of the inputs of a case: its line at rest, in side and plan view, and the schemes of its pantographs."""
 
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from pantocheck.conformance.core.figure_data import DrawnView, LineShape
-from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, PlotStyle, render_svg
+from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, LineShape
+from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, marker_style, render_svg
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
@@ -18,8 +19,6 @@ from pantocheck.conformance.results.case_facts_format import StoredValue, Stored
 from pantocheck.conformance.results.results_format import CaseResult
 
 WIRE_WIDTHS = {"contact_wire": 1.4, "messenger_wire": 0.9, "stitch_wire": 0.6}
-POINT_SYMBOLS = {"messenger support": "^", "steady arm": "o", "anchor": "D", "mass": "v"}
-"""Marker of each part that is drawn as a point."""
 
 MOST_LABELLED = 14
 """Largest number of supports whose positions have room below the axis; of more, every second one is written."""
@@ -33,7 +32,7 @@ def draw_line_shape(shape: LineShape, section: tuple[float, float] | None) -> Fi
     for (axes,), (name, view) in zip(panels, views, strict=True):
         if section is not None:
             axes.axvspan(*section, color=PALE, zorder=0)
-        _draw_view(axes, view)
+        _draw_view(axes, view, {symbol.name: symbol for symbol in shape.symbols})
         supports = shape.supports_m
         axes.set(xlim=(supports[0], supports[-1]), ylabel=name)
         axes.margins(y=0.12)
@@ -42,34 +41,24 @@ def draw_line_shape(shape: LineShape, section: tuple[float, float] | None) -> Fi
         axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
         axes.tick_params(labelbottom=axes is panels[-1][0])
     panels[-1][0].set_xlabel("position along the line [m]")
-    _add_symbols(panels[0][0], shape.side)
+    handles = [Line2D([], [], label=symbol.name, markersize=3, **marker_style(symbol)) for symbol in shape.symbols]
+    columns = len(handles) or 1
+    panels[0][0].legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=columns, borderaxespad=0.1)
     return figure
 
 
-def _draw_view(axes: Axes, view: DrawnView) -> None:
+def _draw_view(axes: Axes, view: DrawnView, symbols: Mapping[str, DrawnSymbol]) -> None:
     droppers = view.droppers
     axes.vlines(droppers.x_m, droppers.lower_m, droppers.upper_m, color=GREY, linewidth=0.6)
     for curve in view.curves:
         axes.plot(curve.x_m, curve.y_m, color=INK, linewidth=WIRE_WIDTHS[curve.kind])
     for point in view.points:
-        axes.plot(point.x_m, point.y_m, clip_on=False, **_style(point.symbol))
+        axes.plot(point.x_m, point.y_m, clip_on=False, markersize=3, **marker_style(symbols[point.symbol]))
         if point.text:
             place = (point.x_m, point.y_m)
             axes.annotate(
                 point.text, place, xytext=(0, -5), textcoords="offset points", fontsize=6, ha="center", va="top"
             )
-
-
-def _style(symbol: str) -> PlotStyle:
-    ground = "white" if symbol == "steady arm" else INK
-    return {"marker": POINT_SYMBOLS[symbol], "linestyle": "", "color": INK, "markersize": 3, "markerfacecolor": ground}
-
-
-def _add_symbols(axes: Axes, view: DrawnView) -> None:
-    """Names of the symbols that the drawing has."""
-    shown = {point.symbol for point in view.points}
-    handles = [Line2D([], [], label=symbol, **_style(symbol)) for symbol in POINT_SYMBOLS if symbol in shown]
-    axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=len(handles) or 1, borderaxespad=0.1)
 
 
 # Scheme of a pantograph that is a chain: base, masses, springs, dampers and contact, with their values.

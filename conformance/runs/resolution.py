@@ -167,5 +167,5 @@ def read_effects() -> tuple[Effect, ...]:
 
 def list_model_uncertainty(case: Case) -> tuple[str, ...]:
     """Sentences on the effects that the reference simulator leaves out in a passage of a case."""
-    along_track = "fixed" if case.line.layout.supports_fixed_along_track else "free"
+    along_track = "fixed" if case.line.supports_fixed_along_track else "free"
     return tuple(effect.sentence for effect in read_effects() if effect.along_track == along_track)

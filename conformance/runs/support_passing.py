@@ -26,8 +26,8 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.units import STANDARD_GRAVITY
+from pantocheck.conformance.line.elements.line_layout import SpanLayout
 from pantocheck.conformance.line.elements.tension_section import SectionRise
-from pantocheck.conformance.line.line_layout import SpanLayout, SupportLayout
 from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -194,33 +194,27 @@ def rest_heights(case: Case, supports: RealArray) -> RealArray:
         supports: Positions of supports, (n,) [m].
     """
     line, layout = case.line, case.line.layout
-    tolerance = line.has_varied_droppers
     sag = STANDARD_GRAVITY * line.contact_wire.mass_kg_m / (2 * line.contact_wire.tension_N)
     rises = [(place, line.section_rise(place)) for place in line.section_places]
-    heights = [
-        min(
-            np.nan if tolerance and not _is_level(support) else _rest_height(support, before, after, sag, rise)
-            for place, rise in rises
-            if place.first < support.limit.number < place.last
-        )
-        for support, before, after in zip(layout.supports, layout.spans[:-1], layout.spans[1:], strict=True)
-    ]
+    heights = []
+    for support, before, after in zip(layout.supports, layout.spans[:-1], layout.spans[1:], strict=True):
+        limit = support.limit
+        found = [rise for place, rise in rises if place.first < limit.number < place.last]
+        if line.steady_arm_at(support).static_share == "level":
+            heights.append(min(limit.contact_wire_height + rise(limit.position) for rise in found))
+        elif line.has_varied_droppers:
+            heights.append(np.nan)
+        else:
+            heights.append(min(_hanging_height(limit.position, before, after, sag, rise) for rise in found))
     places = np.array([support.limit.position for support in layout.supports])
     rest = np.array(heights)[np.abs(places[:, None] - supports).argmin(axis=0)]
     return np.asarray(rest + line.irregularity_at(supports))
 
 
-def _rest_height(support: SupportLayout, before: SpanLayout, after: SpanLayout, sag: float, rise: SectionRise) -> float:
-    """Height of the contact wire of a section at one support [m]; `sag` is q / 2T [1/m]."""
-    if _is_level(support):
-        return support.limit.contact_wire_height + rise(support.limit.position)
+def _hanging_height(position: float, before: SpanLayout, after: SpanLayout, sag: float, rise: SectionRise) -> float:
+    """Height of the contact wire of a section between the droppers beside a support [m]; `sag` is q / 2T [1/m]."""
     ends = np.array([before.dropper_position[-1], after.dropper_position[0]])
-    a, b = np.abs(ends - support.limit.position)
+    a, b = np.abs(ends - position)
     levels = (before.contact_wire_height[-1], after.contact_wire_height[0])
     heights = [level + rise(x) for level, x in zip(levels, ends, strict=True)]
-    return float(np.interp(support.limit.position, ends, heights) - sag * a * b)
-
-
-def _is_level(support: SupportLayout) -> bool:
-    """Whether the arm of a support carries its share, so that it holds the wire at its height."""
-    return support.steady_arm.static_share == "level"
+    return float(np.interp(position, ends, heights) - sag * a * b)

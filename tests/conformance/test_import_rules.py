@@ -22,9 +22,7 @@ def test_import_rules_hold(capfd: pytest.CaptureFixture[str]) -> None:
 
 
 def test_files_do_not_import_in_a_circle() -> None:
-    graph = grimp.build_graph(
-        "pantocheck.model", "pantocheck.conformance", cache_dir=None, exclude_type_checking_imports=True
-    )
+    graph = grimp.build_graph("pantocheck.model", "pantocheck.conformance", cache_dir=None)
     imports = {module: graph.find_modules_directly_imported_by(module) for module in graph.modules}
     assert len(imports) >= len(FILES)
     assert _find_circle(imports) == []

@@ -70,7 +70,7 @@ def test_tables_of_the_page_are_a_line(folder: Path) -> None:
     line = LineFile.model_validate(tree)
     assert line.geometry.span_lengths == (63.0, 63.0, 58.5, 63.0)
     assert [limit.contact_wire_stagger for limit in line.layout.limits] == [0.0, -0.2, 0.2, -0.2, 0.0]
-    assert line.layout.supports[1].steady_arm.acts == "push"
+    assert line.steady_arm_at(line.layout.supports[1]).acts == "push"
     assert [len(schedule.x_m) for schedule in line.dropper_schedules] == [3, 2, 2, 1]
     assert line.dropper_schedules[0].presag_m == (0.0, 0.02, 0.0)
 

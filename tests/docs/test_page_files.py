@@ -97,10 +97,11 @@ def test_spans_and_supports_of_a_line() -> None:
     spans, supports = (tomllib.loads(text)["geometry"] for text in list_blocks("line-files.md", "toml"))
     tables = list_spans(read_toml(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", "line"))
     tables["geometry"] |= spans | supports
-    layout = LineFile.model_validate(tables).layout
+    line = LineFile.model_validate(tables)
+    layout = line.layout
     assert [limit.position for limit in layout.limits] == [0.0, 63.0, 121.5, 175.5, 238.5]
     rise = [0.0, 0.003 * 3.0, 0.003 * 61.5, 0.003 * 115.5, 0.003 * 120.0]
     heights = [5.3, 5.3, 5.3, 5.32, 5.32]
     for limit, height, risen in zip(layout.limits, heights, rise, strict=True):
         assert abs(limit.contact_wire_height - height - risen) < 1e-12
-    assert layout.supports[2].steady_arm.acts == "push"
+    assert line.steady_arm_at(layout.supports[2]).acts == "push"

@@ -16,6 +16,7 @@ from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.library import recognise_named_file, select_cases
 from pantocheck.conformance.cases.study_tables import MassDrop
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import DocumentationPage
@@ -23,6 +24,7 @@ from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.dropper_rows import LengthMeaning
 from pantocheck.conformance.line.elements.element import KINDS, DrawnMark
+from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.line_drawing import LineDrawing, draw_line_pdf, draw_line_svg, list_labelled_marks
 from pantocheck.conformance.line.line_export import DecimalMark, export_droppers, export_supports
 from pantocheck.conformance.line.line_file import LineFile
@@ -100,6 +102,8 @@ def line_export_command(
 
 
 # `pantocheck line draw`: drawing of a whole line, in elevation and in plan.
+SENSOR = DrawnSymbol(name="sensor", marker="s")
+
 DRAWING_FORMATS: dict[str, Callable[[LineDrawing], bytes]] = {
     ".svg": lambda drawing: draw_line_svg(drawing).encode(),
     ".pdf": draw_line_pdf,
@@ -159,10 +163,10 @@ def list_marks(case: Case, catenary: Catenary) -> tuple[DrawnMark, ...]:
 
 def _list_drop_marks(drops: MassDrop, catenary: Catenary) -> Iterator[DrawnMark]:
     for number, sensor in enumerate(drops.sensor, 1):
-        yield DrawnMark("sensor", _find_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m, f"S{number}")
+        yield DrawnMark(SENSOR, _find_wire(catenary, sensor.wire, sensor.x_m), sensor.x_m, f"S{number}")
     for number, drop in enumerate(drops.drop, 1):
         text = f"drop {number}: {drop.mass_kg:g} kg"
-        yield DrawnMark("mass", _find_wire(catenary, drop.wire, drop.x_m), drop.x_m, text)
+        yield DrawnMark(PointMasses.symbol, _find_wire(catenary, drop.wire, drop.x_m), drop.x_m, text)
 
 
 def _find_wire(catenary: Catenary, name: str, position: float) -> str:

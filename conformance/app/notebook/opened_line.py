@@ -28,8 +28,6 @@ WIRE_STYLES = {
     Kind.MESSENGER_WIRE: {"color": "tab:blue", "linewidth": 1.2},
     Kind.STITCH_WIRE: {"color": "tab:orange", "linewidth": 1.2},
 }
-FIXED_POINT_MARKERS = {"anchor": "D", "messenger support": "^", "steady arm": "o"}
-"""Marker of each part that holds a wire."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +138,7 @@ class OpenedLine:
             if start <= mark.position <= end and not mark.text:
                 height = find_deflection(self.discretised, mark.wire, "z", mark.position)
                 style = {"color": "0.1", "markerfacecolor": "white", "markersize": 5}
-                axes.plot(mark.position, height, FIXED_POINT_MARKERS[mark.symbol], **style)
+                axes.plot(mark.position, height, mark.symbol.marker, **style)
         axes.set(xlabel="position along the track [m]", ylabel="height [m]", title=self.file.title)
         return axes
 

@@ -1,4 +1,4 @@
-"""TrackCurves of the track, and their cant."""
+"""Curves of the track, and their cant."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -87,7 +87,7 @@ class DerivedCurve(InputTable):
 
 
 class TrackCurves(Element):
-    """TrackCurves of the track, and their cant."""
+    """Curves of the track, and their cant."""
 
     derived: ClassVar[DerivedKeys] = {"curves": list_key(DerivedCurve, "curves of the track; absent: a straight track")}
 
@@ -100,7 +100,7 @@ class TrackCurves(Element):
 
     @property
     def curves(self) -> tuple[CurveTable, ...]:
-        """TrackCurves of the track."""
+        """Curves of the track."""
         return () if self.track is None else self.track.curve
 
     @cross_check
@@ -120,12 +120,6 @@ class TrackCurves(Element):
                     f"{curve.to_m:g} m is not on the line, which ends at {length:g} m",
                     f"Give a position up to {length:g} m.",
                 )
-        if self.curves and self.line.layout.supports_fixed_along_track:
-            yield validation_problem(
-                "messenger_support.along_track",
-                "'fixed' is not possible on a track with curves",
-                "Set along_track = 'free', or leave out the curves.",
-            )
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the curves."""
@@ -133,7 +127,7 @@ class TrackCurves(Element):
         return replace(catenary, curves=tuple(curves))
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
-        """TrackCurves with their curvatures."""
+        """Curves with their curvatures."""
         curves = (
             DerivedCurve(
                 from_m=round_position(curve.start),

@@ -5,7 +5,7 @@ The keys name the matrix of each Rayleigh coefficient, because publications use 
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from pydantic import Field
 
@@ -20,10 +20,8 @@ from pantocheck.conformance.core.sourced_table import (
 )
 from pantocheck.conformance.core.trust import LEVELS
 from pantocheck.conformance.line.elements.element import Element
+from pantocheck.conformance.line.elements.line_layout import LineLayout
 from pantocheck.model import Catenary, Kind, ModalBand, Rayleigh
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout
 
 
 class ComponentDamping(InputTable):
@@ -114,7 +112,7 @@ class LineDamping(Element):
 
     damping: Damping
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Give the damping to the section."""
         tables = {kind: getattr(self.damping, key) for kind, key in DAMPING_KEYS.items()}
         return replace(

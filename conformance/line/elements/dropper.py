@@ -2,22 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING, Annotated, ClassVar, TypeVar
+from itertools import accumulate
+from typing import Annotated, ClassVar, TypeVar
 
 import numpy as np
 from pydantic import Field
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
-    NumberList,
-    PositiveList,
     Problems,
     SourcedTable,
     cross_check,
-    is_absent,
     validation_problem,
 )
 from pantocheck.conformance.line.elements.derived_numbers import (
@@ -27,12 +24,12 @@ from pantocheck.conformance.line.elements.derived_numbers import (
     round_numbers,
     round_positions,
 )
+from pantocheck.conformance.line.elements.dropper_schedule import DropperSchedule
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnConnection, Element
+from pantocheck.conformance.line.elements.line_layout import LineLayout
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
+from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.model import Catenary, Dropper, Kind
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout
 
 Entry = TypeVar("Entry")
 
@@ -41,53 +38,6 @@ COARSE = 5.0
 
 DROPPERS = Feature("droppers")
 DROPPER_MASS = Feature("dropper_mass", bool)
-
-
-class DropperSchedule(InputTable):
-    """Droppers of one span."""
-
-    x_m: PositiveList
-    """Positions from the start of the span, increasing [m]."""
-    presag_m: Annotated[NumberList | None, Feature("presag", lambda heights: any(heights or ()))] = None
-    """Planned pre-sag of the contact wire at each dropper [m]; default: 0."""
-    contact_wire_height_m: Annotated[
-        NumberList | None, Field(exclude_if=is_absent), Feature("surveyed_wire_heights")
-    ] = None
-    """Height of the contact wire at each dropper above the datum of the line, as surveyed, in place of presag_m [m]."""
-    length_m: Annotated[PositiveList | None, NO_FEATURE] = None
-    """Published length of each dropper, for comparison [m]."""
-
-    @cross_check
-    def _check_schedule(self) -> Problems:
-        """Positions increase, every list has one value per position, and heights are given once."""
-        if self.presag_m is not None and self.contact_wire_height_m is not None:
-            yield validation_problem(
-                "contact_wire_height_m",
-                "the height of the contact wire is given twice",
-                "Give either presag_m or contact_wire_height_m.",
-            )
-        for i, (before, x) in enumerate(pairwise(self.x_m), 2):
-            if x <= before:
-                yield validation_problem(
-                    f"x_m[{i}]",
-                    f"{x:g} m is not greater than the preceding {before:g} m",
-                    "List the droppers in the direction of travel.",
-                )
-        for key in ("presag_m", "contact_wire_height_m", "length_m"):
-            values, droppers = getattr(self, key), len(self.x_m)
-            if values is not None and len(values) != droppers:
-                found = f"{len(values)} values for {droppers} droppers"
-                yield validation_problem(key, found, "Give one value per dropper of x_m.")
-
-    def prescribed_heights(self, chord: RealArray) -> RealArray:
-        """Heights of the contact wire at the droppers [m], above the datum.
-
-        Args:
-            chord: Heights of the straight line between the supports at the droppers, (n,) [m].
-        """
-        if self.contact_wire_height_m is not None:
-            return np.array(self.contact_wire_height_m)
-        return np.asarray(chord - np.array(self.presag_m or (0.0,) * len(self.x_m)))
 
 
 class DropperTable(DropperSchedule, SourcedTable):
@@ -190,7 +140,7 @@ class Droppers(Element):
                         f"Give positions between 0 and {span:g} m, from the start of the span.",
                     )
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add the droppers of every span; those within a stitch wire hang on it."""
         droppers = [
             dropper
@@ -202,13 +152,14 @@ class Droppers(Element):
 
     def _build_droppers(self, catenary: Catenary, position: float, height: float) -> Iterator[Dropper]:
         """Droppers of all parallel wires at a position with a height of the contact wire [m]."""
-        table, messengers = self.droppers, self.line.wire_names(Kind.MESSENGER_WIRE)
+        table, wires = self.droppers, self.part(Wires)
+        messengers = wires.wire_names(Kind.MESSENGER_WIRE)
         stitched = {
             clamp.upper: clamp.lower
             for clamp in catenary.clamps
             if (wire := catenary.wire(clamp.lower)).start < position < wire.end
         }
-        for i, contact in enumerate(self.line.wire_names(Kind.CONTACT_WIRE)):
+        for i, contact in enumerate(wires.wire_names(Kind.CONTACT_WIRE)):
             messenger = messengers[min(i, len(messengers) - 1)]
             yield Dropper(
                 position,

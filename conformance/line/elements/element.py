@@ -5,20 +5,20 @@ uses a line: each of them has a default for elements that do nothing there. `ele
 elements, and a new one needs no change outside this folder.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, cast
 
 from pydantic import BaseModel, Discriminator, Field
 from pydantic_core import PydanticCustomError
 
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, is_absent, validation_problem
+from pantocheck.conformance.line.elements.line_layout import LineLayout, SpanPositions
 from pantocheck.model import Catenary, Kind, Wire
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_file import LineFile
-    from pantocheck.conformance.line.line_layout import LineLayout
     from pantocheck.model import DiscretisedLine
 
 MOST_LINE_PARTS = 1000
@@ -27,19 +27,26 @@ MOST_LINE_PARTS = 1000
 DerivedKeys = dict[str, tuple[Any, Any]]
 """Type and default of every key of the derived values, by name; the default ... marks a required key."""
 
-Symbol = Literal["anchor", "messenger support", "steady arm", "sensor", "mass"]
-"""Kind of a point in a drawing."""
-
 KINDS: dict[str, Kind] = {"contact_wire": Kind.CONTACT_WIRE, "messenger_wire": Kind.MESSENGER_WIRE}
 """Kind of wire of each table."""
+
+
+class Line(Protocol):
+    """Line of an element, without its elements."""
+
+    @property
+    def geometry(self) -> SpanPositions:
+        """Positions of spans and supports."""
+
+    @property
+    def layout(self) -> LineLayout:
+        """Spans and supports with all their values."""
 
 
 @dataclass(frozen=True)
 class BuiltSection:
     """Tension section of a line with its part of the finite elements."""
 
-    file: "LineFile"
-    """Line file with the wires of the section."""
     limits: tuple[float, ...]
     """Positions of its anchors, and of the supports between them [m]."""
     line: "DiscretisedLine"
@@ -49,13 +56,18 @@ class BuiltSection:
         """Wires of a kind."""
         return [wire for wire in self.line.catenary.wires if wire.kind is kind]
 
+    def number(self, name: str) -> int:
+        """Number of a wire among the parallel ones, from 1."""
+        kind = self.line.catenary.wire(name).kind
+        return 1 + [wire.name for wire in self.wires(kind)].index(name)
+
 
 @dataclass(frozen=True)
 class DrawnMark:
     """Point on a wire in a drawing."""
 
-    symbol: Symbol
-    """Kind of the point."""
+    symbol: DrawnSymbol
+    """Symbol of the element."""
     wire: str
     """Name of the wire."""
     position: float
@@ -81,18 +93,31 @@ def list_key(table: type[InputTable], description: str) -> tuple[Any, Any]:
     return GenericAlias(tuple, (table, ...)), Field((), strict=False, exclude_if=is_absent, description=description)
 
 
+AnyElement = TypeVar("AnyElement", bound="Element")
+
+
 class Element(InputTable):
     """Keys of a line file that describe one element, and all that the element does."""
 
     derived: ClassVar[DerivedKeys] = {}
     """Keys of the derived values that programs receive, see `derive`."""
 
-    @property
-    def line(self) -> "LineFile":
-        """Line file of the element: every line file is an instance of all elements."""
-        return cast("LineFile", self)
+    support_tables: ClassVar[tuple[str, ...]] = ()
+    """Keys of tables that single supports may change: tables of `geometry.support`, and columns of the line tables."""
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    symbol: ClassVar[DrawnSymbol | None] = None
+    """Symbol of the points of `mark`."""
+
+    @property
+    def line(self) -> Line:
+        """Line of the element: every line file is an instance of all elements."""
+        return cast(Line, self)
+
+    def part(self, element: type[AnyElement]) -> AnyElement:
+        """Another element of the same line."""
+        return cast(AnyElement, self)
+
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add the parts of one tension section, before its wires rise over the overlaps.
 
         Args:
@@ -117,8 +142,8 @@ class Element(InputTable):
         """Quantities of the line at rest that exist because of the element, by name."""
         return {}
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Points of the element in a drawing."""
         return iter(())
 
@@ -144,11 +169,14 @@ def choose_by_key(key: str, with_key: type[BaseModel], without: type[BaseModel])
     return Discriminator(name_form)
 
 
-def find_position_problems(line: "LineFile", key: str, positions: list[float]) -> Problems:
+def find_position_problems(
+    line: Line, overlaps: Sequence[tuple[float, float]], key: str, positions: Sequence[float]
+) -> Problems:
     """Problems of the key `x_m` of parts on wires: outside of the line, or in an overlap.
 
     Args:
         line: Line of the parts.
+        overlaps: Start and end of every overlap of tension sections [m, m].
         key: Key of the list of parts.
         positions: Their positions along the track [m].
 
@@ -158,7 +186,7 @@ def find_position_problems(line: "LineFile", key: str, positions: list[float]) -
     for number, x in enumerate(positions, 1):
         if not 0.0 < x < line.geometry.length:
             yield beyond_end(f"{key}[{number}].x_m", x, line)
-        for start, end in line.overlaps:
+        for start, end in overlaps:
             if start < x < end:
                 yield validation_problem(
                     f"{key}[{number}].x_m",
@@ -167,7 +195,7 @@ def find_position_problems(line: "LineFile", key: str, positions: list[float]) -
                 )
 
 
-def beyond_end(key: str, position: float, line: "LineFile") -> PydanticCustomError:
+def beyond_end(key: str, position: float, line: Line) -> PydanticCustomError:
     """Problem of a position [m] that is not on the line."""
     length = line.geometry.length
     found = f"{position:g} m is not on the line, which ends at {length:g} m"

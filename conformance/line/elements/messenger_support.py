@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
@@ -16,13 +17,12 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
+from pantocheck.conformance.line.elements.curve import TrackCurves
 from pantocheck.conformance.line.elements.derived_numbers import BySupport, Numbers, join_equal, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
-from pantocheck.conformance.line.elements.single_support import create_changes
+from pantocheck.conformance.line.elements.line_layout import LineLayout, SupportLayout
+from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.model import Catenary, Kind, MessengerSupport
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout
 
 
 class MessengerSupportTable(SourcedTable):
@@ -36,9 +36,6 @@ class MessengerSupportTable(SourcedTable):
     """Motion of the messenger wire along the track at the supports; free: its tension is constant; fixed: its
     tension changes with its elongation between two supports.
     """
-
-
-MessengerSupportChanges: Any = create_changes("MessengerSupportChanges", MessengerSupportTable, "messenger_support")
 
 
 class DerivedMessengerSupports(InputTable):
@@ -66,32 +63,54 @@ class MessengerSupports(Element):
     """Supports of the messenger wires at all supports of the line."""
 
     derived: ClassVar[DerivedKeys] = {"messenger_supports": (DerivedMessengerSupports, ...)}
+    support_tables: ClassVar[tuple[str, ...]] = ("messenger_support",)
+    symbol: ClassVar[DrawnSymbol] = DrawnSymbol(name="messenger support", marker="^")
 
     messenger_support: MessengerSupportTable
 
+    def messenger_support_at(self, support: SupportLayout) -> MessengerSupportTable:
+        """Messenger support with the values of one support."""
+        return support.overlay("messenger_support", self.messenger_support)
+
+    @property
+    def supports_fixed_along_track(self) -> tuple[int, ...]:
+        """Numbers of the supports that hold the messenger wire along the track."""
+        supports = self.line.layout.supports
+        return tuple(s.limit.number for s in supports if self.messenger_support_at(s).along_track == "fixed")
+
+    @cross_check
+    def _check_curved_track(self) -> Problems:
+        if self.part(TrackCurves).curves and self.supports_fixed_along_track:
+            yield validation_problem(
+                "messenger_support.along_track",
+                "'fixed' is not possible on a track with curves",
+                "Set along_track = 'free', or leave out the curves.",
+            )
+
     @cross_check
     def _check_axial_stiffness(self) -> Problems:
-        holding = self.line.layout.supports_fixed_along_track
-        if holding and self.line.messenger_wire.axial_stiffness_EA_N is None:
+        holding = self.supports_fixed_along_track
+        if holding and self.part(Wires).messenger_wire.axial_stiffness_EA_N is None:
             yield validation_problem(
                 "messenger_wire.axial_stiffness_EA_N",
                 f"support {holding[0]} holds the messenger wire along the track, but its axial stiffness is not given",
                 "Give messenger_wire.axial_stiffness_EA_N, or set messenger_support.along_track = 'free'.",
             )
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add a support to every messenger wire at every support of the line."""
         supports = (
             MessengerSupport(
                 support.limit.position,
                 messenger,
                 support.limit.messenger_wire_height,
-                support.messenger_support.stiffness_N_m,
-                support.messenger_support.damping_N_s_m,
-                support.messenger_support.along_track,
+                table.stiffness_N_m,
+                table.damping_N_s_m,
+                table.along_track,
             )
             for support in layout.supports
-            for messenger in self.line.wire_names(Kind.MESSENGER_WIRE)
+            for table in [self.messenger_support_at(support)]
+            for messenger in self.part(Wires).wire_names(Kind.MESSENGER_WIRE)
         )
         return replace(catenary, messenger_supports=tuple(supports))
 
@@ -112,7 +131,7 @@ class MessengerSupports(Element):
         )
         return {"messenger_supports": derived}
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Supports."""
-        return (DrawnMark("messenger support", part.wire, part.position) for part in catenary.messenger_supports)
+        return (DrawnMark(cls.symbol, part.wire, part.position) for part in catenary.messenger_supports)

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
@@ -26,6 +27,7 @@ from pantocheck.conformance.line.elements.element import (
     find_position_problems,
     list_key,
 )
+from pantocheck.conformance.line.elements.tension_section import TensionSections
 from pantocheck.model import Catenary, Kind, PointMass
 
 
@@ -60,6 +62,7 @@ class PointMasses(Element):
     """Masses on the wires."""
 
     derived: ClassVar[DerivedKeys] = {"point_masses": list_key(DerivedPointMass, "masses on the wires; absent: none")}
+    symbol: ClassVar[DrawnSymbol] = DrawnSymbol(name="mass", marker="v")
 
     point_mass: Annotated[
         tuple[PointMassTable, ...],
@@ -70,7 +73,8 @@ class PointMasses(Element):
 
     @cross_check
     def _check_point_masses(self) -> Problems:
-        yield from find_position_problems(self.line, "point_mass", [mass.x_m for mass in self.point_mass])
+        overlaps, positions = self.part(TensionSections).overlaps, [mass.x_m for mass in self.point_mass]
+        yield from find_position_problems(self.line, overlaps, "point_mass", positions)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the masses, each to every parallel wire."""
@@ -84,23 +88,21 @@ class PointMasses(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Masses with the numbers of their wires."""
-        return {
-            "point_masses": tuple(_derive(section.line.catenary, mass) for mass in section.line.catenary.point_masses)
-        }
+        catenary = section.line.catenary
+        masses = (
+            DerivedPointMass(
+                position_m=round_position(mass.position),
+                wire="contact_wire" if kind is Kind.CONTACT_WIRE else "messenger_wire",
+                number=section.number(mass.wire),
+                mass_kg=round_number(mass.mass),
+                mass_coefficient_1_s=catenary.rayleigh(kind).mass_coefficient,
+            )
+            for mass in catenary.point_masses
+            for kind in [catenary.wire(mass.wire).kind]
+        )
+        return {"point_masses": tuple(masses)}
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Masses with their sizes."""
-        return (DrawnMark("mass", part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
-
-
-def _derive(catenary: Catenary, mass: PointMass) -> DerivedPointMass:
-    wire = catenary.wire(mass.wire)
-    parallel = [other.name for other in catenary.wires if other.kind is wire.kind]
-    return DerivedPointMass(
-        position_m=round_position(mass.position),
-        wire="contact_wire" if wire.kind is Kind.CONTACT_WIRE else "messenger_wire",
-        number=1 + parallel.index(wire.name),
-        mass_kg=round_number(mass.mass),
-        mass_coefficient_1_s=catenary.rayleigh(wire.kind).mass_coefficient,
-    )
+        return (DrawnMark(cls.symbol, part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from pantocheck.conformance.core.features import Feature
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
@@ -26,11 +27,9 @@ from pantocheck.conformance.line.elements.derived_numbers import (
     round_positions,
 )
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, DrawnMark, Element
-from pantocheck.conformance.line.elements.single_support import create_changes
+from pantocheck.conformance.line.elements.line_layout import LineLayout, SupportLayout
+from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.model import Catenary, Kind, SteadyArm
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout
 
 ARMS = Feature("steady_arms")
 ARM_MASS = Feature("steady_arm_mass")
@@ -67,9 +66,6 @@ class SteadyArmTable(SourcedTable):
             )
 
 
-SteadyArmChanges: Any = create_changes("SteadyArmChanges", SteadyArmTable, "steady_arm")
-
-
 class DerivedSteadyArms(InputTable):
     """Steady arms at rest.
 
@@ -99,19 +95,25 @@ class SteadyArms(Element):
     """Steady arms at all supports."""
 
     derived: ClassVar[DerivedKeys] = {"steady_arms": (DerivedSteadyArms, ...)}
+    support_tables: ClassVar[tuple[str, ...]] = ("steady_arm",)
+    symbol: ClassVar[DrawnSymbol] = DrawnSymbol(name="steady arm", marker="o", filled=False)
 
     steady_arm: SteadyArmTable
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def steady_arm_at(self, support: SupportLayout) -> SteadyArmTable:
+        """Steady arm with the values of one support."""
+        return support.overlay("steady_arm", self.steady_arm)
+
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add an arm to every contact wire at every support."""
         return replace(catenary, steady_arms=tuple(self._build_arms(layout)))
 
-    def _build_arms(self, layout: "LineLayout") -> Iterator[SteadyArm]:
+    def _build_arms(self, layout: LineLayout) -> Iterator[SteadyArm]:
         for support in layout.supports:
-            arm = support.steady_arm
+            arm = self.steady_arm_at(support)
             # A bar that rotates about its hinge acts at the claw with a third of its mass.
             mass = arm.mass_kg_m * (arm.length_m or 0.0) / 3 + arm.clamp_kg
-            for contact in self.line.wire_names(Kind.CONTACT_WIRE):
+            for contact in self.part(Wires).wire_names(Kind.CONTACT_WIRE):
                 yield SteadyArm(
                     support.limit.position,
                     contact,
@@ -146,7 +148,7 @@ class SteadyArms(Element):
         )
         return {"steady_arms": derived}
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Arms."""
-        return (DrawnMark("steady arm", arm.wire, arm.position) for arm in catenary.steady_arms)
+        return (DrawnMark(cls.symbol, arm.wire, arm.position) for arm in catenary.steady_arms)

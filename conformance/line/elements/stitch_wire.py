@@ -1,7 +1,7 @@
 """Stitch wires, which carry the droppers nearest to a support."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.sourced_table import (
@@ -14,12 +14,10 @@ from pantocheck.conformance.core.sourced_table import (
 )
 from pantocheck.conformance.line.elements.derived_numbers import MassCoefficient, Numbers, round_number, round_positions
 from pantocheck.conformance.line.elements.element import BuiltSection, DerivedKeys, Element
+from pantocheck.conformance.line.elements.line_layout import LineLayout
 from pantocheck.conformance.line.elements.steady_arm import ClampMass
 from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
 from pantocheck.model import Catenary, Clamp, Kind, TensionChange, Wire, wave_speed
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout
 
 STITCH_WIRE = Feature("stitch_wire")
 
@@ -70,7 +68,7 @@ class StitchWires(Element):
                 "Give a length below that of a span; neighbouring stitch wires must not overlap.",
             )
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add the wires and their clamps; messenger and stitch wire share the tension between the clamps."""
         table = self.stitch_wire
         if table is None:

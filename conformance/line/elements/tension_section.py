@@ -12,7 +12,7 @@ outgoing wires rise to their anchor, and the incoming ones descend from theirs.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -20,14 +20,13 @@ from pydantic import Field
 from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, is_absent, validation_problem
 from pantocheck.conformance.line.elements.element import BuiltSection, Element
-from pantocheck.conformance.line.elements.single_support import MOST_SPANS, overlay_changes
-from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension
+from pantocheck.conformance.line.elements.line_layout import MOST_SPANS, overlay_changes
+from pantocheck.conformance.line.elements.wire import BendingStiffness, MassPerLength, Tension, Wires
 from pantocheck.model import Catenary, Kind
 from pantocheck.model.description.catenary import Termination
 from pantocheck.model.description.sections import join_sections, place_section, select_parts
 
 if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_file import LineFile
     from pantocheck.model import DiscretisedLine
 
 SECTIONS = Feature("sections")
@@ -165,7 +164,7 @@ class TensionSections(Element):
     def section_places(self) -> tuple[SectionPlace, ...]:
         """Places of the tension sections; one from end to end if the file has none."""
         if self.section is None or self.overlap is None:
-            return (SectionPlace(1, 0, self.line.geometry.spans),)
+            return (SectionPlace(1, 0, len(self.line.geometry.span_lengths)),)
         return place_sections(self.section, self.overlap.spans)
 
     @property
@@ -180,23 +179,20 @@ class TensionSections(Element):
         overlap = 0 if self.overlap is None else self.overlap.spans
         return self.line.geometry.shorten(self.section_places[0].last - overlap).middle_span
 
-    def shorten(self, spans: int) -> "LineFile":
+    def shorten(self, spans: int) -> Self:
         """Same line with the first spans only, as one tension section."""
-        return self.line.model_copy(
-            update={"geometry": self.line.geometry.shorten(spans), "section": None, "overlap": None}
-        )
+        return self.model_copy(update={"geometry": self.line.geometry.shorten(spans), "section": None, "overlap": None})
 
-    def section_file(self, place: SectionPlace) -> "LineFile":
+    def section_file(self, place: SectionPlace) -> Self:
         """Same line with the wires of one section."""
-        line = self.line
         if self.section is None:
-            return line
-        own = self.section[place.number - 1]
-        wires = {
-            "contact_wire": overlay_changes(line.contact_wire, own.contact_wire),
-            "messenger_wire": overlay_changes(line.messenger_wire, own.messenger_wire),
+            return self
+        own, wires = self.section[place.number - 1], self.part(Wires)
+        changed = {
+            "contact_wire": overlay_changes(wires.contact_wire, own.contact_wire),
+            "messenger_wire": overlay_changes(wires.messenger_wire, own.messenger_wire),
         }
-        return line.model_copy(update=wires)
+        return self.model_copy(update=changed)
 
     def section_rise(self, place: SectionPlace) -> SectionRise:
         """Rise of the wires of a section; zero on a line without overlaps, and at the ends of the line."""
@@ -211,7 +207,7 @@ class TensionSections(Element):
         def rise(x: float) -> float:
             """Rise towards the anchor at the start plus that towards the anchor at the end; one of them is zero."""
             from_start = overlap.rise(x - start, behind) if place.first > 0 else 0.0
-            return from_start + (overlap.rise(end - x, ahead) if place.last < geometry.spans else 0.0)
+            return from_start + (overlap.rise(end - x, ahead) if place.last < len(geometry.span_lengths) else 0.0)
 
         return rise
 
@@ -230,7 +226,7 @@ class TensionSections(Element):
     @cross_check
     def _check_terminations(self) -> Problems:
         for number, section in enumerate(self.section or (), 1):
-            if section.holding_points > 1 and self.line.messenger_wire.axial_stiffness_EA_N is None:
+            if section.holding_points > 1 and self.part(Wires).messenger_wire.axial_stiffness_EA_N is None:
                 yield validation_problem(
                     "messenger_wire.axial_stiffness_EA_N",
                     f"section {number} holds the messenger wire along the track at {section.holding_points} points, "
@@ -241,7 +237,7 @@ class TensionSections(Element):
     @cross_check
     def _check_sections(self) -> Problems:
         if self.section is not None and self.overlap is not None:
-            yield from find_span_problems(self.section, self.overlap.spans, self.line.geometry.spans)
+            yield from find_span_problems(self.section, self.overlap.spans, len(self.line.geometry.span_lengths))
 
     def join_line(self, sections: Sequence[Catenary]) -> Catenary:
         """Join the sections of the line, each built in its place without a rise."""
@@ -256,16 +252,15 @@ class TensionSections(Element):
             ]
         )
 
-    def divide_line(self, built: "DiscretisedLine") -> list[BuiltSection]:
-        """Divide the finite elements of the line into its tension sections."""
+    def divide_line(self, built: "DiscretisedLine") -> list[tuple[Self, BuiltSection]]:
+        """Divide the finite elements of the line into its tension sections, each with the line that has its wires."""
         limits = self.line.geometry.span_limits
         if self.overlap is None:
-            return [BuiltSection(self.line, limits, built)]
+            return [(self, BuiltSection(limits, built))]
         return [
-            BuiltSection(
+            (
                 self.section_file(place),
-                limits[place.first : place.last + 1],
-                _select_parts(built, _name_section(place)),
+                BuiltSection(limits[place.first : place.last + 1], _select_parts(built, _name_section(place))),
             )
             for place in self.section_places
         ]

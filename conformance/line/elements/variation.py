@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, Tag
@@ -17,11 +17,11 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
+from pantocheck.conformance.line.elements.dropper import Droppers
 from pantocheck.conformance.line.elements.element import Element, choose_by_key
+from pantocheck.conformance.line.elements.tension_section import TensionSections
+from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.model import Catenary, Kind, Wire
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_file import LineFile
 
 VARIATION = Feature("variation")
 
@@ -119,16 +119,16 @@ class Variations(Element):
         return self.variation is not None and self.variation.droppers is not None
 
     @property
-    def without_variation(self) -> "LineFile":
+    def without_variation(self) -> Self:
         """Same line as it was built."""
-        return self.line.model_copy(update={"variation": None})
+        return self.model_copy(update={"variation": None})
 
     @cross_check
     def _check_length_changes(self) -> Problems:
         table = None if self.variation is None else self.variation.droppers
         if isinstance(table, ListedLengthChanges):
             found = [len(span) for span in table.length_change_m]
-            needed = [len(schedule.x_m) for schedule in self.line.dropper_schedules]
+            needed = [len(schedule.x_m) for schedule in self.part(Droppers).dropper_schedules]
             if found != needed:
                 yield validation_problem(
                     "variation.droppers.length_change_m",
@@ -154,14 +154,28 @@ class Variations(Element):
         from pantocheck.model.discretisation.dropper_lengths import compute_unloaded_lengths, hang_on_droppers
         from pantocheck.model.discretisation.wire_climate import excess_lengths
 
-        variation, line = self.variation, self.line
+        variation = self.variation
         if variation is None:
             return catenary
-        length = compute_unloaded_lengths(catenary, VARIATION_ELEMENT_M) + _length_changes(variation, catenary, line)
+        length = compute_unloaded_lengths(catenary, VARIATION_ELEMENT_M) + self._length_changes(variation, catenary)
         excess = excess_lengths(catenary, VARIATION_ELEMENT_M)
-        moved = _stagger_changes(variation, line)
+        moved = _stagger_changes(variation, self.line.geometry.supports)
         wires = tuple(_move_wire(_vary_tension(wire, variation, excess[wire.name]), moved) for wire in catenary.wires)
         return hang_on_droppers(replace(catenary, wires=wires), length, VARIATION_ELEMENT_M)
+
+    def _length_changes(self, variation: Variation, catenary: Catenary) -> RealArray:
+        """Change of the length of every dropper [m]."""
+        table = variation.droppers
+        if table is None:
+            return np.zeros(len(catenary.droppers))
+        if isinstance(table, RandomLengthChanges):
+            return _draw_changes(table.tolerance_m, table.seed, catenary.droppers)
+        # Section by section; the droppers of parallel wires at one place have the same change.
+        places = self.part(TensionSections).section_places
+        listed = [
+            change for place in places for span in table.length_change_m[place.first : place.last] for change in span
+        ]
+        return np.repeat(listed, self.part(Wires).contact_wire.number)
 
 
 def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wire:
@@ -177,9 +191,9 @@ def _vary_tension(wire: Wire, variation: Variation, excess_length: float) -> Wir
     return replace(wire, tension=tension * (1 + table.tension_change_share))
 
 
-def _stagger_changes(variation: Variation, line: "LineFile") -> dict[float, float]:
+def _stagger_changes(variation: Variation, supports: Sequence[float]) -> dict[float, float]:
     """Change of the stagger of the contact wire at every support by its position [m, m]."""
-    table, supports = variation.supports, line.geometry.supports
+    table = variation.supports
     changes = (
         np.zeros(len(supports)) if table is None else _draw_changes(table.stagger_tolerance_m, table.seed, supports)
     )
@@ -194,28 +208,7 @@ def _move_wire(wire: Wire, changes: Mapping[float, float]) -> Wire:
     return replace(wire, stagger=(first, *((x, y + changes[x]) for x, y in inner), last))
 
 
-def _length_changes(variation: Variation, catenary: Catenary, line: "LineFile") -> RealArray:
-    """Change of the length of every dropper [m]."""
-    table = variation.droppers
-    if table is None:
-        return np.zeros(len(catenary.droppers))
-    if isinstance(table, ListedLengthChanges):
-        return np.array(_list_changes(table.length_change_m, line))
-    return _draw_changes(table.tolerance_m, table.seed, catenary.droppers)
-
-
 def _draw_changes(tolerance: float, seed: int, parts: Sequence[object]) -> RealArray:
     """Change of every part, uniformly distributed within a tolerance, in the unit of the tolerance."""
     shares = np.random.PCG64(seed).random_raw(len(parts)) / 2.0**64
     return np.asarray(tolerance * (2 * shares - 1))
-
-
-def _list_changes(spans: Sequence[Sequence[float]], line: "LineFile") -> list[float]:
-    """Listed changes of all droppers, section by section; the droppers of parallel wires at one place have the same."""
-    return [
-        change
-        for place in line.section_places
-        for span in spans[place.first : place.last]
-        for change in span
-        for _ in range(line.contact_wire.number)
-    ]

@@ -3,11 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
+from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
     NonNegative,
@@ -18,6 +19,7 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
+from pantocheck.conformance.line.elements.curve import TrackCurves
 from pantocheck.conformance.line.elements.derived_numbers import (
     Numbers,
     round_number,
@@ -33,15 +35,13 @@ from pantocheck.conformance.line.elements.element import (
     Element,
     beyond_end,
 )
+from pantocheck.conformance.line.elements.line_layout import LineLayout, SpanLimit
 from pantocheck.conformance.line.elements.wire_irregularity import (
     DerivedIrregularWire,
     IrregularWire,
     derive_irregularity,
 )
 from pantocheck.model import Catenary, Kind, SectionChange, TensionChange, Wire, wave_speed
-
-if TYPE_CHECKING:
-    from pantocheck.conformance.line.line_layout import LineLayout, SpanLimit
 
 Tension = Annotated[float, Field(ge=500, le=200e3, description="axial tension of one wire [N]")]
 MassPerLength = Annotated[float, Field(ge=0.02, le=10, description="mass per length of one wire [kg/m]")]
@@ -175,6 +175,7 @@ class Wires(Element):
         "contact_wire": (DerivedContactWire, ...),
         "messenger_wire": (DerivedWire, ...),
     }
+    symbol: ClassVar[DrawnSymbol] = DrawnSymbol(name="anchor", marker="D")
 
     contact_wire: ContactWireTable
     messenger_wire: MessengerWireTable
@@ -204,22 +205,22 @@ class Wires(Element):
                         "Give stretches that do not overlap.",
                     )
 
+    def wire_table(self, kind: Kind) -> ContactWireTable | MessengerWireTable:
+        """Table of the contact or the messenger wires."""
+        return self.contact_wire if kind is Kind.CONTACT_WIRE else self.messenger_wire
+
     def wire_names(self, kind: Kind) -> list[str]:
         """Names of the parallel contact or messenger wires of a section."""
-        name, table = (
-            ("contact wire", self.contact_wire)
-            if kind is Kind.CONTACT_WIRE
-            else ("messenger wire", self.messenger_wire)
-        )
-        return [name] if table.number == 1 else [f"{name} {i + 1}" for i in range(table.number)]
+        name, number = kind.value.replace("_", " "), self.wire_table(kind).number
+        return [name] if number == 1 else [f"{name} {i + 1}" for i in range(number)]
 
-    def add_to_section(self, catenary: Catenary, layout: "LineLayout") -> Catenary:
+    def add_to_section(self, catenary: Catenary, layout: LineLayout) -> Catenary:
         """Add uniform wires from anchor to anchor."""
         wires = (*self._build_wires(layout, Kind.CONTACT_WIRE), *self._build_wires(layout, Kind.MESSENGER_WIRE))
         return replace(catenary, wires=(*catenary.wires, *wires))
 
-    def _build_wires(self, layout: "LineLayout", kind: Kind) -> Iterator[Wire]:
-        table: WireTable = self.contact_wire if kind is Kind.CONTACT_WIRE else self.messenger_wire
+    def _build_wires(self, layout: LineLayout, kind: Kind) -> Iterator[Wire]:
+        table = self.wire_table(kind)
         places = [_wire_place(limit, kind) for limit in layout.limits]
         for i, name in enumerate(self.wire_names(kind)):
             offset = (table.spacing_m or 0.0) * (i - (table.number - 1) / 2)
@@ -232,7 +233,7 @@ class Wires(Element):
                 table.tension_N,
                 table.mass_kg_m,
                 table.bending_stiffness_N_m2,
-                stagger=plan if layout.has_stagger or self.line.curves else None,
+                stagger=plan if layout.has_stagger or self.part(TrackCurves).curves else None,
                 axial_stiffness=table.axial_stiffness_EA_N if isinstance(table, MessengerWireTable) else None,
                 end_heights=(places[0][1], places[-1][1]),
             )
@@ -247,22 +248,37 @@ class Wires(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Heights, staggers and stretches of the first wire of each kind."""
-        contact, messenger = (_derive_wire(section, kind) for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE))
+        contact, messenger = (self._derive_wire(section, kind) for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE))
         irregularity = derive_irregularity(section.wires(Kind.CONTACT_WIRE)[0])
         return {
             "contact_wire": DerivedContactWire(**dict(contact), irregularity=irregularity),
             "messenger_wire": messenger,
         }
 
-    @staticmethod
-    def mark(catenary: Catenary) -> Iterator[DrawnMark]:
+    def _derive_wire(self, section: BuiltSection, kind: Kind) -> DerivedWire:
+        """Derived values of a contact or messenger wire."""
+        line, wires = section.line, section.wires(kind)
+        first, row = wires[0], line.mesh.row_of[wires[0].name, "z"]
+        stations = [line.mesh.station(x) for x in section.limits]
+        staggers = [wire.stagger for wire in wires if wire.stagger is not None]
+        return DerivedWire(
+            start_m=round_position(first.start),
+            end_m=round_position(first.end),
+            wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
+            height_m=round_numbers(line.state.deflection[row, stations, 0]),
+            lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
+            stretches=_derive_stretches(section, first, self.wire_table(kind)),
+        )
+
+    @classmethod
+    def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Anchors at both ends of the wires."""
         for wire in catenary.wires:
             if wire.kind is not Kind.STITCH_WIRE:
-                yield from (DrawnMark("anchor", wire.name, end) for end in (wire.start, wire.end))
+                yield from (DrawnMark(cls.symbol, wire.name, end) for end in (wire.start, wire.end))
 
 
-def _wire_place(limit: "SpanLimit", kind: Kind) -> tuple[float, float]:
+def _wire_place(limit: SpanLimit, kind: Kind) -> tuple[float, float]:
     """Lateral position and height of a contact or messenger wire at a support or end of the line [m, m]."""
     if kind is Kind.CONTACT_WIRE:
         return limit.contact_wire_stagger, limit.contact_wire_height
@@ -299,26 +315,11 @@ def _mass_and_stiffness(wire: Wire, change: WireChange) -> tuple[float, float]:
     )
 
 
-def _derive_wire(section: BuiltSection, kind: Kind) -> DerivedWire:
-    """Derived values of a contact or messenger wire."""
-    line, wires = section.line, section.wires(kind)
-    first, row = wires[0], line.mesh.row_of[wires[0].name, "z"]
-    stations = [line.mesh.station(x) for x in section.limits]
-    staggers = [wire.stagger for wire in wires if wire.stagger is not None]
-    return DerivedWire(
-        start_m=round_position(first.start),
-        end_m=round_position(first.end),
-        wave_speed_m_s=round_number(wave_speed(first.tension, first.mass_per_length)),
-        height_m=round_numbers(line.state.deflection[row, stations, 0]),
-        lateral_position_m=tuple(round_numbers(y for _, y in stagger) for stagger in staggers) or None,
-        stretches=_derive_stretches(section, first),
-    )
-
-
-def _derive_stretches(section: BuiltSection, wire: Wire) -> tuple[DerivedStretch, ...]:
-    """Properties of a contact or messenger wire from end to end, if they are not those of the tables of the line."""
-    file, line = section.file, section.line
-    table = file.contact_wire if wire.kind is Kind.CONTACT_WIRE else file.messenger_wire
+def _derive_stretches(
+    section: BuiltSection, wire: Wire, table: ContactWireTable | MessengerWireTable
+) -> tuple[DerivedStretch, ...]:
+    """Properties of a contact or messenger wire from end to end, if they are not those of its table."""
+    line = section.line
     if not table.change and wire.tension == table.tension_N:
         return ()
     row, limits, beams = line.mesh.row_of[wire.name, "z"], line.mesh.position, line.beams

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Protocol, cast
 
 import numpy as np
 from pydantic import Field, Tag
@@ -127,13 +127,23 @@ class DerivedIrregularWire(InputTable):
     """absent: a smooth wire."""
 
 
+class IrregularLine(Protocol):
+    """Line with the table of its contact wires."""
+
+    contact_wire: IrregularWire
+
+
 class Irregularities(Element):
     """Irregularity of the contact wires; parallel wires have the same."""
 
     @property
+    def _irregularity_table(self) -> IrregularityTable | None:
+        return cast(IrregularLine, self).contact_wire.irregularity
+
+    @property
     def built_irregularity(self) -> Irregularity | None:
         """Irregularity of the contact wires; None: smooth wires."""
-        table = self.line.contact_wire.irregularity
+        table = self._irregularity_table
         return None if table is None else _realise(table, self.line.geometry.length)
 
     def irregularity_at(self, position: RealArray) -> RealArray:
@@ -145,9 +155,8 @@ class Irregularities(Element):
 
     @cross_check
     def _check_irregularity(self) -> Problems:
-        table = self.line.contact_wire.irregularity
-        if isinstance(table, SpectralIrregularity):
-            yield from table.check_resolution(self.line.geometry.length)
+        if isinstance(self._irregularity_table, SpectralIrregularity):
+            yield from self._irregularity_table.check_resolution(self.line.geometry.length)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Give the irregularity to the contact wires."""

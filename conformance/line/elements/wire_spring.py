@@ -25,6 +25,7 @@ from pantocheck.conformance.line.elements.element import (
     find_position_problems,
     list_key,
 )
+from pantocheck.conformance.line.elements.tension_section import TensionSections
 from pantocheck.model import Catenary, Kind, Spring
 
 WIRE_SPRINGS = Feature("wire_springs")
@@ -72,7 +73,8 @@ class WireSprings(Element):
 
     @cross_check
     def _check_wire_springs(self) -> Problems:
-        yield from find_position_problems(self.line, "wire_spring", [spring.x_m for spring in self.wire_spring])
+        overlaps, positions = self.part(TensionSections).overlaps, [spring.x_m for spring in self.wire_spring]
+        yield from find_position_problems(self.line, overlaps, "wire_spring", positions)
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the springs between the parallel wires at each position."""
@@ -85,14 +87,11 @@ class WireSprings(Element):
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Springs with the numbers of their wires."""
-        contact, messenger = (
-            [wire.name for wire in section.wires(kind)] for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
-        )
         springs = (
             DerivedWireSpring(
                 position_m=round_position(spring.position),
-                contact_wire=1 + contact.index(spring.lower),
-                messenger_wire=1 + messenger.index(spring.upper),
+                contact_wire=section.number(spring.lower),
+                messenger_wire=section.number(spring.upper),
                 stiffness_N_m=spring.stiffness,
                 damping_N_s_m=spring.damping,
             )

@@ -12,6 +12,7 @@ from helpers.section_lines import section_line
 from pantocheck.conformance.app.commands.line_file_command import list_marks
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.geometry import Geometry, ListedSpans
 from pantocheck.conformance.line.line_drawing import (
     LABEL_SPACE,
@@ -184,7 +185,7 @@ def test_masses_and_sensors_stand_on_their_wires_with_their_texts() -> None:
     insulator = PointMass(100.0, catenary.contact_wires[0].name, 12.0)
     line = discretise(replace(catenary, point_masses=(insulator,)), 2.0)
     marks = list_marks(case, line.catenary)
-    assert marks[0] == DrawnMark("mass", insulator.wire, 100.0, "12 kg")
+    assert marks[0] == DrawnMark(PointMasses.symbol, insulator.wire, 100.0, "12 kg")
     (side,) = paint(line, case.line.geometry, marks).axes
     drops = case.file.mass_drop
     assert drops is not None

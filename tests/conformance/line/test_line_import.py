@@ -97,7 +97,8 @@ def test_empty_cells_take_the_values_of_the_base(base: Path) -> None:
     line = LineFile.model_validate(import_line(base, write(base.parent, "s.csv", text), None))
     # An end of the line without its own value has that of its next support.
     assert [limit.encumbrance for limit in line.layout.limits] == [1.1, 1.1, 1.2, 1.2]
-    assert [(s.steady_arm.length_m, s.steady_arm.acts) for s in line.layout.supports] == [(0.9, "push"), (1.2, "pull")]
+    arms = map(line.steady_arm_at, line.layout.supports)
+    assert [(arm.length_m, arm.acts) for arm in arms] == [(0.9, "push"), (1.2, "pull")]
 
 
 def test_every_problem_of_all_files_is_named_with_row_and_column(tables: tuple[Path, Path]) -> None:

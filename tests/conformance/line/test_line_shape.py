@@ -65,6 +65,14 @@ def test_lists_of_different_length_are_refused() -> None:
         DrawnCurve(kind="contact_wire", x_m=[0, 1], y_m=[0])
 
 
+def test_points_without_a_symbol_are_refused(shape_250: LineShape) -> None:
+    """The pages draw the symbols that the results name; an element has its own."""
+    stored = shape_250.model_dump()
+    assert [symbol["name"] for symbol in stored["symbols"]] == ["messenger support", "steady arm"]
+    with pytest.raises(ValidationError, match="points without a symbol: steady arm"):
+        LineShape.model_validate(stored | {"symbols": stored["symbols"][:1]})
+
+
 def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
     def drawn_case(name: str, shape: LineShape | None, section: tuple[float, float] | None) -> CaseResult:
         return CaseResult.model_construct(id=name, line_shape=shape, run=RunFacts.model_construct(evaluated_m=section))

@@ -67,10 +67,12 @@ def write_listed_supports(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize("base", LINES, ids=lambda path: path.parent.name)
-@pytest.mark.parametrize("mark", ["point", "comma"])
-def test_library_lines_keep_their_catenary(tmp_path: Path, base: Path, mark: str) -> None:
-    line, _ = export_and_import(tmp_path, base, mark)  # type: ignore[arg-type]
-    assert build_catenary(line) == build_catenary(read_model(base, LineFile, "line"))
+def test_library_lines_keep_their_catenary(tmp_path: Path, base: Path) -> None:
+    """With decimal points and with decimal commas."""
+    original = build_catenary(read_model(base, LineFile, "line"))
+    imported = [export_and_import(tmp_path, base, mark)[0] for mark in ("point", "comma")]
+    assert imported[0] == imported[1]
+    assert build_catenary(imported[0]) == original
 
 
 def write_line_of_sections(folder: Path) -> Path:

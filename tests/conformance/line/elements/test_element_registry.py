@@ -1,35 +1,36 @@
 """An element of a line is known to its own file and to the registry only, as far as others need not read it."""
 
 import ast
+import json
+import os
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import fields
+from inspect import get_annotations
 from pathlib import Path
-from typing import Any, ClassVar, get_args
+from typing import Any, get_args
 
-import pytest
 from pydantic import BaseModel
 
-from pantocheck.conformance.app.self_test.adapter_check import build_short_case
+from helpers.listed_spans import list_spans
+from helpers.toml_edit import change_keys, write_toml
 from pantocheck.conformance.core.features import find_declaration
-from pantocheck.conformance.line import catenary_model, elements
-from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.core.key_paths import find_model
+from pantocheck.conformance.core.sourced_table import PROVENANCE
+from pantocheck.conformance.core.toml_file import read_toml
+from pantocheck.conformance.line import elements
 from pantocheck.conformance.line.elements.element import Element
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS, LineElements
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_columns import SUPPORT_COLUMNS
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, Kind
 
 PRODUCT = Path(elements.__path__[0]).parents[1]
 """Folder `conformance`."""
-
-READERS = {
-    # Every support has an arm and a messenger support: its layout holds both, and tables import and export both.
-    "steady_arm": {"geometry", "line_layout", "line_file", "support_passing", "support_table"},
-    "messenger_support": {"geometry", "line_layout", "line_file", "support_table", "curve"},
-}
-"""Files that read an element beside its own, by key."""
 
 
 def list_code_words(path: Path) -> set[str]:
@@ -48,31 +49,38 @@ def list_code_words(path: Path) -> set[str]:
     return words
 
 
-def list_declared_features(annotation: Any) -> Iterator[str]:
-    """Features of the keys of a table and of the tables inside."""
+def name_file(model: type[object]) -> str:
+    """Name of the file of a class."""
+    return model.__module__.split(".")[-1]
+
+
+def list_declared_features(annotation: Any) -> Iterator[tuple[str, str]]:
+    """Features of the keys of a table and of the tables inside, with the names of their files."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        for field in annotation.model_fields.values():
+        for key, field in annotation.model_fields.items():
             if (feature := find_declaration(field)) is not None:
-                yield feature.name
+                home = next(model for model in annotation.__mro__ if key in get_annotations(model))
+                yield feature.name, name_file(home)
             yield from list_declared_features(field.annotation)
     for part in get_args(annotation):
         yield from list_declared_features(part)
 
 
-def list_own_words(element: type[Element]) -> set[str]:
-    """Compound names of an element: keys, derived keys and features; those that the model has as well are left out."""
-    keys = {key for key in element.__annotations__ if key in element.model_fields}
-    features = {name for key in keys for name in list_declared_features(element.model_fields[key].annotation)}
+def list_own_words(element: type[Element]) -> Iterator[tuple[str, str]]:
+    """Compound names of an element with their files: keys, derived keys and features that the model does not have."""
+    keys, file = [key for key in element.__annotations__ if key in element.model_fields], name_file(element)
+    features = [item for key in keys for item in list_declared_features(element.model_fields[key].annotation)]
     of_model = {kind.value for kind in Kind} | {field.name for field in fields(Catenary)}
-    return {name for name in {*keys, *element.derived, *features} if "_" in name} - of_model
+    named = [*((key, file) for key in (*keys, *element.derived)), *features, *((name, file) for name, _ in features)]
+    return ((name, place) for name, place in named if "_" in name and name not in of_model)
 
 
 def test_names_of_an_element_stand_in_no_other_file() -> None:
     """Two elements may share a feature."""
     owners: dict[str, set[str]] = {}
     for element in ELEMENTS:
-        for word in list_own_words(element):
-            owners.setdefault(word, {"element_registry", *READERS.get(word, ())}).add(element.__module__.split(".")[-1])
+        for word, file in list_own_words(element):
+            owners.setdefault(word, {"element_registry"}).add(file)
     assert {"wire_spring", "wire_springs", "point_mass", "stitch_wires"} <= owners.keys()
     files = {path: list_code_words(path) for path in PRODUCT.rglob("*.py")}
     found = [
@@ -91,18 +99,102 @@ def test_every_key_of_a_line_belongs_to_one_element() -> None:
     assert {*ELEMENTS} == {*LineElements.__bases__}
 
 
-def test_registered_element_acts_on_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Counter(Element):
-        calls: ClassVar[int] = 0
+def find_gaps(element: type[Element]) -> Iterator[str]:
+    """Parts of a declaration that lack their counterpart."""
+    own = vars(element)
+    if bool(element.derived) != ("derive" in own):
+        yield "derived keys need the method `derive`"
+    if (element.symbol is not None) != ("mark" in own):
+        yield "a symbol needs the method `mark`"
+    for key, field in element.model_fields.items():
+        table = find_model(field.annotation, set())[0]
+        if table is None or not table.__doc__:
+            yield f"{key} is not a table with a docstring"
+        if not field.is_required() and find_declaration(field) is None:
+            yield f"{key} has a default, but no feature"
+        if key in element.support_tables and table is not None:
+            columns = {f"{key}_{name}" for name in table.model_fields if name not in PROVENANCE}
+            yield from (f"no column {name}" for name in columns - {*SUPPORT_COLUMNS})
+    yield from (f"no key {key} for single supports" for key in {*element.support_tables} - {*element.model_fields})
 
-        def add_to_line(self, catenary: Catenary) -> Catenary:
-            Counter.calls += 1
-            assert self.line.geometry.length == catenary.contact_wires[0].end
-            return catenary
 
-    monkeypatch.setattr(catenary_model, "ELEMENTS", (*ELEMENTS, Counter))
-    build_catenary(build_short_case().line)
-    assert Counter.calls == 1
+def test_every_element_is_declared_completely() -> None:
+    """Keys are tables with features; symbols, derived values and columns of single supports have all their parts."""
+    gaps = [f"{element.__name__}: {gap}" for element in ELEMENTS for gap in find_gaps(element)]
+    assert not gaps, "\n".join(gaps)
+    own = Counter(name for element in ELEMENTS for name in vars(element).keys() - vars(Element).keys())
+    clashes = {name for name, count in own.items() if count > 1 and not name.startswith("__")}
+    assert not clashes, "one of these would hide the other on every line"
+    symbols = [element.symbol for element in ELEMENTS if element.symbol is not None]
+    assert len({symbol.name for symbol in symbols}) == len({symbol.marker for symbol in symbols}) == len(symbols) >= 4
+    derived = [key for element in ELEMENTS for key in element.derived]
+    assert len(derived) == len(set(derived)) >= 9
+
+
+TRIAL = """
+import json
+from pathlib import Path
+
+from helpers.insulator_element import register
+
+register()
+from helpers.line_table_files import export_and_import
+from pantocheck.conformance.core.features import list_features
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.catenary_model import build_catenary, discretise_line
+from pantocheck.conformance.line.line_drawing import LineDrawing, paint_rows
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_shape import build_line_shape
+from pantocheck.conformance.pages.line_figure import draw_line_shape
+
+line = read_model(Path("line.toml"), LineFile, "line")
+imported, tree = export_and_import(Path(), Path("line.toml"))
+built = discretise_line(line, 2.0)
+drawing = LineDrawing(built, "Line", line.geometry)
+shape = build_line_shape(line, (2, 2), built)
+try:
+    read_model(Path("lost.toml"), LineFile, "line")
+except InputError as error:
+    lost = str(error)
+print(json.dumps({
+    "masses": [mass.mass for mass in built.catenary.point_masses],
+    "same": build_catenary(imported) == build_catenary(line),
+    "support": tree["geometry"]["support"],
+    "features": sorted({*list_features(line)} & {"insulators", "single_supports"}),
+    "legend": [text.get_text() for text in paint_rows(drawing, drawing.rows, 10.0).legends[0].get_texts()],
+    "symbols": [symbol.name for symbol in shape.symbols],
+    "figure": draw_line_shape(shape, None)[:4],
+    "lost": lost,
+}))
+"""
+"""Use of the trial element in a process of its own: tables, features and drawings know the elements when they load."""
+
+
+def test_new_element_takes_one_file_and_one_base_of_the_registry(tmp_path: Path) -> None:
+    """Insulators of 5 kg, at support 2 of 8 kg: a column of the line tables, a symbol of both drawings, a feature."""
+    tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
+    change_keys(tables, {"geometry.span_list": tables["geometry"]["span_list"][:4]})
+    tables["geometry"]["support"] = [{"number": 2, "insulator": {"mass_kg": 8.0}}]
+    write_toml(tmp_path / "lost.toml", tables)
+    write_toml(tmp_path / "line.toml", tables | {"insulator": {"mass_kg": 5.0}})
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
+    done = subprocess.run(
+        [sys.executable, "-c", TRIAL], capture_output=True, text=True, cwd=tmp_path, env=environment, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found.pop("lost").startswith("line 'lost.toml', key geometry.support[1].insulator")
+    assert found == {
+        "masses": [5.0, 8.0, 5.0],
+        "same": True,
+        "support": [{"number": 2, "insulator": {"mass_kg": 8.0}}],
+        "features": ["insulators", "single_supports"],
+        "legend": ["insulator", "messenger support", "steady arm", "anchor"],
+        "symbols": ["insulator", "messenger support", "steady arm", "anchor", "mass"],
+        "figure": "<svg",
+    }
+    assert "insulator_mass_kg" in (tmp_path / "supports.csv").read_text().splitlines()[0]
 
 
 def test_a_line_is_read_without_solvers() -> None:
