@@ -75,10 +75,8 @@ def test_estimates_are_those_of_scipy() -> None:
 
 
 def test_estimates_are_those_of_salib() -> None:
-    """The same estimators, centred with the mean of all designs in place of A and B.
-
-    With 500 bootstrap samples the half-widths of both scatter by 5 %.
-    """
+    """The same estimators, centred with the mean of all designs in place of A and B."""
+    # With 500 bootstrap samples the half-widths of both scatter by 5 %.
     sobol = pytest.importorskip("SALib.analyze.sobol", reason="SALib is optional: pip install 'pantocheck[peers]'")
     columns, values, _ = sample_ishigami(1024)
     table = columns.values[values[0].column].reshape(1024, 5)

@@ -83,7 +83,6 @@ def test_arc_share_is_graded_and_contact_losses_are_listed(sidecar: Path) -> Non
     assert verdicts["longest_contact_loss_s", 2] == "fail"
     assert verdicts["long_contact_loss_pct", 2] == "pass"
     assert case.uncertainty["2"]["longest_contact_loss_s"] is not None
-    assert case.contact_losses is not None
     assert len(case.contact_losses["2"]) == 20
     assert "1" not in case.contact_losses
     loss = case.contact_losses["2"][0]

@@ -71,7 +71,6 @@ def test_digests_of_both_records_are_those_of_their_files(record: Record, tmp_pa
     measured = load(tmp_path / "measured.csv", replace(record, force=1.001 * record.force))
     results = assess_record(load(tmp_path / "simulated.csv", record), LINE_TEST, measured=measured)
     facts = results.cases[0].record
-    assert facts is not None
     for digest, name in ((facts.digest, "simulated"), (facts.measured_digest, "measured")):
         files = (tmp_path / f"{name}.toml", tmp_path / f"{name}.csv")
         parts = "\n".join(hashlib.sha256(file.read_bytes()).hexdigest() for file in files)

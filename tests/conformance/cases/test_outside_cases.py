@@ -38,7 +38,6 @@ def test_a_folder_adds_cases(tmp_path: Path) -> None:
     write_case(tmp_path / ".hidden" / "copy.toml", "own/acme/fast")
     (case,) = select_cases(["own/*"], (), open_catalogue([tmp_path]))
     assert (case.id, case.file.speed_km_h) == ("own/acme/fast", 260.0)
-    assert case.origin is not None
     assert (case.origin.kind, case.origin.name) == ("folder", tmp_path.name)
     assert compare_with_library(case) == "own"
     assert "own/acme/fast" in list_cases(tmp_path)
@@ -85,7 +84,6 @@ def test_a_path_may_still_name_a_modified_copy(edited_case) -> None:  # noqa: AN
     """As before: a file given by its path may have the id of a library case, and is shown as a modified copy."""
     (case,) = select_cases([str(edited_case("250.toml", {"speed_km_h": 251.0}))])
     assert compare_with_library(case) == "modified"
-    assert case.origin is not None
     assert case.origin.kind == "file"
 
 
@@ -116,7 +114,6 @@ def test_all_problems_of_a_folder_are_listed(tmp_path: Path) -> None:
 def test_a_distribution_offers_cases_without_being_imported(site: Path) -> None:
     install_cases(site, "acme_lines", "own/acme-lines/fast")
     (case,) = select_cases(["own/acme-lines/fast"])
-    assert case.origin is not None
     assert case.origin.text == "distribution acme_lines 1.0"
     assert "own/acme-lines/fast" in list_cases()
     # A default run does not depend on the packages that happen to be installed.

@@ -175,13 +175,11 @@ def test_profile_decides_whether_an_unverified_record_passes(
     profile.write_text(text.replace("speed_tolerance_pct", f'verification = "{verification}"\nspeed_tolerance_pct', 1))
     results = graded(train(), str(profile))
     record = results.cases[0].record
-    assert record is not None
     assert (results.verdict, record.state, record.demanded) == (verdict, "unverified", verification == "demanded")
     assert "need the pantograph and the line of a case, and a profile has none" in record.reason
     assert {row.verdict for row in results.cases[0].criteria} == {"pass"}
     assert find_discrepancies(results) == []
     test = ElementTree.fromstring(render_junit(results)).find(".//testcase[@name='record']")
-    assert test is not None
     assert test[0].tag == junit
     accepted = graded(train(), str(profile), participation=Participation(accepted_unverified=("train",)))
     assert accepted.verdict == "pass"

@@ -25,11 +25,9 @@ LINES = ["en50318-2002", "en50318-2018/ac-simple", "en50318-2018/ac-stitched"]
 
 @pytest.mark.parametrize("name", LINES)
 def test_raised_droppers_carry_the_weight_less_the_curvature_of_the_parabola(name: str) -> None:
-    """Strings: a parabola with z'' = 2 R / D^2 relieves a dropper by T z'' times its share of the wire; to 1e-6 N.
-
-    The wires rise by 0.4 m over the two spans next to the anchors. The masses of the droppers are left out: they follow
-    from lengths that differ with and without the rise.
-    """
+    """Strings: a parabola with z'' = 2 R / D^2 relieves a dropper by T z'' times its share of the wire; to 1e-6 N."""
+    # The wires rise by 0.4 m over the two spans next to the anchors. The masses of the droppers are left out: they
+    # follow from lengths that differ with and without the rise.
     raised = section_line(name, overlap={"spans": 3, "anchor_rise_m": 0.4})
     span, end = raised.geometry.longest_span, 6 * raised.geometry.longest_span
     catenary, alone = (without_dropper_masses(build_catenary(line)) for line in (raised, raised.shorten(6)))
@@ -104,11 +102,9 @@ def test_uplift_in_an_overlap_is_that_of_the_lowest_wire(case_250: Case) -> None
 def test_forces_before_the_overlap_are_those_without_it(
     case_250: Case, two_pantograph_case: Case, pantographs: int
 ) -> None:
-    """To 1e-9 N, the tolerance of a step, until a wave can return from the overlap; more than 10 N in it.
-
-    The overlap begins at 180 m. The first head starts at 30 m or 60 m, and waves travel at 122 m/s, at the frequencies
-    of interest at less than 140 m/s. The wires change at 270 m.
-    """
+    """To 1e-9 N, the tolerance of a step, until a wave can return from the overlap; more than 10 N in it."""
+    # The overlap begins at 180 m. The first head starts at 30 m or 60 m, and waves travel at 122 m/s, at the
+    # frequencies of interest at less than 140 m/s. The wires change at 270 m.
     case = {1: case_250, 2: two_pantograph_case}[pantographs]
     case = replace(
         case,
@@ -132,10 +128,8 @@ def test_forces_before_the_overlap_are_those_without_it(
 
 
 def test_force_in_an_overlap_converges_with_the_mesh(case_250: Case) -> None:
-    """20 Hz force between 180 m and 360 m with half the elements and steps: errors of σ and of the largest force.
-
-    Against elements of 0.25 m; those of 1 m are wrong by less than 3 N, and those of 0.5 m by less than half of that.
-    """
+    """20 Hz force between 180 m and 360 m with half the elements and steps: errors of σ and of the largest force."""
+    # Against elements of 0.25 m; those of 1 m are wrong by less than 3 N, and those of 0.5 m by less than half of that.
     case = replace(
         case_250,
         line=section_line(),

@@ -62,7 +62,6 @@ def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     steps = {block.heading: block for block in document.blocks if isinstance(block, doc.Section)}
     for heading in STEPS[:2] + STEPS[3:]:
         assert count_figures(steps[heading]) >= 1
-    assert isinstance(document.header, doc.VerdictHeader)
     assert document.header.statement == "self-declared conformance report, in the style of EN 50318"
     assert "certified" not in render_markdown(document).lower()
 
@@ -99,7 +98,6 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
     )
     (section,) = list_step_reasons(Procedure.model_validate(changed["procedure"]))
     (block,) = section.blocks
-    assert isinstance(block, doc.BulletList)
     assert block.items == (
         "Static check of the line model, Largest difference of the elasticity, relative to the measured one: 2 % above "
         "the upper limit",

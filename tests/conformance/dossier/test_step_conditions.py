@@ -64,7 +64,6 @@ def test_every_claimed_input_is_listed(case_250: Case) -> None:
     tension, force = "line.contact_wire.tension_N", "pantograph.chain.masses_kg.2"
     dossier = build_dossier({}, tension, force, "pantograph.chain.masses_kg.9", "line.title", "speed_km_h")
     chain = pantographs[0].chain
-    assert chain is not None
     expected = {tension: line.contact_wire.tension_N, force: chain.masses_kg[1]}
     assert list_inputs(dossier, line, pantographs) == expected
 

@@ -158,10 +158,8 @@ def whole_file(kind: str, folder: Path, record: DropRecord) -> Path:
 @pytest.mark.filterwarnings("ignore")  # what the libraries have to say of damaged files
 @pytest.mark.parametrize("kind", ["h5", "mat 5", "mat 7.3", "tdms"])
 def test_flipped_bytes_are_read_or_refused(tmp_path: Path, record: DropRecord, kind: str) -> None:
-    """Three bytes anew, half of them in the first 700, where heads and directories are; samples may well survive.
-
-    Every fourth MATLAB file of version 5 is cut short as well; HDF5's library itself may crash on files damaged so.
-    """
+    """Three bytes anew, half of them in the first 700, where heads and directories are; samples may well survive."""
+    # Every fourth MATLAB file of version 5 is cut short as well; HDF5's library itself may crash on files damaged so.
     path = whole_file(kind, tmp_path, record)
     content = path.read_bytes()
     random = np.random.default_rng(20)

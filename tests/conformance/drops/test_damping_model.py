@@ -176,10 +176,8 @@ def test_common_coefficients_of_the_wires_are_returned(line: Line) -> None:
 
 
 def test_coefficients_are_those_of_the_modes_used(line: Line) -> None:
-    """Outliers of all sizes, some of which stand out only after larger ones are removed, leave no trace.
-
-    A fit of the used modes alone, with the weights of their groups, gives the same coefficients to rounding.
-    """
+    """Outliers of all sizes, some of which stand out only after larger ones are removed, leave no trace."""
+    # A fit of the used modes alone, with the weights of their groups, gives the same coefficients to rounding.
     for seed in range(10):
         random = np.random.default_rng(seed)
         measured = build_measured_modes(line, 0.003, random)
@@ -261,10 +259,8 @@ def test_modes_of_different_shapes_are_no_pair(mac: float, paired: bool) -> None
 def test_frequency_gap_of_one_percent_weighs_as_a_mac_lower_by_a_quarter(
     gap: float, mac: float, exchanged: bool
 ) -> None:
-    """Two neighbours whose shapes fit better if they are exchanged: (gap / 1 %)^2 against 4 (1 - MAC).
-
-    Eight other modes, equal in frequency and shape, keep the common factor at 1.
-    """
+    """Two neighbours whose shapes fit better if they are exchanged: (gap / 1 %)^2 against 4 (1 - MAC)."""
+    # Eight other modes, equal in frequency and shape, keep the common factor at 1.
     others = np.array([2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])
     measured_shapes = [np.array([1.0 + 0j, 0.0]), np.array([np.sqrt(mac), np.sqrt(1 - mac)], dtype=complex)]
     measured_shapes += [np.array([1.0 + 0j, 1.0])] * others.size

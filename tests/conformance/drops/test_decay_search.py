@@ -45,11 +45,9 @@ def test_wind_disturbs_most_of_at_least_eight_windows(pattern: str, sample: int,
 
 @pytest.mark.parametrize(("factor", "ends"), [(1.3, False), (3.5, True)])
 def test_one_disturbed_sensor_among_sixteen_ends_the_decay(factor: float, ends: bool) -> None:
-    """Noise times 3.5 in one channel from 30 s on: 12 times the mean square there, 1.7 times in the mean of sixteen.
-
-    A window of 4 s up to 4 Hz has 30 degrees of freedom: one channel alone counts from
-    1 + 9 sqrt(2 / 30) = 3.3 times, all together from twice.
-    """
+    """Noise times 3.5 in one channel from 30 s on: 12 times the mean square there, 1.7 times in the mean of sixteen."""
+    # A window of 4 s up to 4 Hz has 30 degrees of freedom: one channel alone counts from 1 + 9 sqrt(2 / 30) = 3.3
+    # times, all together from twice.
     dt, n = 0.05, 900
     random = np.random.default_rng(1)
     t = dt * np.arange(n)

@@ -41,10 +41,8 @@ SLOW, FAST = 2.0, 12.0
 
 
 def test_tones_appear_at_their_times_and_frequencies() -> None:
-    """A tone has 0 dB at its line, and a Hann window leaves nothing three lines away. The fast tone ends after 2 s.
-
-    The second channel moves most and is shown. Only windows without a step of the signal are compared.
-    """
+    """A tone has 0 dB at its line, and a Hann window leaves nothing three lines away. The fast tone ends after 2 s."""
+    # The second channel moves most and is shown. Only windows without a step of the signal are compared.
     decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1e-3, 2e-3]], dtype=complex), duration=80.0)
     t = np.arange(decay.record.signals.shape[0]) / RATE - RELEASE
     tones = np.sin(2 * np.pi * SLOW * t) + np.where((t > 0) & (t < 2.0), np.sin(2 * np.pi * FAST * t), 0.0)

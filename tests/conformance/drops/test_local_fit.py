@@ -64,7 +64,6 @@ def test_best_candidate_lies_on_the_grid_of_a_quarter_line() -> None:
     blocks = [short, long]
     local = restrict_fit(poles[:1], blocks, [solve_residues(poles[:1], block) for block in blocks], centre)
     candidate = find_best_candidate(local, centre)
-    assert candidate is not None
     assert candidate[0] == pytest.approx(missing, rel=1e-12)
     assert candidate[1] > 0
     alone = restrict_fit(poles[:0], [long], [solve_residues(poles[:0], long)], centre)

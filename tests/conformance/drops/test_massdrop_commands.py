@@ -87,11 +87,9 @@ def test_identify_is_deterministic(folder: Path) -> None:
 
 
 def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
-    """The fitted model gives every mode its measured ratio within 1 %.
-
-    Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire is
-    not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
-    """
+    """The fitted model gives every mode its measured ratio within 1 %."""
+    # Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire
+    # is not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
     command = ["drop", "fit", str(folder / "out" / "modes.json"), "--line", CASE]
     command += ["--out", str(folder / "fit"), "--element", "2"]
     result = CliRunner().invoke(app, command)

@@ -71,10 +71,8 @@ def test_relative_residual_is_that_of_the_half_power_band(fit: LineFit) -> None:
 
 
 def test_residual_above_the_noise_widens_the_uncertainty(fit: LineFit) -> None:
-    """A residual of three times the noise, whose parts have one standard deviation each: 3 times as uncertain.
-
-    One mode has a half-power band wider than three lines: there the residual counts over two decay rates.
-    """
+    """A residual of three times the noise, whose parts have one standard deviation each: 3 times as uncertain."""
+    # One mode has a half-power band wider than three lines: there the residual counts over two decay rates.
     shape = fit.blocks[0].data.spectrum.shape
     exact = build_modes(with_residual(fit, np.zeros(shape, complex)), 6)
     white = build_modes(with_residual(fit, np.full(shape, 3 * np.sqrt(2)) * NOISE + 0j), 6)
@@ -139,15 +137,12 @@ def test_close_modes_are_near_coincident() -> None:
 
 @pytest.mark.parametrize(("quantity", "power"), [("acceleration", 1), ("velocity", 2), ("displacement", 3)])
 def test_frequency_response_is_the_transform_of_the_decay(quantity: str, power: int) -> None:
-    """A release of 20 kg: H = (i w)^p X / (m g), where X is the transform of the sensor from the release to the end.
-
-    The lines lie at multiples of 1 / 40 s from 0.3 to 4.0 Hz. The measured transform is a sum over samples: it has
-    half a sample more at the start, and aliases, together below 1 % of the largest line.
-    """
+    """A release of 20 kg: H = (i w)^p X / (m g), where X is the transform of the sensor from the release to the end."""
+    # The lines lie at multiples of 1 / 40 s from 0.3 to 4.0 Hz. The measured transform is a sum over samples: it has
+    # half a sample more at the start, and aliases, together below 1 % of the largest line.
     decay = with_quantity(build_exact_decay(POLES, RESIDUES), quantity)
     fit = build_exact_fit([decay], POLES, NOISE)
     response = compute_frequency_response(fit, fit.records[0])
-    assert response is not None
     assert response.frequency == pytest.approx(np.arange(12, 161) / 40.0)
     omega = 2 * np.pi * response.frequency
     transform = np.zeros((omega.size, 2), dtype=complex)
@@ -167,7 +162,6 @@ def test_frequency_response_includes_the_edges_of_the_band(fit: LineFit) -> None
     """Lines at multiples of 1 / 40 s, of which 0.5 and 3 Hz are exact numbers."""
     banded = replace(fit, band=replace(BAND, low=0.5, high=3.0))
     response = compute_frequency_response(banded, fit.records[0])
-    assert response is not None
     assert (response.frequency[0], response.frequency[-1], response.frequency.size) == (0.5, 3.0, 101)
 
 

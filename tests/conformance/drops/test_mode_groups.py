@@ -48,10 +48,8 @@ def test_bending_stretches_the_gaps_of_the_higher_groups_more() -> None:
 
 
 def test_group_holds_no_more_modes_than_spans() -> None:
-    """Two modes of the first group around 1.2 Hz. Six more at 1.55 Hz belong to the second: two spans have only two.
-
-    The search may lower the mean by 15 %, so that the gap lies at 1.53 Hz.
-    """
+    """Two modes of the first group around 1.2 Hz. Six more at 1.55 Hz belong to the second: two spans have only two."""
+    # The search may lower the mean by 15 %, so that the gap lies at 1.53 Hz.
     certain = np.array([1.0, 1.4, *1.55 + 0.001 * np.arange(6)])
     assert list(number_groups(certain, certain, 2)) == [1, 1] + [2] * 6
 

@@ -18,10 +18,8 @@ MOTION = {q: (p * np.exp(POLE * AFTER)).imag[:, None] for q, p in zip(QUANTITIES
 @pytest.mark.parametrize("given", QUANTITIES)
 @pytest.mark.parametrize("wanted", QUANTITIES)
 def test_decay_becomes_its_derivative_or_integral(given: MotionQuantity, wanted: MotionQuantity) -> None:
-    """Within 1 % of the largest value, because the high-pass removes the little content below 0.08 Hz.
-
-    An offset of the sensor changes nothing else: it fades in the high-pass at the ends of the record.
-    """
+    """Within 1 % of the largest value, because the high-pass removes the little content below 0.08 Hz."""
+    # An offset of the sensor changes nothing else: it fades in the high-pass at the ends of the record.
     offset = 0.0 if given == wanted else 0.1
     result = convert_motion(MOTION[given] + offset, RATE, given, wanted)
     shown = (T > -2.0) & (T < 60.0)

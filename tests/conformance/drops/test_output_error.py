@@ -58,10 +58,9 @@ def test_start_poles_of_a_clean_decay_are_exact() -> None:
 
 
 def test_pole_between_two_bands_is_found_once() -> None:
-    """Bands meet at 1.3, 2.3 and 3.3 Hz. Poles 0.05 Hz below and above an edge are also in the flank of the other band.
-
-    In a clean decay both bands would give the pole to a tenth of its damping.
-    """
+    """Bands meet at 1.3, 2.3 and 3.3 Hz."""
+    # Poles 0.05 Hz below and above an edge are also in the flank of the other band. In a clean decay both bands would
+    # give the pole to a tenth of its damping.
     true = complex_poles((1.25, 0.003), (2.25, 0.002), (2.35, 0.002), (3.35, 0.003))
     start = find_start_poles([build_decays(np.random.default_rng(2), true, 120, 2, 1e-7)], 1 / DT, 0.3, 4.3)
     found = [int(np.sum(np.abs(start - pole) < 0.1 * abs(pole.real))) for pole in true]

@@ -36,11 +36,9 @@ def test_block_holds_the_lines_of_its_band(low: float, high: float, first: int, 
 
 
 def test_noise_is_that_of_the_record_whatever_is_fitted() -> None:
-    """White noise of std s has std s sqrt(n / 2) in either part of a line.
-
-    Median of 48 lines, of which 12 residual terms and 3 poles take a fifth: 400 channels give it to 1 %; the median of
-    few lines is biased by about 1 / (2 * 48).
-    """
+    """White noise of std s has std s sqrt(n / 2) in either part of a line."""
+    # Median of 48 lines, of which 12 residual terms and 3 poles take a fifth: 400 channels give it to 1 %; the median
+    # of few lines is biased by about 1 / (2 * 48).
     noise, n = np.array([0.1, 3.0]), 800
     random = np.random.default_rng(2)
     samples = np.tile(noise, 200) * random.standard_normal((n, 400))
@@ -117,11 +115,9 @@ def test_dependent_columns_have_the_smallest_solution(repeat: float) -> None:
 
 @pytest.mark.parametrize(("condition", "tolerance"), [(1.0, 1e-9), (1e4, 1e-9), (1e5, 1e-9), (1e7, 1e-4), (1e12, 1e-9)])
 def test_products_of_remainders_are_those_of_householder(condition: float, tolerance: float) -> None:
-    """A remainder has an error of 1e-16 times the squared condition number; its products have the square of that.
-
-    That is 1e-4 at 1e7, below which the Gram matrix is used. One signal lies in the span of the columns up to 1e-6 of
-    its length, as the derivative of a fast decay; the rounding of this signal is 1e-10 of its remainder.
-    """
+    """A remainder has an error of 1e-16 times the squared condition number; its products have the square of that."""
+    # That is 1e-4 at 1e7, below which the Gram matrix is used. One signal lies in the span of the columns up to 1e-6 of
+    # its length, as the derivative of a fast decay; the rounding of this signal is 1e-10 of its remainder.
     columns, random = columns_with_condition(condition), np.random.default_rng(5)
     others = random.standard_normal((120, 3))
     length = np.linalg.norm(columns, axis=0)

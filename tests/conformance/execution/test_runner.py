@@ -155,7 +155,6 @@ def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave
 
 def cut_record(record: Record, n: int) -> Record:
     """First samples of a record, without its contact height."""
-    assert record.support_uplift is not None
     return replace(
         record, time=record.time[:n], position=record.position[:, :n], force=record.force[:, :n],
         contact_height=None, support_uplift=record.support_uplift[:, :n],
@@ -183,10 +182,8 @@ def test_short_run_out_gives_a_warning(case_250: Case, wave: type[Wave]) -> None
 
 
 def test_value_closer_to_a_limit_than_its_uncertainty_is_marked(case_250: Case, wave: type[Wave]) -> None:
-    """The standard deviation is 28 N and changes by 0.28 N on a second mesh: half-width 0.84 N, three times as much.
-
-    The shifted sections contain whole periods of the wave and add nothing. The remark is in one place only.
-    """
+    """The standard deviation is 28 N and changes by 0.28 N on a second mesh: half-width 0.84 N, three times as much."""
+    # The shifted sections contain whole periods of the wave and add nothing. The remark is in one place only.
     for upper, marked in ((28.8, True), (28.9, False)):
         (result,) = run_cases([limited(case_250, ("std_force_N", None, upper))], wave()).cases
         assert result.verdict == "pass"
@@ -282,10 +279,8 @@ def test_cases_that_require_each_other_are_skipped(cases: list[Case], recorded: 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 @pytest.mark.parametrize("deaf", [False, True])
 def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path: Path, deaf: bool) -> None:
-    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s.
-
-    Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
-    """
+    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s."""
+    # Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
     waiting = [replace(cases[1], file=cases[1].file.model_copy(update={"id": f"own/{name}"})) for name in "ab"]
     system = Waiting(tmp_path, cases[0].id, len(waiting), deaf)
     interrupted = []

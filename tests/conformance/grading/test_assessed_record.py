@@ -63,12 +63,9 @@ def load(tmp_path: Path) -> Load:
     ],
 )
 def test_bootstrap_block_is_a_span(load: Load, line: LineTable, keys: dict[str, Any], length: float) -> None:
-    """The span that the user states, that of the record, the median plausible distance of its supports, or 60 m.
-
-    The uncertainties are the same numbers as with blocks of that length: the samples seed the bootstrap.
-    """
+    """The span that the user states, that of the record, the median plausible distance of its supports, or 60 m."""
+    # The uncertainties are the same numbers as with blocks of that length: the samples seed the bootstrap.
     record = load(keys, line)
-    assert record.prepared is not None
     assert record.force_digest is not None
     component = record.uncertainty.components["length"]
     assert component.basis.endswith(f"blocks of {length:g} m")

@@ -97,7 +97,6 @@ def test_junit_and_badge_name_the_drift(drifted: dict[str, Any]) -> None:
     failed = [test for test in root.iter("testcase") if test.find("failure") is not None]
     assert [test.get("name") for test in failed] == [f"drift of {DRIFTED} of pantograph 1"]
     failure = failed[0].find("failure")
-    assert failure is not None
     assert "bounds of the baseline" in "".join(failure.itertext()) + str(failure.attrib)
     assert summarise_verdict(Results.model_validate(drifted)) == "fail 16/16, baseline fail"
 
@@ -129,5 +128,4 @@ def test_baseline_that_cannot_be_compared_decides_in_junit(passing: dict[str, An
     tests = ElementTree.fromstring(render_junit(Results.model_validate(compared))).iter("testcase")
     [test] = [test for test in tests if test.get("name") == "baseline of line"]
     skipped = test.find("skipped")
-    assert skipped is not None
     assert "for information" not in str(skipped.attrib)

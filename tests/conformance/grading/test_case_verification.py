@@ -258,8 +258,6 @@ def test_start_widens_a_limit_by_its_half_width_and_no_more(twin: Case) -> None:
     converged = converged.model_copy(update={"value": value})
     for limit in build_requirements(converged, is_static=False):
         other = include_start(limit, converged)
-        assert limit.lower is not None
-        assert limit.upper is not None
         width = widths[limit.quantity] or 0.0
         assert (other.lower, other.upper) == (limit.lower - width, limit.upper + width)
 
@@ -267,10 +265,8 @@ def test_start_widens_a_limit_by_its_half_width_and_no_more(twin: Case) -> None:
 def test_start_widens_the_limits_if_it_differs(
     twin: Case, record: Record, values: Values, state_converged: StateConverged
 ) -> None:
-    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then.
-
-    The certificate names the statement beside every widened limit, and where a criterion needs it.
-    """
+    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then."""
+    # The certificate names the statement beside every widened limit, and where a criterion needs it.
     true = values[2]["rms_20_50_N"]
     converged = state_converged(twin, change(values, EXTENDED, true / 1.2))
     known = converged.model_copy(
@@ -284,7 +280,6 @@ def test_start_widens_the_limits_if_it_differs(
         for start in (None, expected, other):
             delivered = Delivered(record, case_digest=twin.digest, start=start)
             result = grade_case(twin, delivered, "secondary")
-            assert result.verification is not None
             verdicts[name, start], rows = result.verification.verdict, result.verification.criteria
             named[name, start] = {row.quantity for row in rows if "which is not checked" in (row.reason or "")}
             widened[name, start] = {row.quantity for row in rows if "widened for the start" in row.source}

@@ -60,10 +60,8 @@ def test_equal_values_have_no_uncertainty() -> None:
 
 
 def test_interval_contains_the_limit_in_95_percent_of_noisy_sequences() -> None:
-    """Second order with a noise of 5 % of the error on every mesh, and a third-order part of up to half of it.
-
-    4000 sequences give the share within 0.7 % (two standard deviations).
-    """
+    """Second order with a noise of 5 % of the error on every mesh, and a third-order part of up to half of it."""
+    # 4000 sequences give the share within 0.7 % (two standard deviations).
     random = np.random.default_rng(3)
     contained = []
     for _ in range(4000):

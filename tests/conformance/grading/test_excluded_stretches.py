@@ -87,7 +87,6 @@ def test_permitted_exclusion_leaves_the_overlap_out_and_is_stated(sidecar: Path,
         assert "uninterrupted" in case.skipped[owner]["rms_5_20_N"]
     assert case.verdict == "pass"
     assert whole.verdict == "fail"
-    assert case.events is not None
     (fact,) = case.events
     assert (fact.kind, fact.excluded, fact.remark) == ("overlap", True, "line test excludes overlaps")
     assert fact.start_m == pytest.approx(1140, abs=0.2)
@@ -127,7 +126,6 @@ def test_exclusion_beyond_the_rule_is_not_applied(
     case = assess(sidecar, own_profile(kinds, share))[1]
     assert float(case.quantities["1"]["std_force_N"]) > 30
     assert case.verdict == "fail"
-    assert case.events is not None
     assert not case.events[0].excluded
 
 

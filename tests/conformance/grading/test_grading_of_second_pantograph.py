@@ -29,7 +29,6 @@ def record(two_pantograph_case: Case, wave: Any) -> Record:
 
 
 def _scale_second(values: np.ndarray | None, factor: float) -> np.ndarray:
-    assert values is not None
     return values * np.array([[1.0], [factor]])
 
 
@@ -125,10 +124,8 @@ def test_records_of_different_trains_are_not_compared(
 def test_line_test_compares_every_pantograph_with_its_measured_counterpart(
     assessed: Callable[..., AssessedRecord],
 ) -> None:
-    """The measured deviations are 28 N and 38 N with 20 % of tolerance: 22.4 to 33.6 N and 30.4 to 45.6 N.
-
-    A train with the forces exchanged fails at both. The sine of whole spans has its deviation within 1 %.
-    """
+    """The measured deviations are 28 N and 38 N with 20 % of tolerance: 22.4 to 33.6 N and 30.4 to 45.6 N."""
+    # A train with the forces exchanged fails at both. The sine of whole spans has its deviation within 1 %.
     profile = load_profile("line-test")
     measured = assessed(28.0, 38.0, profile="line-test")
     for sigma, verdict in (((28.5, 38.5), "pass"), ((38.5, 28.5), "fail")):

@@ -115,10 +115,8 @@ def test_statistics_of_a_replicate_are_those_of_its_blocks(length: int) -> None:
 
 
 def test_replicates_of_a_band_are_those_of_its_part_of_the_force() -> None:
-    """Two lines of 3 Hz and 12 Hz, both of whole periods; the second grows tenfold in the second half.
-
-    Blocks of whole periods see the first with 6 N in every replicate. The second has 3 N or 30 N in a block.
-    """
+    """Two lines of 3 Hz and 12 Hz, both of whole periods; the second grows tenfold in the second half."""
+    # Blocks of whole periods see the first with 6 N in every replicate. The second has 3 N or 30 N in a block.
     time = np.arange(1000) / RATE
     growth = np.where(time < 5, 1.0, 10.0)
     force = 120 + 6 * np.sqrt(2) * np.sin(2 * np.pi * 3 * time)

@@ -30,7 +30,6 @@ def spring_force(pantograph: Pantograph, record: Record, row: int) -> np.ndarray
     The masses below the head move with the head as given motion; the second formulation here is an adaptive
     Runge-Kutta method on M z'' + C z' + K z = f with the row of the head left out.
     """
-    assert record.contact_height is not None
     head = int(np.argmax(pantograph.head))
     free = np.flatnonzero(np.arange(pantograph.head.size) != head)
     motion = CubicSpline(record.time, record.contact_height[row])
@@ -63,7 +62,6 @@ def test_head_inertia_recovers_the_contact_force_up_to_20_hz(tmp_path: Path, cas
     line = discretise_line(case.line, steps.element_m)
     run = run_passage(case, line, steps, start_forces(case))
     record = run.record
-    assert record.contact_height is not None
     pantographs = build_pantographs(case, line, run.uplift_forces)
     channels = {"time_s": record.time, "x": record.position[0]}
     columns: dict[str, Any] = {"time_s": {"column": "time_s"}, "position_1_m": {"column": "x", "unit": "m"}}

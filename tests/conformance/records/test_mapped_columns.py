@@ -40,7 +40,6 @@ def foreign(record: Record, tmp_path: Path) -> Callable[[str], Path]:
     """Writer of the record under foreign names; the force of pantograph 2 in volts, 500 N/V, zero at 20 N."""
 
     def write(name: str) -> Path:
-        assert record.contact_height is not None
         channels = {
             "time_s": record.time,
             "Temperatur": np.linspace(12, 13, record.time.size),

@@ -111,14 +111,9 @@ def test_missing_uplift_is_written_and_read_as_nan(tmp_path: Path, two_pantograp
 def test_order_of_columns_and_missing_supports_leave_every_row_at_its_number(
     tmp_path: Path, two_pantograph_record: Record, seed: int
 ) -> None:
-    """Columns in any order, and the uplift of any of the supports: each row keeps its pantograph and its support.
-
-    Fifteen digits are written and one factor is applied, so that the values agree to rounding.
-    """
+    """Columns in any order, and the uplift of any of the supports: each row keeps its pantograph and its support."""
+    # Fifteen digits are written and one factor is applied, so that the values agree to rounding.
     record, random = two_pantograph_record, np.random.default_rng(seed)
-    assert record.contact_height is not None
-    assert record.support_uplift is not None
-    assert record.support_position is not None
     supports = np.flatnonzero([[0, 1, 1], [0, 0, 1], [1, 0, 1], [1, 1, 1]][seed])
     columns = {"time_ms": 1e3 * record.time}
     for row in range(2):
@@ -138,10 +133,8 @@ def test_order_of_columns_and_missing_supports_leave_every_row_at_its_number(
 
 @pytest.mark.parametrize("channels", [("time", "position"), ("position",), ("time",), ("time", "speed")])
 def test_rear_pantographs_run_behind_the_first(tmp_path: Path, channels: tuple[str, ...]) -> None:
-    """The second runs 100 m behind the first and the third 50 m behind it, from any channels that place the train.
-
-    At 216 km/h, 60 m/s, a sample every 3 m is a sample every 0.05 s. Twelve digits are written: 1e-9 of the position.
-    """
+    """The second runs 100 m behind the first and the third 50 m behind it, from any channels that place the train."""
+    # At 216 km/h, 60 m/s, a sample every 3 m is a sample every 0.05 s. Twelve digits are written: 1e-9 of the position.
     values = {
         "time_ms": 50.0 * np.arange(100),
         "position_1_km": 0.5 + 0.003 * np.arange(100),

@@ -67,7 +67,6 @@ def test_value_closer_to_a_limit_than_the_change_between_sections_is_marked(grow
     assert row.components == pytest.approx({"start": 2.0, "section": 1.25 * 0.75}, abs=5e-3)
     assert any("less than its uncertainty of 2.2 N (mostly start)" in remark for remark in row.close)
     remark = remark_shift(row)
-    assert remark is not None
     assert remark.startswith("changes by up to 2.0 N when the analysis section")
 
 

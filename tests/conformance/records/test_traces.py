@@ -35,7 +35,6 @@ def test_thinned_spectrum_keeps_its_peak() -> None:
     assert_allclose(max(spectrum.amplitude_N), 10.0, rtol=1e-5)
     assert spectrum.frequency_Hz[int(np.argmax(spectrum.amplitude_N))] == 12.38
     assert len(traces.position_m) == len(traces.force_N) <= MAX_POINTS
-    assert traces.histogram is not None
     assert_allclose(sum(traces.histogram.share_pct), 100, rtol=1e-4)  # six digits each
 
 

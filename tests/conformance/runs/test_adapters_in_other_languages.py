@@ -16,7 +16,7 @@ from pantocheck.conformance.app.self_test.adapter_check import build_short_case,
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.records.record_signals import evaluate_record
-from pantocheck.conformance.runs.system import Delivered, Skipped, System
+from pantocheck.conformance.runs.system import Delivered, System
 from pantocheck.conformance.runs.system_choice import choose_system
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -63,8 +63,6 @@ def evaluate(system: System, case: Case) -> dict[str, Value]:
     """Quantities of the pantograph, and the largest uplift of all supports."""
     outcome = system.run(case)
     assert isinstance(outcome, Delivered), outcome
-    assert outcome.record is not None
-    assert outcome.record.support_uplift is not None
     values = evaluate_record(outcome.record, case.file.filter).values[1]
     return values | {"uplift": float(outcome.record.support_uplift.max())}
 
@@ -91,10 +89,8 @@ def octave_values(varied: Case) -> dict[str, Value]:
 def test_same_equations_give_the_same_values(
     language: str, varied: Case, python_values: dict[str, Value], request: pytest.FixtureRequest
 ) -> None:
-    """The programs differ from the Python example in the wire at rest: a string, or finite differences with bending.
-
-    With elements of 2 m, this moves the height by 0.4 mm, the mean force by 0.15 % and the other values by 1.2 %.
-    """
+    """The programs differ from the Python example in the wire at rest: a string, or finite differences with bending."""
+    # With elements of 2 m, this moves the height by 0.4 mm, the mean force by 0.15 % and the other values by 1.2 %.
     values = request.getfixturevalue(f"{language}_values")
     assert_allclose(values["mean_force_N"], python_values["mean_force_N"], rtol=3e-3)
     for quantity in ("std_force_N", "contact_height_range_mm", "uplift"):
@@ -115,7 +111,6 @@ def test_nothing_is_missing_in_the_adapter_in_cpp(compiled: Path) -> None:
 def test_unsupported_cases_are_skipped(adapter: System, coarse: Case) -> None:
     twin = coarse.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     outcome = adapter.run(replace(coarse, line=coarse.line.model_copy(update={"contact_wire": twin})))
-    assert isinstance(outcome, Skipped)
     assert outcome.reason == "the system does not simulate twin_wires"
 
 

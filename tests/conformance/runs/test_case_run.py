@@ -16,11 +16,9 @@ from pantocheck.model.statics.elasticity import static_uplift
 
 
 def test_working_height_is_the_mean_static_height_in_the_first_evaluated_span(two_pantograph_case: Case) -> None:
-    """The frame spring is unstretched at the working height: its preload is 50 N/m times this height.
-
-    The height is the mean static uplift of the contact wire plus the compression of the contact spring, 50 kN/m. The
-    first span ends at an anchor, so that its mean uplift differs by millimetres from that of the second span.
-    """
+    """The frame spring is unstretched at the working height: its preload is 50 N/m times this height."""
+    # The height is the mean static uplift of the contact wire plus the compression of the contact spring, 50 kN/m. The
+    # first span ends at an anchor, so that its mean uplift differs by millimetres from that of the second span.
     geometry = two_pantograph_case.line.geometry.shorten(4)
     sections = {"evaluated_spans": (1, 2), "spacing_m": (20.0,), "run_out_m": 0.0}
     case = replace(

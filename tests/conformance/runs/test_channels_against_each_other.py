@@ -59,7 +59,6 @@ def deviation(case: Case, record: Record, row: int) -> float:
 
 def passing_support(record: Record, row: int) -> tuple[int, float]:
     """Second support of the analysis section and the time at which a pantograph passes it [s]."""
-    assert record.support_position is not None
     support = int(np.searchsorted(record.support_position, record.evaluated[0] + 1.0))
     return support, float(np.interp(record.support_position[support], record.position[row], record.time))
 
@@ -113,7 +112,6 @@ def test_constant_height_is_named(run: tuple[Case, Record], row: int) -> None:
     case, record = run
     constant = change(record, "contact_height", row, lambda height: np.full_like(height, 5.3))
     found = IMPLIED_FORCE.run(case, RecordSignals(constant, case.file.filter))
-    assert found is not None
     assert found.kind == "unchecked"
     assert f"contact height of pantograph {row + 1}: it is constant" in found.text
 

@@ -60,12 +60,10 @@ def test_wave_speed_is_the_root_of_tension_over_mass(name: str, speeds: tuple[fl
 
 
 def test_arm_across_its_force_has_the_stiffness_tension_times_angle_over_length() -> None:
-    """Wires with equal stagger a and no bending: the droppers hang plumb, and every arm carries 4 a T / span.
-
-    The wire turns by the angle 4 a / span at a support; the stiffness is the force over the length of the arm. Arms
-    carry no weight here, so that their force is lateral. Elements of 0.125 m make a kink of a string too stiff by a
-    share of about a quarter of an element over the span, 6e-4.
-    """
+    """Wires with equal stagger a and no bending: the droppers hang plumb, and every arm carries 4 a T / span."""
+    # The wire turns by the angle 4 a / span at a support; the stiffness is the force over the length of the arm. Arms
+    # carry no weight here, so that their force is lateral. Elements of 0.125 m make a kink of a string too stiff by a
+    # share of about a quarter of an element over the span, 6e-4.
     case = shorten(library_case("en50318-2018/ac-simple/320"), 4)
     line, geometry = case.line, case.line.geometry.model_copy(update={"stagger_messenger_m": 0.2})
     tables = {
@@ -148,8 +146,6 @@ def test_filter_is_rebuilt_from_its_numbers() -> None:
 def test_stitch_wires_share_the_tension_of_the_messenger_wire() -> None:
     case, line = library_case("en50318-2018/ac-stitched/320"), derived("en50318-2018/ac-stitched/320").line
     stitch, table = line.stitch_wires, case.line.stitch_wire
-    assert stitch is not None
-    assert table is not None
     assert stitch.messenger_tension_N + table.tension_N == case.line.messenger_wire.tension_N
     assert np.subtract(stitch.end_m, stitch.start_m) == pytest.approx(table.length_m)
     x, on_stitch = np.array(line.droppers.position_m), np.array(line.droppers.on_stitch_wire)

@@ -84,7 +84,6 @@ def test_slow_train_and_low_rate(run: tuple[Case, Record]) -> None:
         assert (CONTENT.run(case, read_signals(case, replace(filtered, speed=speed))) is not None) == found
     slow = {name: getattr(record, name)[:, ::6] for name in ("position", "force", "contact_height", "support_uplift")}
     finding = CONTENT.run(case, read_signals(case, replace(record, time=record.time[::6], **slow)))
-    assert finding is not None
     assert finding.kind == "unchecked"
 
 

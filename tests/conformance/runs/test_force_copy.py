@@ -58,7 +58,6 @@ def test_copy_of_the_same_time_is_in_another_part_of_the_span(run: tuple[Case, R
     """The spacing of 100 m is not a multiple of the span of 55 m."""
     case, record = run
     finding = COPY.run(case, read_signals(case, take(record, source, 0.0)))
-    assert finding is not None
     assert finding.text.endswith("in another part of the span")
 
 
@@ -70,8 +69,6 @@ def alike(wave: type[Wave], two_pantograph_case: Case) -> Record:
 
 def lift(record: Record, second: float) -> Record:
     """The uplift where the second pantograph passes, 1 + second times that of the first."""
-    assert record.support_position is not None
-    assert record.support_uplift is not None
     near = np.abs(record.position[1] - record.support_position[:, None]) < 30.0
     return replace(record, support_uplift=np.where(near, (1 + second) * record.support_uplift, record.support_uplift))
 
@@ -84,20 +81,15 @@ def test_equal_forces_need_equal_uplifts(two_pantograph_case: Case, alike: Recor
 
 
 def test_copy_stays_unverified_without_the_uplift_to_compare(run: tuple[Case, Record]) -> None:
-    """A copy at the same time, two spans of 55 m behind, needs the uplift at supports two spans apart.
-
-    A record without these supports, or without their uplift at the passage, does not become verified.
-    """
+    """A copy at the same time, two spans of 55 m behind, needs the uplift at supports two spans apart."""
+    # A record without these supports, or without their uplift at the passage, does not become verified.
     case, record = run
     spaced = replace(record, position=np.array([record.position[0], record.position[0] - 110.0]))
     copy = take(spaced, 0, 0.0)
     assert COPY.run(case, read_signals(case, copy)) is not None
-    assert record.support_position is not None
-    assert record.support_uplift is not None
     two = slice(0, 2)
     few = replace(copy, support_position=record.support_position[two], support_uplift=record.support_uplift[two])
     finding = COPY.run(case, read_signals(case, few))
-    assert finding is not None
     assert (finding.kind, finding.text[-42:]) == ("unchecked", "lacks the uplift at 2 of 2 supports to compare"[-42:])
     before = record.support_position < case.analysis_section[0]
     passes = np.abs(spaced.position[1] - record.support_position[:, None]) < 1.0
@@ -118,11 +110,9 @@ def test_likeness_of_exact_parts() -> None:
     signal = Filter(cutoff_Hz=20.0)(noise, 500.0)
     shifted = np.interp(time[700:1700] + 0.3 / 500.0, time, signal)
     likeness = find_likeness(2.0 * shifted + 5.0, signal)
-    assert likeness is not None
     assert_allclose(likeness.lag, 700.3, atol=0.02)
     assert likeness.remainder < 0.01
     opposite = find_likeness(-signal[700:1700], signal)
-    assert opposite is not None
     assert opposite.remainder > 0.8
     assert find_likeness(signal, signal[:-1]) is None
     assert find_likeness(np.ones(100), signal) is None

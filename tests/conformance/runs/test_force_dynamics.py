@@ -42,7 +42,6 @@ def disturb(record: Record) -> Callable[[int, float], Record]:
     """Record with a motion of one head that the force does not explain, as a share of its motion."""
 
     def disturb(row: int, share: float) -> Record:
-        assert record.contact_height is not None
         height = record.contact_height.copy()
         other = np.sin(2 * np.pi * record.position[row] / 20.0)
         height[row] += share / np.sqrt(1 - share**2) * height[row].std() * other / other.std()
@@ -87,7 +86,6 @@ def test_value_on_a_threshold_is_accepted(
     monkeypatch.setattr(force_dynamics, "LARGEST_MISFIT", 0.1)
     monkeypatch.setattr(force_dynamics, "CLEAR", result.unexplained)
     found = check(two_pantograph_case, record)
-    assert found is not None
     assert "explains only" in found.text, "the share that remains is not below the threshold"
 
 
@@ -101,11 +99,8 @@ def test_check_needs_a_rate_for_the_filter(two_pantograph_case: Case, rate: floa
 
 @pytest.mark.parametrize("row", [0, 1])
 def test_still_head_under_a_constant_force_is_not_checked(two_pantograph_case: Case, record: Record, row: int) -> None:
-    """RMS of 0.9 mm without a response: below the millimetre to which heights are rounded; 1.4 mm are above it.
-
-    The fit of free motions takes a fifth of the motion away.
-    """
-    assert record.contact_height is not None
+    """RMS of 0.9 mm without a response: below the millimetre to which heights are rounded; 1.4 mm are above it."""
+    # The fit of free motions takes a fifth of the motion away.
     force, height = record.force.copy(), record.contact_height.copy()
     force[row] = 119.0
     height[row] *= 0.9e-3 / height[row].std()
@@ -115,5 +110,4 @@ def test_still_head_under_a_constant_force_is_not_checked(two_pantograph_case: C
     )
     height[row] *= 1.6
     moving = check(two_pantograph_case, replace(record, force=force, contact_height=height))
-    assert moving is not None
     assert moving.kind == "contradiction"

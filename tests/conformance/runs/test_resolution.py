@@ -128,7 +128,6 @@ def limit_window(reach: float | None) -> Case:
 def run(reach: float | None) -> tuple[np.ndarray, list[str]]:
     """Contact force [N] and warnings on the window."""
     delivered = ReferenceSimulator().run_unrefined(limit_window(reach))
-    assert delivered.record is not None
     return delivered.record.force[0], [text for text in delivered.warnings if text.startswith("active window")]
 
 

@@ -225,11 +225,9 @@ def simulate(case: Case, file: PantographFile) -> np.ndarray:
 
 
 def test_chain_matrices_and_modes_have_one_mean_force(case_250: Case, descriptions: dict[str, PantographFile]) -> None:
-    """One linear system: equal to the convergence of the contact forces, 1e-9 N per step, hence 1e-5 N in a run.
-
-    Without the point of the uplift force, it acts on the head: 160 N/m times the compression of the head springs,
-    31 mm, that is 5 N less on the base spring; on a flexible line 4.5 N remain.
-    """
+    """One linear system: equal to the convergence of the contact forces, 1e-9 N per step, hence 1e-5 N in a run."""
+    # Without the point of the uplift force, it acts on the head: 160 N/m times the compression of the head springs, 31
+    # mm, that is 5 N less on the base spring; on a flexible line 4.5 N remain.
     forces = {name: simulate(case_250, file) for name, file in descriptions.items()}
     for force in forces.values():
         assert np.abs(force - forces["chain"]).max() < 1e-5
@@ -256,10 +254,8 @@ def test_wrong_number_of_values_is_refused(descriptions: dict[str, PantographFil
 
 @pytest.mark.parametrize("convention", ["working_height", "wire_height"])
 def test_height_of_the_line_does_not_change_the_forces(case_250: Case, chain: PantographFile, convention: str) -> None:
-    """A contact wire at 5.3 m above the rail: the nominal height of the wire moves with it, in both conventions.
-
-    To 1e-6 N; heights of 5 m leave rounding errors of 1e-15 m times 5e4 N/m, which sweeps amplify.
-    """
+    """A contact wire at 5.3 m above the rail: the nominal height of the wire moves with it, in both conventions."""
+    # To 1e-6 N; heights of 5 m leave rounding errors of 1e-15 m times 5e4 N/m, which sweeps amplify.
     table = chain.chain.model_copy(update={"base_spring_unstretched": convention})
     pantograph = chain.model_copy(update={"chain": table})
     tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))

@@ -33,10 +33,8 @@ def low_pass_curve(corner: float) -> RealArray:
 
 
 def test_levels_of_a_known_curve() -> None:
-    """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner.
-
-    The coefficients lie 26 % apart.
-    """
+    """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner."""
+    # The coefficients lie 26 % apart.
     findings = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
     assert_allclose(findings["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
     assert_allclose(findings["dropper_transition_middle_s"], 2e-3, rtol=0.01)
@@ -94,7 +92,6 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     assert nothing[-1] > nothing[0]
     assert elastic[-1] < 0.1 * elastic[0]
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
-    assert outcome.record is not None
     # The run of the record, one with the smallest coefficient, and one of every coefficient under each law.
     assert outcome.run.simulated_s == pytest.approx((2 + 2 * 3) * outcome.record.time[-1], rel=0.01)
 
@@ -109,10 +106,8 @@ def test_motion_of_a_dropper_far_behind_the_train_is_known_until_the_end() -> No
 
 
 def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
-    """The laws give two linear systems with the same matrices until one dropper becomes slack.
-
-    The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
-    """
+    """The laws give two linear systems with the same matrices until one dropper becomes slack."""
+    # The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
     line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
     mesh = discretise(line, 2.0)
     kept = keep_viscous_part(mesh)

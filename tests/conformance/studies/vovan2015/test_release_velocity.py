@@ -62,7 +62,6 @@ def run(case: Case, **changes: object) -> Delivered:
 
 def test_every_window_has_the_velocity_of_its_time(case: Case) -> None:
     study = run(case).study
-    assert study is not None
     assert [chart.series[1].label for chart in study.charts] == ["initial"] * 2
     for chart, (start, end), velocity in zip(study.charts, ((0.0, 1.0), (3.0, 5.0)), (2.0, -5.0), strict=True):
         for series, factor in zip(chart.series, FACTORS.values(), strict=True):
@@ -73,7 +72,6 @@ def test_every_window_has_the_velocity_of_its_time(case: Case) -> None:
 
 def test_table_has_the_rms_of_every_window(case: Case) -> None:
     study = run(case).study
-    assert study is not None
     assert study.tables[0].columns[:2] == ["Damping", "0 s to 1 s"]
     shown = [[row[0], row[1], row[3]] for row in study.tables[0].rows]
     assert shown == [[name, f"{2 * factor:g} mm/s", f"{5 * factor:g} mm/s"] for name, factor in FACTORS.items()]
