@@ -54,23 +54,20 @@ def test_a_written_drop_is_read_again(drop: OpenedDrop, tmp_path: Path, suffix: 
     np.testing.assert_allclose(again.signals()["time_s"], np.arange(100) / 100, atol=1e-12)
 
 
-def test_a_wrong_run_or_format_is_named(drop: OpenedDrop, tmp_path: Path) -> None:
+def test_a_wrong_run_format_or_drop_is_named(drop: OpenedDrop, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no run 2"):
         open_drop(drop.write(tmp_path / "drop.csv"), run=2)
     with pytest.raises(InputError, match=r"\.xls.*\n.*\.uff, \.csv, \.h5"):
         drop.write(tmp_path / "drop.xls")
+    with pytest.raises(InputError, match="has 3 mass drops, not drop 4"):
+        CASE.simulate_drop(4)
+    with pytest.raises(InputError, match=r"Choose a case with a \[mass_drop\] table"):
+        open_case("en50318-2002/250").simulate_drop()
 
 
 def test_the_figure_shows_the_chosen_channel(drop: OpenedDrop) -> None:
     (line,) = drop.plot("S2z").lines
     np.testing.assert_array_equal(line.get_ydata(), drop.record.signals[:, 1])
-
-
-def test_a_drop_that_the_case_does_not_have_is_named() -> None:
-    with pytest.raises(InputError, match="has 3 mass drops, not drop 4"):
-        CASE.simulate_drop(4)
-    with pytest.raises(InputError, match=r"Choose a case with a \[mass_drop\] table"):
-        open_case("en50318-2002/250").simulate_drop()
 
 
 def test_fit_finds_the_coefficients_of_the_line(fit: FittedDamping) -> None:

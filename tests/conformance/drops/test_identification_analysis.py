@@ -15,9 +15,8 @@ from pantocheck.conformance.drops.identify import PoleSearch
 from pantocheck.conformance.drops.start_poles import BandTrials
 from pantocheck.conformance.results.identified_modes import Mode
 
-PAPER = Mode(
-    frequency_Hz=0.9, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), half_power_points=1.08
-)  # in 120 s
+PAPER = Mode(frequency_Hz=0.9, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), half_power_points=1.08)
+"""Mode in a record of 120 s."""
 MANY = PAPER.model_copy(update={"frequency_Hz": 9.0, "half_power_points": 10.8})
 
 

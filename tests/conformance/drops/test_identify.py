@@ -34,15 +34,8 @@ def build_record(synthetic: SyntheticDrop, name: str = "synthetic", lateral: Rea
     if lateral is not None:
         channels += (DropChannel("S1_y", 1, "y", "CW", 20.0),)
         signals = np.column_stack([signals, lateral])
-    return DropRecord(
-        name,
-        name,
-        synthetic.rate,
-        signals.copy(),
-        channels,
-        drop=DropDescription(20, "CW", 100, 5.0),
-        line=MeasuredLine(spans_m=SPANS),
-    )
+    facts, line = DropDescription(20, "CW", 100, 5.0), MeasuredLine(spans_m=SPANS)
+    return DropRecord(name, name, synthetic.rate, signals.copy(), channels, drop=facts, line=line)
 
 
 def simulate(
@@ -212,10 +205,7 @@ def test_hand_placed_poles_are_refined_and_none_is_removed() -> None:
     assert complex_poles(identification.modes) == pytest.approx(true, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("duration", "message"),
-    [(8.0, "s after the release"), (4.0, "the release is planned")],
-)
+@pytest.mark.parametrize(("duration", "message"), [(8.0, "s after the release"), (4.0, "the release is planned")])
 def test_short_records_are_refused(duration: float, message: str) -> None:
     *_, synthetic = simulate(60, duration=duration, weak=0.15)
     with pytest.raises(InputError, match=message):

@@ -7,9 +7,8 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
@@ -26,9 +25,9 @@ RATE, RELEASE = 25.0, 4.0
 
 
 def run_identify(folder: Path, name: str) -> None:
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
-    command += ["--export", str(folder / name / "modes.csv"), "--export", str(folder / name / "modes.uff")]
-    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+    exports = [option for suffix in ("csv", "uff") for option in ("--export", folder / name / f"modes.{suffix}")]
+    out = ("--out", folder / name, "--highest", "2.2")
+    result = pantocheck("drop", "identify", folder / "T.csv", *out, *exports, SOURCE_DATE_EPOCH="0")
     assert result.exit_code == 0, result.output
 
 
@@ -90,9 +89,8 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     """The fitted model gives every mode its measured ratio within 1 %."""
     # Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire
     # is not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
-    command = ["drop", "fit", str(folder / "out" / "modes.json"), "--line", CASE]
-    command += ["--out", str(folder / "fit"), "--element", "2"]
-    result = CliRunner().invoke(app, command)
+    options = ("--line", CASE, "--out", folder / "fit", "--element", "2")
+    result = pantocheck("drop", "fit", folder / "out" / "modes.json", *options)
     assert result.exit_code == 0, result.output
     text = (folder / "fit" / "damping.toml").read_text()
     Damping.model_validate(tomllib.loads(text)["damping"])
@@ -128,31 +126,25 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
 )
 def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "modes.json").write_bytes(content)
-    result = CliRunner().invoke(
-        app, ["drop", "fit", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
-    )
+    result = pantocheck("drop", "fit", tmp_path / "modes.json", "--line", CASE, "--out", tmp_path)
     assert result.exit_code == 2
     assert message in result.output
 
 
-def test_unknown_export_is_refused_before_the_identification(tmp_path: Path, folder: Path) -> None:
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(tmp_path / "out"), "--export", "modes.xlsx"]
-    result = CliRunner().invoke(app, command)
+def test_unknown_export_or_missing_record_is_refused(tmp_path: Path, folder: Path) -> None:
+    result = pantocheck("drop", "identify", folder / "T.csv", "--out", tmp_path / "out", "--export", "modes.xlsx")
     assert result.exit_code == 2
     assert "format '.xlsx' cannot be written" in result.output
     assert not (tmp_path / "out").exists()
-
-
-def test_missing_record_is_refused(tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["drop", "identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    result = pantocheck("drop", "identify", tmp_path / "none.csv", "--out", tmp_path)
     assert result.exit_code == 2
     assert "cannot be read" in result.output
 
 
 def test_identify_each_writes_the_population(folder: Path) -> None:
     """One record: a population of one test, which agrees with itself."""
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / "each"), "--highest", "2.2", "--each"]
-    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+    options = ("--out", folder / "each", "--highest", "2.2", "--each")
+    result = pantocheck("drop", "identify", folder / "T.csv", *options, SOURCE_DATE_EPOCH="0")
     assert result.exit_code == 0, result.output
     population = json.loads((folder / "each" / "population.json").read_text())
     jsonschema.validate(population, build_schema("population"))

@@ -36,31 +36,20 @@ def line_poles(stretch: float, rope: float = 0.0) -> ComplexArray:
     return np.asarray(-(ratio * omega + rope) + 1j * omega)
 
 
-def build_record(name: str, seed: int, tension: float, rope: float = 0.0, mass: float = 40.0) -> DropRecord:
+def build_record(name: str, seed: int, tension: float, rope: float = 0.0) -> DropRecord:
     poles = line_poles(np.sqrt(tension / 15e3), rope)
     synthetic = drop(np.random.default_rng(seed), poles, 3, 60.0, rate=25.0, noise=0.002, nonlinear=0.0, weak=0.0)
     channels = tuple(DropChannel(f"S{i}_z", i, "z", "CW", 40.0 * i) for i in (1, 2, 3))
-    facts = DropDescription(mass, "CW", 100.0, 5.0)
-    return DropRecord(
-        name,
-        name,
-        25.0,
-        synthetic.samples,
-        channels,
-        drop=facts,
-        line=MeasuredLine(spans_m=(60.0,) * 5, contact_wire_tension_N=20e3, messenger_wire_tension_N=tension),
-    )
+    facts = DropDescription(40.0, "CW", 100.0, 5.0)
+    line = MeasuredLine(spans_m=(60.0,) * 5, contact_wire_tension_N=20e3, messenger_wire_tension_N=tension)
+    return DropRecord(name, name, 25.0, synthetic.samples, channels, drop=facts, line=line)
 
 
 @pytest.fixture(scope="module")
 def population() -> Population:
     """Four good tests at two tensions and two masses, one damaged test, and a record that is too short."""
-    good = (
-        build_record("A", 1, 15e3),
-        build_record("B", 2, 15e3, mass=30.0),
-        build_record("C", 3, 15e3),
-        build_record("D", 4, 16e3),
-    )
+    good = [build_record(name, seed, 15e3 if seed < 4 else 16e3) for seed, name in enumerate("ABCD", 1)]
+    good[1] = replace(good[1], drop=replace(good[1].drop, mass=30.0))
     short = replace(good[0], name="short", signals=good[0].signals[:200])
     return identify_population((*good, build_record("rope", 5, 16e3, ROPE), short), highest=3.4)
 
@@ -135,28 +124,21 @@ def test_joint_mode_lies_within_half_of_the_half_power_band(population: Populati
 
 
 # Statistics of a population: interval of a median, and variability against frequency.
-def test_interval_of_one_test_is_that_of_its_standard_deviations() -> None:
+def test_interval_of_a_median_reflects_deviations_and_differences() -> None:
     """One value of deviation 0.1: quantiles of a normal distribution; 1000 replicates give them to 0.1 deviations."""
     low, high = median_interval([np.array([2.0])], [np.array([0.1])])
     assert (low, high) == pytest.approx((2 - 0.196, 2 + 0.196), abs=0.015)
-
-
-def test_interval_over_tests_reflects_their_differences() -> None:
-    """Exact values of tests that differ: the interval of the median of five is at least that of their middle three."""
+    # Exact values of tests that differ: the interval of the median of five is at least that of their middle three.
     tests = [np.full(3, value) for value in (1.0, 2.0, 3.0, 4.0, 5.0)]
     exact = [np.zeros(3)] * 5
     assert median_interval(tests, exact) == (1.0, 5.0)
     assert median_interval([tests[2]] * 5, exact) == (3.0, 3.0)
     assert median_interval(tests, exact) == median_interval(tests, exact)
-
-
-def test_test_without_values_is_redrawn_like_the_others() -> None:
     assert median_interval([np.array([1.0]), np.zeros(0)], [np.zeros(1), np.zeros(0)]) == (1.0, 1.0)
 
 
 @pytest.mark.parametrize(
-    ("values", "correlation"),
-    [([3.0, 2.0, 1.0], -1.0), ([1.0, 2.0, 4.0, 9.0], 1.0), ([4.0, 2.0, 3.0], -0.5)],
+    ("values", "correlation"), [([3.0, 2.0, 1.0], -1.0), ([1.0, 2.0, 4.0, 9.0], 1.0), ([4.0, 2.0, 3.0], -0.5)]
 )
 def test_rank_correlation(values: list[float], correlation: float) -> None:
     """Spearman: 1 - 6 sum d^2 / (n (n^2 - 1)); two values and equal values have none."""

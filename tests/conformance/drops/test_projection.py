@@ -22,8 +22,7 @@ DT, N = 0.05, 400
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "first", "last"),
-    [(0.3, 4.0, 6, 80), (0.31, 4.04, 7, 80), (0.0, 4.0, 1, 80), (0.3, 30.0, 6, 199)],
+    ("low", "high", "first", "last"), [(0.3, 4.0, 6, 80), (0.31, 4.04, 7, 80), (0.0, 4.0, 1, 80), (0.3, 30.0, 6, 199)]
 )
 def test_block_holds_the_lines_of_its_band(low: float, high: float, first: int, last: int) -> None:
     """Lines at multiples of 1 / 20 s from the lower to the upper edge; neither the offset nor the Nyquist line."""

@@ -10,10 +10,9 @@ from typing import Any
 
 import pytest
 from pydantic import ValidationError
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.toml_edit import change_keys, write_toml
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -41,10 +40,6 @@ def results() -> Results:
     return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
 
 
-def pantocheck(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
 def build_command(cases: str, out: Path, accepted: str, formats: str = "json") -> list[str | Path]:
     """Run on the published statistics, whose unverified records the user accepts."""
     options = ["--system", PASSING, *CRITERIA, "--formats", formats, "--accept-unverified", accepted]
@@ -66,11 +61,14 @@ def changed(results: Results, name: str, value: float | list[float]) -> Results:
     )
 
 
-def test_same_values_do_not_drift(results: Results) -> None:
+def test_same_values_do_not_drift_and_results_round_trip(results: Results, tmp_path: Path) -> None:
     compared = compare_with_baseline(results, results, 0.1, "b.json")
     assert compared.verdict == "pass"
     assert [len(case.criteria) for case in compared.cases] == [8, 8]
     assert compared.cases[0].notes[-1].startswith("Compared with baseline b.json: 8 values, of which 0 drifted")
+    (tmp_path / "r.json").write_bytes(results.to_json())
+    assert read_results(tmp_path / "r.json") == results
+    assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
 
 
 @pytest.mark.parametrize(("was", "drifts"), [(0.230, False), (0.236, True)])
@@ -124,7 +122,7 @@ def test_ratio_near_zero_drifts_by_a_hundredth(results: Results, was: float, dri
     assert any(row.baseline is not None for row in tiny.cases[0].criteria) is drifts
 
 
-def test_drift_is_a_verdict_of_its_own(results: Results, drifted: Results) -> None:
+def test_drift_is_a_verdict_of_its_own_and_no_other_row_lacks_a_trust(results: Results, drifted: Results) -> None:
     """All eight criteria pass; the accepted published record keeps them at a pass."""
     assert (drifted.verdict, drifted.criteria_verdict, drifted.baseline_verdict) == ("fail", "pass", "fail")
     case = drifted.cases[0]
@@ -169,13 +167,10 @@ def test_hidden_drift_is_found(drifted: Results, forgery: str) -> None:
     assert find_discrepancies(Results.model_validate(compared))
 
 
-def test_hidden_verdict_of_the_run_by_the_baseline_is_found(drifted: Results) -> None:
+def test_hidden_verdict_or_comparison_of_the_run_is_found(drifted: Results) -> None:
     for verdict in ("pass", None):
         found = find_discrepancies(drifted.model_copy(update={"baseline_verdict": verdict}))
         assert any(text.startswith("baseline: ") for text in found)
-
-
-def test_drift_without_its_comparison_is_a_contradiction(drifted: Results) -> None:
     compared = drifted.to_dict()
     del compared["baseline_verdict"], compared["cases"][0]["baseline"], compared["cases"][1]["baseline"]
     found = find_discrepancies(Results.model_validate(compared))
@@ -189,12 +184,23 @@ def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
     assert compare_with_baseline(results, lossy, 3.0, "b").verdict == "pass"
 
 
-def test_missing_value_is_skipped(results: Results) -> None:
+def test_value_or_case_that_one_side_lacks_is_skipped(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
     assert finding.reason == "the baseline has 20 N; now: the summary does not state this quantity"
     assert compared.verdict == "skip"
     assert find_discrepancies(compared) == []
+    other = results.model_copy(update={"cases": results.cases[:1]})
+    compared = compare_with_baseline(results, other, 1.0, "b.json")
+    assert compared.cases[0].verdict == "unverified"
+    lacking = compared.cases[1]
+    assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
+    assert compared.verdict == "skip"
+    assert find_discrepancies(compared) == []
+    case = replace(select_cases(["en50318-2002/250"])[0], limits=())
+    unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
+    skipped = run_cases([unknown], choose_system(PASSING))
+    assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
 
 
 @pytest.mark.parametrize(
@@ -259,23 +265,6 @@ def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_
     assert "has other limits" in result.output
 
 
-def test_case_that_the_baseline_lacks_is_skipped(results: Results) -> None:
-    other = results.model_copy(update={"cases": results.cases[:1]})
-    compared = compare_with_baseline(results, other, 1.0, "b.json")
-    assert compared.cases[0].verdict == "unverified"
-    lacking = compared.cases[1]
-    assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
-    assert compared.verdict == "skip"
-    assert find_discrepancies(compared) == []
-
-
-def test_ungraded_case_keeps_its_verdict(results: Results) -> None:
-    case = replace(select_cases(["en50318-2002/250"])[0], limits=())
-    unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
-    skipped = run_cases([unknown], choose_system(PASSING))
-    assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
-
-
 def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: Path) -> None:
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
@@ -287,17 +276,8 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
     assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
     plan = tmp_path / "plan.toml"
-    write_toml(
-        plan,
-        {
-            "system": PASSING,
-            "verdicts": "criteria",
-            "cases": ["en50318-2002/*"],
-            "baseline": "baseline.json",
-            "formats": ["json"],
-            "accept_unverified": [results.system.name],
-        },
-    )
+    options = {"verdicts": "criteria", "formats": ["json"], "accept_unverified": [results.system.name]}
+    write_toml(plan, options | {"system": PASSING, "cases": ["en50318-2002/*"], "baseline": "baseline.json"})
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0
 
@@ -342,16 +322,8 @@ def test_baseline_is_read_before_anything_is_computed(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_results_round_trip(results: Results, tmp_path: Path) -> None:
-    (tmp_path / "r.json").write_bytes(results.to_json())
-    assert read_results(tmp_path / "r.json") == results
-    assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
-
-
 @pytest.mark.parametrize("value", [1e15, -1e13, [1.0] * 200_000])
-def test_baseline_of_extreme_values_is_refused_before_the_run(
-    results: Results, tmp_path: Path, value: float | list[float]
-) -> None:
+def test_extreme_values_are_refused_before_a_run(results: Results, tmp_path: Path, value: float | list[float]) -> None:
     """A limit above 1e15 is no valid result, and 200 000 criteria take minutes."""
     path, out = tmp_path / "b.json", tmp_path / "out"
     path.write_bytes(changed(results, "std_force_N", value).to_json())
@@ -361,9 +333,7 @@ def test_baseline_of_extreme_values_is_refused_before_the_run(
     assert not out.exists()
 
 
-def test_results_are_kept_if_the_comparison_fails(
-    results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_results_outlive_the_comparison(results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "b.json").write_bytes(results.to_json())
 
     def fail(*_: object) -> Results:
@@ -389,9 +359,7 @@ def test_impossible_value_of_a_baseline_is_refused(results: Results, tmp_path: P
 
 
 @pytest.mark.parametrize(("number", "accepted"), [(9_992, True), (9_994, False)])
-def test_number_of_values_of_a_baseline_is_bounded(
-    results: Results, tmp_path: Path, number: int, accepted: bool
-) -> None:
+def test_number_of_values_is_bounded(results: Results, tmp_path: Path, number: int, accepted: bool) -> None:
     """The case has eight quantities; one of them gets a list of values."""
     path = tmp_path / "b.json"
     path.write_bytes(changed(results, "std_force_N", [1.0] * number).to_json())

@@ -25,12 +25,15 @@ def test_steps_of_a_library_case(name: str) -> None:
         assert steps == ([] if case.file.edition is None else ["reference_models"])
 
 
-def test_damping_study_of_a_passage_keeps_its_step_and_an_own_line_has_none(
-    case_250: Case, edited_case: EditedCase
-) -> None:
+def test_study_of_a_passage_keeps_its_step(case_250: Case, edited_case: EditedCase) -> None:
     own = load_case(edited_case("250.toml", {"id": "own/250"}))
     steps = [grade_case(case, Skipped("not run"), "secondary").steps for case in (add_damping_study(case_250), own)]
     assert steps == [["reference_models"], []]
+    (case,) = select_cases(["en50318-2018/ac-simple/static"])
+    result = grade_case(case, Delivered(static={"wave_speed_m_s": 120.0}), "secondary")
+    assert result.quantities == {"0": {"wave_speed_m_s": 120.0}}
+    assert result.run.evaluated_m is None
+    assert result.record is None
 
 
 @pytest.mark.parametrize("name", ["unknown_m", "max_uplift_at_support_mm", "zzz_m"])
@@ -40,11 +43,3 @@ def test_every_static_quantity_must_be_one_of_the_line_at_rest(two_pantograph_ca
     result = grade_case(two_pantograph_case, Delivered(Wave().record(two_pantograph_case), static), "secondary")
     assert result.verdict == "error"
     assert name in (result.reason or "")
-
-
-def test_static_case_needs_no_record() -> None:
-    (case,) = select_cases(["en50318-2018/ac-simple/static"])
-    result = grade_case(case, Delivered(static={"wave_speed_m_s": 120.0}), "secondary")
-    assert result.quantities == {"0": {"wave_speed_m_s": 120.0}}
-    assert result.run.evaluated_m is None
-    assert result.record is None

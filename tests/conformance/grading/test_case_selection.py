@@ -55,16 +55,12 @@ def test_default_run_of_another_system_takes_the_cases_with_converged_values() -
 
 
 @pytest.mark.usefixtures("verifiable")
-def test_verification_alone_takes_no_other_case_than_required_ones() -> None:
+def test_verification_takes_no_other_case_than_required_or_named_ones() -> None:
     """The static check that the twin requires has no converged values here: it is shown for information."""
     prepared = prepare_plan(Plan(verdicts="verification"))
     assert ids(prepared) == {PUBLISHED, TWIN, "en50318-2018/ac-simple/static"}
     assert prepared.participation.information == ("en50318-2018/ac-simple/static",)
-
-
-@pytest.mark.usefixtures("verifiable")
-def test_named_case_takes_part_in_both_verdicts() -> None:
-    """A case that the user names has no limit that counts: the criteria stay informative."""
+    # A case that the user names has no limit that counts: the criteria stay informative.
     assert prepare_plan(Plan(cases=(TWIN,), verdicts="both")).participation.verification_only == ()
 
 

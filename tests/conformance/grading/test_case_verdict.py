@@ -7,10 +7,9 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from typer.testing import CliRunner
 
+from helpers.command_line import pantocheck
 from helpers.example_results import example, passing_case
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import CaseVerification
@@ -53,9 +52,7 @@ def record(state: RecordState, demanded: bool = True) -> RecordFacts:
         (["fail", "skip"], "unverified", "fail"),
     ],
 )
-def test_case_is_as_good_as_its_worst_counted_criterion(
-    criteria: list[Verdict], state: RecordState, verdict: Verdict
-) -> None:
+def test_case_is_as_good_as_its_worst_row(criteria: list[Verdict], state: RecordState, verdict: Verdict) -> None:
     assert judge_case(criteria, record(state)) == verdict
 
 
@@ -65,24 +62,18 @@ def test_pass_needs_a_counted_criterion_and_a_verified_record(criteria: list[Ver
     assert passes == ("pass" in criteria and set(criteria) <= {"pass", "info"} and state == "verified")
 
 
-def test_profile_that_shows_the_state_does_not_lower_the_verdict() -> None:
-    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
-    assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
-
-
-def test_worst_case_that_takes_part_decides() -> None:
+def test_only_pass_ends_with_exit_code_0_and_the_worst_case_decides() -> None:
+    assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
+        "pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2
+    }  # fmt: skip
     cases: list[tuple[str, Verdict]] = [("a", "pass"), ("b", "unverified"), ("c", "fail")]
     assert Participation().judge_run(cases, "mine") == "fail"
     assert Participation(information=("c",)).judge_run(cases, "mine") == "unverified"
     assert Participation(("c",), ("mine",)).judge_run(cases, "mine") == "pass"
     assert Participation(("c",), ("other",)).judge_run(cases, "mine") == "unverified"
     assert Participation(("a", "b", "c")).judge_run(cases, "mine") == "info"
-
-
-def test_only_pass_ends_with_exit_code_0() -> None:
-    assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
-        "pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2
-    }  # fmt: skip
+    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
+    assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
 
 
 def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250: Case) -> None:
@@ -95,7 +86,7 @@ def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250
 
 def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: Path) -> None:
     def exit_code(*arguments: str) -> int:
-        return CliRunner().invoke(app, [*PUBLISHED, "--out", str(tmp_path), *arguments]).exit_code
+        return pantocheck(*PUBLISHED, "--out", tmp_path, *arguments).exit_code
 
     def junit() -> ElementTree.Element:
         return ElementTree.parse(tmp_path / "junit.xml").getroot()
@@ -111,8 +102,8 @@ def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: P
 
 def test_published_statistics_do_not_meet_the_converged_solution(tmp_path: Path) -> None:
     """Verification is requested by default of another system; its result is shown as it comes out."""
-    arguments = [*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", str(tmp_path)]
-    assert CliRunner().invoke(app, arguments).exit_code == 1
+    arguments = (*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", tmp_path)
+    assert pantocheck(*arguments).exit_code == 1
     results = read_results(tmp_path / "results.json")
     assert (results.verdict, results.criteria_verdict, results.verification_verdict) == ("fail", "pass", "fail")
 
@@ -138,9 +129,8 @@ def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None
     """A limit that does not count is skipped; so is a failure in a case for information."""
     root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     assert "provisional limit does not count" in "".join(e.get("message", "") for e in root.iter("skipped"))
-    shown = ElementTree.fromstring(
-        render_junit(Results.model_validate(results | {"information": ["en50318-2002/300"]}))
-    )
+    informative = Results.model_validate(results | {"information": ["en50318-2002/300"]})
+    shown = ElementTree.fromstring(render_junit(informative))
     assert (root.get("failures"), shown.get("failures")) == ("1", "0")
     assert any(e.get("message", "").startswith("for information: failure: ") for e in shown.iter("skipped"))
 
@@ -217,14 +207,11 @@ def test_decision_is_stable(pairs: list[tuple[Verdict, Verdict | None]], request
     assert read_participation(results).decide_run(results) == results
 
 
-def test_requested_verdict_without_a_case_is_informative() -> None:
+def test_case_without_a_limit_or_verdict_that_counts_is_informative() -> None:
     alone = decide(Participation(requested=("verification",)), case_result("a", "pass", None))
     assert (alone.verdict, alone.verification_verdict, alone.criteria_verdict) == ("info", None, "pass")
     both = decide(Participation(requested=("criteria", "verification")), case_result("a", "pass", None))
     assert (both.verdict, both.cases[0].verdict) == ("info", "pass")
-
-
-def test_case_without_a_limit_that_counts_is_judged_by_its_verification() -> None:
     cases = case_result("a", "pass", "pass"), case_result("b", "info", "pass")
     both = ("criteria", "verification")
     assert decide(Participation(requested=both), *cases).verdict == "info"
@@ -234,20 +221,20 @@ def test_case_without_a_limit_that_counts_is_judged_by_its_verification() -> Non
     assert (shown.verdict, shown.criteria_verdict, shown.verification_verdict) == ("pass", "pass", "pass")
 
 
-def test_drift_from_a_baseline_counts_whichever_verdict_is_requested() -> None:
+def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     drifted = case_result("a", "fail", "pass", drift="fail")
     assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
     failed = case_result("a", "fail", "pass")
     assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
+    both, name = ("criteria", "verification"), example()["system"]["name"]
+    case = case_result("a", "unverified", "unverified")
+    assert decide(Participation(requested=both), case).verdict == "unverified"
+    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"
 
 
 @given(VERDICTS, st.none() | VERDICTS, VERDICTS, REQUESTS, st.booleans())
 def test_baseline_never_improves_a_verdict(
-    criteria: Verdict,
-    verification: Verdict | None,
-    drift: Verdict,
-    requested: tuple[VerdictName, ...],
-    listed: bool,
+    criteria: Verdict, verification: Verdict | None, drift: Verdict, requested: tuple[VerdictName, ...], listed: bool
 ) -> None:
     """Whether its criteria are listed or only its verdict is stated; the other verdicts do not depend on it."""
     participation = Participation(requested=requested, accepted_unverified=(example()["system"]["name"],))
@@ -259,15 +246,6 @@ def test_baseline_never_improves_a_verdict(
     assert rank(results.verdict) <= rank(without.verdict)
     assert rank(results.cases[0].verdict) <= rank(without.cases[0].verdict)
     assert rank(results.cases[0].verdict) <= rank(drift)
-    assert (results.criteria_verdict, results.verification_verdict) == (
-        without.criteria_verdict,
-        without.verification_verdict,
-    )
+    assert results.criteria_verdict == without.criteria_verdict
+    assert results.verification_verdict == without.verification_verdict
     assert read_participation(results).decide_run(results) == results
-
-
-def test_accepted_unverified_record_passes_both_verdicts() -> None:
-    both, name = ("criteria", "verification"), example()["system"]["name"]
-    case = case_result("a", "unverified", "unverified")
-    assert decide(Participation(requested=both), case).verdict == "unverified"
-    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"

@@ -34,12 +34,14 @@ def test_values_of_the_2002_reference_model() -> None:
     )
 
 
-def test_twin_wires_count_twice() -> None:
+def test_twin_wires_count_twice_and_a_static_case_has_no_doppler_factor() -> None:
     [case] = select_cases(["en50318-2002/250"])
     contact = case.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     twin = case.line.model_copy(update={"contact_wire": contact})
     [mass] = [fact.value for fact in list_derived_facts(replace(case, line=twin)) if fact.unit == "kg/m"]
     assert mass == pytest.approx(2 * 1.35 + 1.07, rel=1e-12)
+    [case] = select_cases(["en50318-2018/ac-simple/static"])
+    assert [fact.unit for fact in list_derived_facts(case)] == ["m/s", "m/s", "kg/m", "Hz"]
 
 
 def test_uplift_forces_are_those_of_the_run_and_unknown_for_a_foreign_system() -> None:
@@ -52,11 +54,6 @@ def test_uplift_forces_are_those_of_the_run_and_unknown_for_a_foreign_system() -
         assert fact.basis == f"tuned to a mean contact force of {lift.target_mean_force:g} N"
     foreign = build_ungraded(case, "skip", "not run").derived
     assert not [fact for fact in foreign if fact.name.startswith("Uplift force")]
-
-
-def test_static_case_has_no_doppler_factor() -> None:
-    [case] = select_cases(["en50318-2018/ac-simple/static"])
-    assert [fact.unit for fact in list_derived_facts(case)] == ["m/s", "m/s", "kg/m", "Hz"]
 
 
 def test_table_shows_five_digits_and_is_left_out_without_values() -> None:

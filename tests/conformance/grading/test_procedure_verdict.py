@@ -48,9 +48,7 @@ SPEEDS = claim("speed", claimed=(160.0, 200.0))
         ([], None),
     ],
 )
-def test_speeds_between_the_passed_runs_are_verified(
-    evidence: list[Evidence], verified: tuple[float, float] | None
-) -> None:
+def test_speeds_between_passed_runs(evidence: list[Evidence], verified: tuple[float, float] | None) -> None:
     judged = judge_claim(SPEEDS, [SPEEDS], evidence)
     assert judged.verdict == ("skip" if verified is None else "pass")
     assert (judged.reason is None) == (verified is not None)
@@ -68,13 +66,10 @@ def test_every_claimed_line_and_pantograph_needs_the_speeds() -> None:
     assert judge_claim(SPEEDS, both, [*evidence, run(4, 200, "B")]).verdict == "skip"
 
 
-def test_runs_on_other_lines_do_not_verify_a_line() -> None:
+def test_claims_on_lines_spacing_and_inputs_need_runs_that_have_them() -> None:
     line = claim("line", "A")
     assert judge_claim(line, [line], [run(1, 160, "B")]).verdict == "skip"
     assert judge_claim(line, [line], [run(1, 160, "A")]).evidence == ["pair/1"]
-
-
-def test_spacing_and_changed_inputs_need_runs_that_have_them() -> None:
     spacing = claim("spacing", claimed=(85.0, 200.0))
     single = [run(1, 160)]
     assert judge_claim(spacing, [spacing], single).verdict == "skip"

@@ -27,9 +27,7 @@ START: dict[str, Any] = {"place_m": 60.0, "ramp_m": 0.0, "state": "equilibrium_u
 
 
 def delivered(case: Case, start: StartTable | None) -> Delivered:
-    outcome = Wave().run(case)
-    assert isinstance(outcome, Delivered)
-    return replace(outcome, start=start)
+    return replace(Wave().run(case), start=start)
 
 
 @pytest.mark.parametrize(
@@ -46,13 +44,10 @@ def test_every_difference_is_named(case_250: Case, changes: dict[str, Any], text
     assert agreement.text == f"The start of the record differs: {text}."
 
 
-def test_same_start_within_a_decimetre(case_250: Case) -> None:
+def test_start_within_a_decimetre_is_that_of_the_last_pantograph(case_250: Case, two_pantograph_case: Case) -> None:
     """0.05 m lie inside the tolerance of 0.1 m."""
     agreement = compare_starts(case_250, StartTable(**(START | {"place_m": 60.05, "ramp_m": 0.05})))
     assert agreement.state == "as in the case"
-
-
-def test_start_of_a_train_is_that_of_its_last_pantograph(two_pantograph_case: Case) -> None:
     assert compare_starts(two_pantograph_case, StartTable(**START)).state == "as in the case"
     first = StartTable(**(START | {"place_m": two_pantograph_case.start_positions[0]}))
     assert "starts at 210 m, that of the case at 60 m" in compare_starts(two_pantograph_case, first).text
@@ -102,7 +97,6 @@ def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertai
 @pytest.mark.parametrize("start", [START, START | {"state": "other", "ramp_m": 12.5}, None])
 def test_start_of_a_sidecar_reaches_the_system(case_250: Case, tmp_path: Path, start: dict[str, Any] | None) -> None:
     record = delivered(case_250, None).record
-    assert record is not None
     write_record(tmp_path / "250.csv", record, case=case_250.id, further={"start": start})
     expected = None if start is None else StartTable(**start)
     assert read_record(tmp_path / "250.csv")[1].start == expected

@@ -1,5 +1,6 @@
 """Low-pass filter: -3 dB point, slope, phase and stability follow from its definition."""
 
+from contextlib import nullcontext
 from typing import Literal
 
 import numpy as np
@@ -76,15 +77,12 @@ def test_constant_force_passes_unchanged_from_the_first_sample(phase: Literal["z
     assert_allclose(filtered, 120.0, rtol=1e-9)
 
 
-def test_record_that_begins_and_ends_on_a_slope_has_little_transient() -> None:
+def test_constant_slope_and_short_record_have_little_transient() -> None:
     """A slope of 50 N/s continued at both ends: 2e-4 N are left of the transient (0.69 N without padding)."""
     slope = 120 + 50 * np.arange(2000) / RATE
     assert_allclose(Filter()(slope, RATE), slope, atol=1e-3)
-
-
-def test_rate_too_low_for_the_cutoff_is_rejected() -> None:
-    with pytest.raises(BandNotObservable, match="40 samples per second; a filter at 20 Hz needs at least 50"):
-        Filter()(np.ones(100), 40.0)
+    # Two periods of 20 Hz at 1000 Hz are 100 samples; a record of 20 samples has 19 to mirror.
+    assert_allclose(Filter()(np.full(20, 120.0), RATE), 120.0, rtol=1e-9)
 
 
 def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice() -> None:
@@ -100,44 +98,28 @@ def test_force_filtered_at_the_same_cutoff_is_not_filtered_twice() -> None:
     [((1 - CUTOFF_TOLERANCE) * 20, False), ((1 + CUTOFF_TOLERANCE) * 20, False), (20.03, True), (None, True)],
 )
 def test_cutoffs_are_the_same_to_a_thousandth(applied: float | None, filtered: bool) -> None:
-    """A force delivered at 20 Hz is taken as it is; one delivered above goes through the filter."""
+    """A force delivered at 20 Hz is taken as it is; one delivered above is filtered, one below cannot be graded."""
     assert needs_filter(Filter(), applied) is filtered
-
-
-def test_force_filtered_below_the_cutoff_cannot_be_graded() -> None:
-    with pytest.raises(
-        AlreadyFiltered, match=r"filtered at 19\.97 Hz before delivery; its content up to 20 Hz is not known"
-    ):
+    with pytest.raises(AlreadyFiltered, match=r"at 19\.97 Hz before delivery; its content up to 20 Hz is not known"):
         needs_filter(Filter(), 19.97)
-
-
-@pytest.mark.parametrize(("order", "phase"), [(6, "zero"), (5, "causal"), (1, "causal")])
-def test_orders_of_a_filter(order: int, phase: Literal["zero", "causal"]) -> None:
-    assert Filter(order=order, phase=phase).order == order
 
 
 @pytest.mark.parametrize(
     ("order", "phase", "message"),
     [
+        *((order, phase, None) for order, phase in ((6, "zero"), (5, "causal"), (1, "causal"))),
         (5, "zero", "5 is odd. Give an even order: a zero-phase filter divides it between two passes"),
         *((order, phase, "greater than or equal to 1") for order, phase in ((0, "zero"), (-2, "zero"), (0, "causal"))),
     ],
 )
-def test_orders_without_a_filter(order: int, phase: Literal["zero", "causal"], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        Filter(order=order, phase=phase)
+def test_orders_of_a_filter(order: int, phase: Literal["zero", "causal"], message: str | None) -> None:
+    with nullcontext() if message is None else pytest.raises(ValueError, match=message):
+        assert Filter(order=order, phase=phase).order == order
 
 
 @pytest.mark.parametrize("phase", ["zero", "causal"])
 def test_filter_acts_up_to_two_fifths_of_the_rate(phase: Literal["zero", "causal"]) -> None:
     """20 Hz is 0.4 of 50 samples per second."""
     assert Filter(phase=phase).sections(50.0).shape[1] == 6
-    with pytest.raises(
-        BandNotObservable, match="the record has 49 samples per second; a filter at 20 Hz needs at least 50"
-    ):
-        Filter(phase=phase).sections(49.0)
-
-
-def test_record_shorter_than_the_padding_is_filtered() -> None:
-    """Two periods of 20 Hz at 1000 Hz are 100 samples; a record of 20 samples has 19 to mirror."""
-    assert_allclose(Filter()(np.full(20, 120.0), RATE), 120.0, rtol=1e-9)
+    with pytest.raises(BandNotObservable, match="49 samples per second; a filter at 20 Hz needs at least 50"):
+        Filter(phase=phase)(np.ones(100), 49.0)

@@ -41,9 +41,7 @@ def pantograph(
         ((199.99, 399.99), 4000, 8000),
     ],
 )
-def test_section_holds_the_samples_from_its_start_to_its_end(
-    section: tuple[float, float], first: int, last: int
-) -> None:
+def test_section_holds_its_samples(section: tuple[float, float], first: int, last: int) -> None:
     """A tolerance of a nanometre for positions in floating point: 200 m is sample 4000."""
     inside = pantograph(section).inside
     assert (inside.start, inside.stop) == (first, last)
@@ -72,9 +70,7 @@ def test_section_is_covered_to_one_sample(first: float, samples: int, covered: b
     ("before", "after", "warned"), [(5.0, 5.0, False), (4.9, 6.0, True), (6.0, 4.8, True), (5.1, 5.1, False)]
 )
 @pytest.mark.parametrize("number", [1, 2])
-def test_record_without_room_for_the_filter_gives_a_warning(
-    before: float, after: float, warned: bool, number: int
-) -> None:
+def test_filter_needs_room(before: float, after: float, warned: bool, number: int) -> None:
     """Two periods of 20 Hz at 50 m/s are 5 m, on either side of the section of either pantograph."""
     position = np.linspace(200 - before, 400 + after, 4201)
     channel = ForceChannel(np.full(position.size, 119.0), RATE, Filter())
@@ -96,11 +92,6 @@ def test_statistic_needs_four_periods_of_its_cutoff(length: float, graded: bool,
             assert getattr(signals, name).size == round(length / 0.05)
 
 
-def test_supports_within_half_a_metre_belong_to_the_section() -> None:
-    supports = np.array([199.4, 199.5, 200.0, 300.0, 400.5, 400.6])
-    assert supports_inside(supports, (200.0, 400.0)).tolist() == [False, True, True, True, True, False]
-
-
 def passing(end: float) -> np.ndarray:
     """Positions of the last pantograph in the three samples of `line`."""
     return np.array([170.0, 240.0, end])
@@ -114,10 +105,18 @@ def line(**changes: Any) -> LineSignals:
     return LineSignals((240.0, 360.0), position, uplift, **(known | changes))
 
 
-def test_supports_and_uplift_of_the_section() -> None:
+def test_supports_and_uplift_of_the_section_or_the_reason_without_them() -> None:
     assert_allclose(line().supports, [240.0, 300.0, 360.0])
     assert_allclose(line().uplift.max(axis=1), [0.02, 0.03, 0.04])
     line().check_supports()
+    supports = np.array([199.4, 199.5, 200.0, 300.0, 400.5, 400.6])
+    assert supports_inside(supports, (200.0, 400.0)).tolist() == [False, True, True, True, True, False]
+    with pytest.raises(SupportsMissing, match="does not state span_m"):
+        line(line_supports=None).check_supports()
+    with pytest.raises(ChannelMissing, match="the record has no uplift at supports"):
+        _ = LineSignals((240.0, 360.0)).supports
+    with pytest.raises(ChannelMissing, match="the record has no uplift at a support between 500 m and 600 m"):
+        _ = LineSignals((500.0, 600.0), np.array([300.0]), np.array([[0.0, 0.05]])).uplift
 
 
 @pytest.mark.parametrize("support", [0, 1, 2])
@@ -184,12 +183,3 @@ def test_missing_uplift_counts_as_missing_up_to_that_distance(support: int) -> N
     uplift[1 + support] = np.nan
     with pytest.raises(SupportsMissing, match=f"no uplift at 1 of 3 supports of the analysis section: {place:g} m"):
         line(support_uplift=uplift).check_supports()
-
-
-def test_line_without_known_or_measured_supports_states_the_reason() -> None:
-    with pytest.raises(SupportsMissing, match="does not state span_m"):
-        line(line_supports=None).check_supports()
-    with pytest.raises(ChannelMissing, match="the record has no uplift at supports"):
-        _ = LineSignals((240.0, 360.0)).supports
-    with pytest.raises(ChannelMissing, match="the record has no uplift at a support between 500 m and 600 m"):
-        _ = LineSignals((500.0, 600.0), np.array([300.0]), np.array([[0.0, 0.05]])).uplift

@@ -31,15 +31,12 @@ def spans(random: np.random.Generator, count: int) -> RealArray:
     return 120 + np.repeat(amplitude, 100) * np.sin(2 * np.pi * phase) + noise
 
 
-def test_every_statistic_has_replicates() -> None:
+def test_every_statistic_of_a_sampling_has_replicates() -> None:
     """A statistic of `Sampling` that `BlockReplicates` inherits is one number: its uncertainty would be zero."""
     statistics = {name for name in vars(Sampling) if not name.startswith("_")}
     assert len(statistics) >= 7
     assert statistics <= vars(BlockReplicates).keys()
-
-
-def test_any_statistic_has_replicates() -> None:
-    """Replicates of the mean by `apply` are those of `mean`; the median of a normal force scatters by sqrt(pi / 2)."""
+    # Replicates of the mean by `apply` are those of `mean`; the median of a normal force scatters by sqrt(pi / 2).
     random = np.random.default_rng(7)
     force = random.standard_normal(6000)
     replicates = BlockReplicates(random.integers(0, 5900, (400, 60)), 100)
@@ -56,8 +53,7 @@ SIGMA = np.sqrt(30**2 * (1 + 0.3**2) / 2 + 8**2)
 
 @pytest.mark.parametrize("count", [20, 60])
 def test_intervals_of_95_percent_cover_the_truth(count: int) -> None:
-    """400 records give the coverage within 2.2 % (two standard deviations). A block bootstrap of few blocks is known to
-    stay some percent below 95 %, because the distribution of sigma is skewed: 90 % is acceptable, less is a defect."""
+    """400 records give the coverage within 2.2 % (two standard deviations); few blocks stay some percent below 95 %."""
     random = np.random.default_rng(4)
     hits = np.zeros(2)
     for i in range(400):
@@ -81,20 +77,19 @@ def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
         assert short[name] / long[name] == pytest.approx(4, rel=0.35)  # an estimate from 40 blocks is off by a fifth
 
 
-def test_same_record_has_the_same_uncertainty_and_another_digest_another() -> None:
+def test_same_record_has_the_same_uncertainty_and_a_short_one_none() -> None:
     signals = force_signals(spans(np.random.default_rng(6), 50))
     first = bootstrap_uncertainties(signals, 1.0, DIGEST)
     assert first == bootstrap_uncertainties(signals, 1.0, DIGEST)
     assert first != bootstrap_uncertainties(signals, 1.0, "ab" * 32)
     assert set(first) >= {"max_force_N", "min_force_N", "contact_loss_pct", "cov_20"}
-
-
-def test_short_record_has_no_uncertainty() -> None:
     assert bootstrap_uncertainties(force_signals(spans(np.random.default_rng(7), 4)), 1.0, DIGEST) == {}
     cut_short = replace(
         force_signals(spans(np.random.default_rng(7), 40)), section=(0.0, 3000.0)
     )  # 40 spans are 2400 m
     assert bootstrap_uncertainties(cut_short, 1.0, DIGEST) == {}
+    signals = force_signals(spans(np.random.default_rng(7), 6))
+    assert bootstrap_uncertainties(signals, 0.001, DIGEST) == bootstrap_uncertainties(signals, 0.01, DIGEST)
 
 
 STARTS = np.array([[0, 3, 7, 7], [7, 0, 1, 2], [5, 5, 5, 5]])
@@ -164,8 +159,3 @@ def test_five_blocks_are_needed(seconds: float, available: bool) -> None:
     """4.5 blocks are rounded to five."""
     force = spans(np.random.default_rng(7), 6)[: round(100 * seconds)]
     assert bool(bootstrap_uncertainties(force_signals(force), 1.0, DIGEST)) is available
-
-
-def test_block_has_at_least_one_sample() -> None:
-    signals = force_signals(spans(np.random.default_rng(7), 6))
-    assert bootstrap_uncertainties(signals, 0.001, DIGEST) == bootstrap_uncertainties(signals, 0.01, DIGEST)

@@ -27,37 +27,12 @@ from verification.attacks import fuzz, fuzz_files, fuzz_uses
 ROUNDS = 12
 
 NAMES = (
-    "csv table",
-    "csv sidecar",
-    "csv table, digest known",
-    "profile",
-    "h5 table",
-    "h5 sidecar",
-    "h5 table, digest known",
-    "logger: a.csv",
-    "logger: a.h5",
-    "logger: a.mat",
-    "logger: a.uff",
-    "logger: sidecar",
-    "summary record",
-    "failing summary record",
-    "case: 250.toml",
-    "case: line.toml",
-    "case: pantograph.toml",
-    "limits",
-    "plan",
-    "dossier",
-    "results as baseline",
-    "certificate",
-    "drop: a.csv",
-    "drop: a.h5",
-    "drop: binary.uff",
-    "drop: ascii.uff",
-    "drop: version_5.mat",
-    "drop: version_7_3.mat",
-    "drop: sidecar",
-    "modes",
-    "answer of a program",
+    *("csv table", "csv sidecar", "csv table, digest known", "h5 table", "h5 sidecar", "h5 table, digest known"),
+    *("logger: a.csv", "logger: a.h5", "logger: a.mat", "logger: a.uff", "logger: sidecar", "profile", "limits"),
+    *("summary record", "failing summary record", "case: 250.toml", "case: line.toml", "case: pantograph.toml"),
+    *("plan", "dossier", "results as baseline", "certificate", "modes", "answer of a program"),
+    *("drop: a.csv", "drop: a.h5", "drop: binary.uff", "drop: ascii.uff", "drop: version_5.mat"),
+    *("drop: version_7_3.mat", "drop: sidecar"),
 )
 
 
@@ -138,9 +113,7 @@ VALUES = {
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.fixed_dictionaries(VALUES), st.floats(40, 60))
-def test_summary_passes_exactly_if_every_value_is_inside(
-    tmp_path: Path, values: dict[str, float], uplift: float
-) -> None:
+def test_summary_passes_if_every_value_is_inside(tmp_path: Path, values: dict[str, float], uplift: float) -> None:
     (case,) = select_cases(["en50318-2002/250"])
     path = tmp_path / "a.toml"
     path.write_bytes((library_folder() / "en50318-2002" / "known-passing-code" / "250.toml").read_bytes())

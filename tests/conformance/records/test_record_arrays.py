@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.record_keys import record_keys
 from pantocheck.conformance.records import record as record_module
 from pantocheck.conformance.records.record import LARGEST_NUMBER, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
@@ -27,6 +28,9 @@ def put(values: Any, index: Any, value: float) -> Any:
     return array
 
 
+UNPAIRED = "either the uplift or the positions of the supports are missing"
+
+
 @pytest.mark.parametrize(
     ("channel", "changes", "found"),
     [
@@ -34,16 +38,8 @@ def put(values: Any, index: Any, value: float) -> Any:
         ("force", lambda r: {"force": r.force[:, 1:]}, r"has the shape \(2, 399\), expected \(pantographs, 400\)"),
         ("position", lambda r: {"position": r.position[:1]}, r"\(1, 400\), expected \(2, 400\) as for the force"),
         ("contact_height", lambda r: {"contact_height": r.contact_height[:, 1:]}, r"\(2, 399\), expected \(2, 400\)"),
-        (
-            "support_uplift",
-            lambda r: {"support_position": None},
-            "either the uplift or the positions of the supports are missing",
-        ),
-        (
-            "support_uplift",
-            lambda r: {"support_uplift": None},
-            "either the uplift or the positions of the supports are missing",
-        ),
+        ("support_uplift", lambda r: {"support_position": None}, UNPAIRED),
+        ("support_uplift", lambda r: {"support_uplift": None}, UNPAIRED),
         ("support_uplift", lambda r: {"support_uplift": r.support_uplift[1:]}, r"\(2, 400\), expected \(3, 400\)"),
         ("support_uplift", lambda r: {"support_uplift": r.support_uplift[:, 1:]}, r"\(3, 399\), expected \(3, 400\)"),
         (
@@ -51,16 +47,8 @@ def put(values: Any, index: Any, value: float) -> Any:
             lambda r: {"support_position": r.support_position[None]},
             r"\(3, 400\), expected \(3, 400\)",
         ),
-        (
-            "position",
-            lambda r: {"position": put(r.position, (1, 7), r.position[1, 6])},
-            "does not increase from each sample to the next",
-        ),
-        (
-            "position",
-            lambda r: {"position": put(r.position, (1, 7), 0.0)},
-            "does not increase from each sample to the next",
-        ),
+        ("position", lambda r: {"position": put(r.position, (1, 7), r.position[1, 6])}, "does not increase from each"),
+        ("position", lambda r: {"position": put(r.position, (1, 7), 0.0)}, "does not increase from each sample"),
         ("speed", lambda r: {"speed": 0.0}, "found 0 m/s, expected a positive speed"),
         ("speed", lambda r: {"speed": -60.0}, "found -60 m/s, expected a positive speed"),
         ("speed", lambda r: {"speed": math.inf}, "found inf m/s, expected a positive speed"),
@@ -89,11 +77,17 @@ def test_impossible_array_is_refused(channel: str, changes: Any, found: str, two
     assert caught.value.channel == channel
 
 
-def test_largest_number_and_smallest_record_are_accepted(two_pantograph_record: Record) -> None:
+def test_largest_and_smallest_record(two_pantograph_record: Record, monkeypatch: pytest.MonkeyPatch) -> None:
     force = put(two_pantograph_record.force, (1, 7), LARGEST_NUMBER)
     assert change(two_pantograph_record, force=force, filter_applied_Hz=20.0).force.max() == 1e9
     two = Record(np.array([0.0, 0.5]), 1.0, np.array([[0.0, 0.5]]), np.ones((1, 2)), (0.0, 0.5))
     assert (two.rate, two.pantographs) == (2.0, 1)
+    # The uplift of three supports is the largest array: 1200 numbers.
+    monkeypatch.setattr(record_module, "MAX_SAMPLES", 1200)
+    assert change(two_pantograph_record).support_uplift is not None
+    monkeypatch.setattr(record_module, "MAX_SAMPLES", 1199)
+    with pytest.raises(RecordInvalid, match="support_uplift: has 1200 values, accepted are 1199"):
+        change(two_pantograph_record)
 
 
 def test_arrays_are_copied_and_read_only(two_pantograph_record: Record) -> None:
@@ -105,22 +99,9 @@ def test_arrays_are_copied_and_read_only(two_pantograph_record: Record) -> None:
         record.force[0, 0] = 0.0
 
 
-def test_array_may_have_as_many_numbers_as_allowed(
-    two_pantograph_record: Record, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The uplift of three supports is the largest array: 1200 numbers."""
-    monkeypatch.setattr(record_module, "MAX_SAMPLES", 1200)
-    assert change(two_pantograph_record).support_uplift is not None
-    monkeypatch.setattr(record_module, "MAX_SAMPLES", 1199)
-    with pytest.raises(RecordInvalid, match="support_uplift: has 1200 values, accepted are 1199"):
-        change(two_pantograph_record)
-
-
 @pytest.mark.parametrize(("share", "even"), [(0.009, True), (0.011, False)])
 @pytest.mark.parametrize("sign", [-1, 1])
-def test_time_is_even_within_a_hundredth_of_a_step(
-    share: float, even: bool, sign: int, two_pantograph_record: Record
-) -> None:
+def test_time_is_even_to_a_hundredth(share: float, even: bool, sign: int, two_pantograph_record: Record) -> None:
     """Printed times are rounded by less; a gap is a whole step."""
     time = put(two_pantograph_record.time, 200, two_pantograph_record.time[200] + sign * share / 200)
     with nullcontext() if even else pytest.raises(RecordInvalid, match="not evenly spaced"):
@@ -129,8 +110,8 @@ def test_time_is_even_within_a_hundredth_of_a_step(
 
 def sidecar(**keys: Any) -> RecordSidecar:
     """Sidecar of two pantographs 100 m apart at 180 km/h, 50 m/s."""
-    base = {"schema": "pantocheck.record/1", "file": "a.csv", "speed_km_h": 180.0, "pantographs": 2}
-    return RecordSidecar.model_validate({**base, "filter_applied_Hz": "none", "spacing_m": [100.0], **keys})
+    base = {"speed_km_h": 180.0, "pantographs": 2, "spacing_m": [100.0]}
+    return RecordSidecar.model_validate(record_keys(**base | keys))
 
 
 FORCE = np.full((2, 401), 120.0)
@@ -165,11 +146,7 @@ def test_time_of_a_train_sampled_by_distance() -> None:
         ({"time": TIME}, {"evaluated_m": [0.0, 50.0]}, "position: missing, and the sidecar does not state start_m"),
         ({"time": TIME}, {"support_position_m": [0.0]}, "position: missing, and the sidecar does not state start_m"),
         ({"position": TIME[None], "speed": 0 * TIME}, {}, "speed: the value of sample 1 is not positive"),
-        (
-            {"position": TIME[None], "speed": np.where(TIME < 2, 50, -1)},
-            {},
-            "speed: the value of sample 201 is not positive",
-        ),
+        ({"position": TIME[None], "speed": np.where(TIME < 2, 50, -1)}, {}, "the value of sample 201 is not positive"),
     ],
 )
 def test_train_without_a_place_is_refused(samples: dict[str, Any], keys: dict[str, Any], message: str) -> None:
@@ -178,16 +155,13 @@ def test_train_without_a_place_is_refused(samples: dict[str, Any], keys: dict[st
         complete_samples(RecordSamples(FORCE, **samples), described)
 
 
-def test_train_of_no_case_starts_at_zero() -> None:
+def test_train_of_no_case_starts_at_zero_and_shares_a_section() -> None:
     """Without case, section and supports, the origin of the track is of no importance."""
     _, position = complete_samples(RecordSamples(FORCE, TIME), sidecar())
     assert_allclose(position[:, 0], [0.0, -100.0], rtol=0)
     single = sidecar(pantographs=1, spacing_m=None)
     assert complete_samples(RecordSamples(FORCE[:1], TIME), single)[1].shape == (1, 401)
-
-
-def test_section_is_that_of_the_sidecar_or_the_track_of_all_pantographs() -> None:
-    """The last pantograph begins at -100 m and ends at 100 m, the first begins at 0 m."""
+    # The last pantograph begins at -100 m and ends at 100 m, the first begins at 0 m.
     _, position = complete_samples(RecordSamples(FORCE, TIME), sidecar())
     assert analysis_section(sidecar(), position) == pytest.approx((0.0, 100.0), abs=1e-9)  # rounding of the integral
     assert analysis_section(sidecar(evaluated_m=[20.0, 30.0]), position) == (20.0, 30.0)
@@ -197,13 +171,8 @@ def test_section_is_that_of_the_sidecar_or_the_track_of_all_pantographs() -> Non
 def test_speed_channel_agrees_to_half_a_percent(factor: float, agrees: bool) -> None:
     """Half a percent is a tenth of the width of a resonance."""
     samples = RecordSamples(FORCE, TIME, np.full(401, 50 * factor), 50 * TIME[None])
-    with (
-        nullcontext()
-        if agrees
-        else pytest.raises(
-            RecordInvalid, match=f"speed: ranges from {180 * factor:.4g} to .* km/h, but the sidecar states 180 km"
-        )
-    ):
+    message = f"speed: ranges from {180 * factor:.4g} to .* km/h, but the sidecar states 180 km"
+    with nullcontext() if agrees else pytest.raises(RecordInvalid, match=message):
         assert build_record(samples, sidecar()).speed == pytest.approx(50.0, rel=1e-12)
 
 

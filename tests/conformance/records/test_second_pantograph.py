@@ -65,9 +65,7 @@ def test_fault_of_one_pantograph_is_found(two_pantograph_case: Case, record: Rec
     assert f"pantograph {row + 1}" in text
 
 
-def test_doubt_of_the_first_pantograph_does_not_hide_a_contradiction_of_the_second(
-    two_pantograph_case: Case, record: Record
-) -> None:
+def test_doubt_of_the_first_hides_no_contradiction_of_the_second(two_pantograph_case: Case, record: Record) -> None:
     """Noise of the first at which the roll-off is doubted, five times this noise in the second."""
     weak = 0.75 / 4.3  # At full noise, the implied content is 4.3 times that below the cut-off; 0.5 to 1 is a doubt.
     stated = replace(record, filter_applied_Hz=20.0)
