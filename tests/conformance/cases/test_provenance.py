@@ -29,19 +29,13 @@ def list_tables(tree: Any, name: str) -> Iterator[tuple[str, BaseModel]]:
         yield from list_tables(part, f"{name}.{key}")
 
 
-@pytest.mark.parametrize("name", sorted(LIBRARY))
+@pytest.mark.parametrize("name", [*sorted(LIBRARY), *sorted(list_profiles())])
 def test_library_states_source_and_trust(name: str) -> None:
-    case = load_case(LIBRARY[name])
-    parts = {"file": case.file, "line": case.line, "pantographs": case.pantograph_files, "dampings": case.dampings}
+    parts: Any = load_profile(name) if name in list_profiles() else load_case(LIBRARY[name])
+    if isinstance(parts, Case):
+        parts = {"": parts.file, "line": parts.line, "pantographs": parts.pantograph_files, "dampings": parts.dampings}
     tables = list(list_tables(parts, name))
-    assert len(tables) >= 8  # the case and the seven tables of every line
-    assert [where for where, table in tables if not {"trust", "source"} <= table.model_fields_set] == []
-
-
-@pytest.mark.parametrize("name", sorted(list_profiles()))
-def test_profiles_of_the_library_state_source_and_trust(name: str) -> None:
-    tables = list(list_tables(load_profile(name), name))
-    assert tables
+    assert len(tables) >= (8 if name in LIBRARY else 1)  # the case and the seven tables of every line
     assert [where for where, table in tables if not {"trust", "source"} <= table.model_fields_set] == []
 
 

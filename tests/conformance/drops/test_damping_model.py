@@ -124,22 +124,22 @@ def test_intervals_cover_the_truth(line: Line) -> None:
     assert missed < 13
 
 
-def test_outlier_of_a_group_is_left_out(line: Line) -> None:
+def test_fit_finds_outliers_and_the_coefficients_that_the_modes_determine(line: Line) -> None:
     measured = build_measured_modes(line, 0.003, np.random.default_rng(2))
     measured.damping_ratio[8] *= 1.5
     fit = fit_damping_model(line.basis, measured)
     assert not fit.used[8]
     assert fit.used.sum() >= 34
     assert fit.values["contact_wire", "stiffness"] == pytest.approx(5e-5, rel=0.06)
-
-
-def test_wires_alone_are_observable(line: Line) -> None:
     measured = build_measured_modes(line, 0.003, np.random.default_rng(3))
     fit = fit_damping_model(line.basis, measured)
     observable = {(row.kind, row.matrix) for row in compute_observability(line.basis, measured, fit) if row.observable}
     assert observable == {(kind, matrix) for kind in WIRES for matrix in ("stiffness", "mass")}
     for term in observable:
         assert residual_without_term(line.basis, measured, fit, term) > 2 * fit.residual
+    measured = MeasuredModes(line.frequency[:4], np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64))
+    with pytest.raises(InputError, match="only 4 modes for a fit of 4 coefficients"):
+        fit_damping_model(line.basis.select_modes(np.arange(4)), measured)
 
 
 def test_wires_are_determined_together_where_each_alone_is_not(line: Line) -> None:
@@ -205,12 +205,6 @@ def test_modal_bands_give_the_first_groups_their_medians(line: Line) -> None:
     changed = apply_modal_bands(measured.damping_ratio, measured.frequency, bands)
     assert changed[:6] == pytest.approx(np.median(measured.damping_ratio[:6]))
     assert np.array_equal(changed[18:], measured.damping_ratio[18:])
-
-
-def test_too_few_modes_are_refused(line: Line) -> None:
-    measured = MeasuredModes(line.frequency[:4], np.full(4, 0.005), np.full(4, 1e-5), np.ones(4, dtype=np.int64))
-    with pytest.raises(InputError, match="only 4 modes for a fit of 4 coefficients"):
-        fit_damping_model(line.basis.select_modes(np.arange(4)), measured)
 
 
 def test_pairs_by_frequency_and_shapes() -> None:

@@ -210,15 +210,7 @@ def test_acceleration_above_500_is_doubted(peak: float, unit: str, doubted: bool
     assert assemble_drop_record(build_table(1e6 * signal, "mm"), None).warnings == ()
 
 
-def test_clipping_is_placed_in_time() -> None:
-    """Two tops, at samples 20 to 25 and 60 to 65, at 50 Hz."""
-    signal = NOISE.copy()
-    signal[20:26] = signal[60:66] = 9.0
-    (text,) = assemble_drop_record(build_table(signal), None).warnings
-    assert text == "record 'r.csv', channel 'A': clipped 2 times between 0.40 s and 1.32 s"
-
-
-def test_signals_of_several_quantities_are_refused() -> None:
+def test_quantities_and_clipping_of_several_channels_are_named() -> None:
     columns = tuple(TableColumn(unit, unit=unit, direction="+z") for unit in ("m/s2", "g", "mm"))
     mixed = MeasuredTable("r.csv", np.column_stack([NOISE] * 3), columns, rate=50.0)
     with pytest.raises(InputError, match="holds channels of acceleration and displacement"):
@@ -227,6 +219,11 @@ def test_signals_of_several_quantities_are_refused() -> None:
     record = assemble_drop_record(both, None)
     assert record.quantity == "acceleration"
     assert record.signals[:, 1] == pytest.approx(9.80665 * record.signals[:, 0], rel=1e-15)
+    # Two tops, at samples 20 to 25 and 60 to 65, at 50 Hz.
+    signal = NOISE.copy()
+    signal[20:26] = signal[60:66] = 9.0
+    (text,) = assemble_drop_record(build_table(signal), None).warnings
+    assert text == "record 'r.csv', channel 'A': clipped 2 times between 0.40 s and 1.32 s"
 
 
 @pytest.mark.parametrize(("quantity", "refused"), [(None, False), ("acceleration", False), ("velocity", True)])

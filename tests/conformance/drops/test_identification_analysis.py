@@ -63,13 +63,6 @@ def test_tones_appear_at_their_times_and_frequencies() -> None:
     assert levels[~during & (time < -0.5)][:, frequency > 5].max() <= -50
 
 
-def test_long_records_have_no_more_columns() -> None:
-    """About 120 columns, so that the file stays small: steps of whole seconds."""
-    decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1.0]], dtype=complex), duration=240.0)
-    assert np.ptp(np.diff(compute_spectrogram(decay).whole.time_s)) < 1e-6
-    assert 60 <= len(compute_spectrogram(decay).whole.time_s) <= 120
-
-
 # Description of the search for the model order.
 def pole(frequency: float, ratio: float) -> complex:
     """Pole of a frequency [Hz] and a damping ratio [1/s]."""
@@ -93,9 +86,13 @@ def test_pole_is_stable_if_frequency_and_damping_stay() -> None:
     assert band.stable == (False, True, False, False, False, False, False)
 
 
-def test_steps_keep_their_order_and_their_poles() -> None:
+def test_steps_keep_their_order_and_long_records_their_columns() -> None:
     first, second = np.array([pole(1.0, 0.005)]), np.array([pole(1.0, 0.005), pole(2.0, 0.01)])
     search = describe_search(PoleSearch((), (("start poles", first), ("refined", second))))
     assert [(step.name, len(step.frequency_Hz)) for step in search.steps] == [("start poles", 1), ("refined", 2)]
     np.testing.assert_allclose(search.steps[1].frequency_Hz, [1.0, 2.0])
     assert search.bands == ()
+    # About 120 columns, so that the file stays small: steps of whole seconds.
+    decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1.0]], dtype=complex), duration=240.0)
+    assert np.ptp(np.diff(compute_spectrogram(decay).whole.time_s)) < 1e-6
+    assert 60 <= len(compute_spectrogram(decay).whole.time_s) <= 120

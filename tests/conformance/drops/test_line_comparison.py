@@ -110,13 +110,21 @@ def fit_other_line(folder: Path, modes: Sequence[Mode], *options: str) -> tuple[
     return result.exit_code, result.output
 
 
-def test_line_of_several_sections_has_the_spans_of_all() -> None:
+def test_sections_and_stitch_wires_carry_their_sensors() -> None:
     """Two sections of six spans of 60 m, an overlap of three; sensors on either section."""
     line = section_line()
     facts = describe_line(line)
     modes = [build_mode(facts, position=position) for position in (30.0, 510.0)]
     comparison = compare_line(modes, build_catenary(line))
     assert (comparison.state, len(facts.spans_m)) == ("verified", 9)
+    # Stitch wires exist only around the supports; a sensor at mid-span hangs on none.
+    case = select_cases(["en50318-2018/ac-stitched/275*"])[0]
+    line, geometry = build_catenary(case.line), case.line.geometry
+    states = [
+        compare_line([build_mode(describe_line(case.line), wire="SW", position=x)], line).state
+        for x in (geometry.supports[1], geometry.mid_span(3))
+    ]
+    assert states == ["verified", "contradicted"]
 
 
 def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary) -> None:
@@ -171,17 +179,6 @@ def test_sensor_without_its_wire_differs(
     comparison = compare_line([build_mode(describe_line(file), wire=wire, position=position)], catenary)
     (difference,) = comparison.differences
     assert (difference.record, difference.line) == (f"{position:g} m", line)
-
-
-def test_stitch_wire_must_reach_the_sensor() -> None:
-    """Stitch wires exist only around the supports; a sensor at mid-span hangs on none."""
-    case = select_cases(["en50318-2018/ac-stitched/275*"])[0]
-    line, geometry = build_catenary(case.line), case.line.geometry
-    states = [
-        compare_line([build_mode(describe_line(case.line), wire="SW", position=x)], line).state
-        for x in (geometry.supports[1], geometry.mid_span(3))
-    ]
-    assert states == ["verified", "contradicted"]
 
 
 @pytest.mark.parametrize(
@@ -339,14 +336,11 @@ def test_coefficient_that_is_not_determined_is_only_a_comment(measured: tuple[Mo
     assert text.count("# not determined, left out: ") == 4
 
 
-def test_fit_needs_six_pairs(measured: tuple[Mode, ...], unequal: Catenary) -> None:
+def test_damping_file_needs_six_pairs_and_safe_names(measured: tuple[Mode, ...], unequal: Catenary) -> None:
     results = build_damping_results(measured[:6], unequal, 1.0, "modes.json")
     assert len(results.pairs) == results.matching.matched == 6
     with pytest.raises(InputError, match="only 5 of 5 modes have a computed counterpart, 6 are needed"):
         build_damping_results(measured[:5], unequal, 1.0, "modes.json")
-
-
-def test_name_of_a_record_adds_no_line_to_the_damping_file(measured: tuple[Mode, ...], unequal: Catenary) -> None:
     other = MeasuredLine(spans_m=SPANS)
     name = "T\n[damping.droppers]\nmass_coefficient_1_s = 9.0\x7f"
     modes = [

@@ -71,7 +71,7 @@ def test_best_candidate_lies_on_the_grid_of_a_quarter_line() -> None:
     assert find_best_candidate(nothing, centre) is None
 
 
-def test_contribution_of_a_pole_is_the_error_without_it() -> None:
+def test_crowded_poles_and_contributions() -> None:
     """The other poles fixed: the squared error of a fit without the pole; the complete fit has none."""
     poles = np.array([-0.05 + 5.0j, -0.04 + 9.9j, -0.03 + 10.2j])
     blocks = [build_data(poles, 100.0), build_data(poles, 60.0, 3, seed=2)]
@@ -79,9 +79,6 @@ def test_contribution_of_a_pole_is_the_error_without_it() -> None:
         others = np.delete(poles, j)
         without = sum(np.sum(np.abs(solve_residues(others, block).residual) ** 2) for block in blocks)
         assert contribution == pytest.approx(without, rel=1e-6)
-
-
-def test_crowded_poles_are_closer_than_one_and_a_half_lines_of_the_longest_record() -> None:
     line = 2 * np.pi / 100.0
     poles = -0.05 + 1j * np.array([5.0, 5.0 + 1.4 * line, 8.0, 8.0 + 1.6 * line])
     blocks = [build_data(poles, duration) for duration in (40.0, 100.0)]

@@ -47,19 +47,7 @@ def test_modes_of_an_exact_fit_are_exact(fit: LineFit) -> None:
     assert [mode.phase_collinearity for mode in modes][1:] == pytest.approx([0.9997, 1.0], abs=5e-4)
 
 
-def test_modes_on_the_edges_of_the_band_are_reported(fit: LineFit) -> None:
-    edges = np.abs(fit.poles) / (2 * np.pi)
-    band = replace(BAND, low=edges[0], high=edges[2])
-    assert len(build_modes(replace(fit, band=band), 6)) == 3
-
-
-def test_relative_residual_does_not_depend_on_the_noise_of_the_channels(fit: LineFit) -> None:
-    """A residual of a tenth of the spectrum; its share is the same whatever noise scales the channels."""
-    modes = build_modes(with_residual(fit, 0.1 * fit.blocks[0].data.spectrum), 6)
-    assert [mode.error for mode in modes] == pytest.approx([0.1] * 3, rel=1e-9)
-
-
-def test_relative_residual_is_that_of_the_half_power_band(fit: LineFit) -> None:
+def test_residual_and_edges_of_the_band(fit: LineFit) -> None:
     """The half-power band reaches to the decay rate on either side of the mode, and at least to the next line."""
     omega, spectrum = fit.blocks[0].data.omega, fit.blocks[0].data.spectrum
     reach = np.maximum(-POLES.real, 2 * np.pi / fit.blocks[0].data.duration)
@@ -68,6 +56,12 @@ def test_relative_residual_is_that_of_the_half_power_band(fit: LineFit) -> None:
     assert [mode.error for mode in modes] == [0.0] * 3
     modes = build_modes(with_residual(fit, np.where(inside[:, None], spectrum, 0.0)), 6)
     assert [mode.error for mode in modes] == pytest.approx([1.0] * 3)
+    # A residual of a tenth of the spectrum; its share is the same whatever noise scales the channels.
+    modes = build_modes(with_residual(fit, 0.1 * fit.blocks[0].data.spectrum), 6)
+    assert [mode.error for mode in modes] == pytest.approx([0.1] * 3, rel=1e-9)
+    edges = np.abs(fit.poles) / (2 * np.pi)
+    band = replace(BAND, low=edges[0], high=edges[2])
+    assert len(build_modes(replace(fit, band=band), 6)) == 3
 
 
 def test_residual_above_the_noise_widens_the_uncertainty(fit: LineFit) -> None:
@@ -158,14 +152,11 @@ def test_frequency_response_is_the_transform_of_the_decay(quantity: str, power: 
     assert np.abs(summed - transform).max() < 0.01 * np.abs(transform).max()
 
 
-def test_frequency_response_includes_the_edges_of_the_band(fit: LineFit) -> None:
+def test_frequency_response_includes_its_edges_and_needs_a_mass(fit: LineFit) -> None:
     """Lines at multiples of 1 / 40 s, of which 0.5 and 3 Hz are exact numbers."""
     banded = replace(fit, band=replace(BAND, low=0.5, high=3.0))
     response = compute_frequency_response(banded, fit.records[0])
     assert (response.frequency[0], response.frequency[-1], response.frequency.size) == (0.5, 3.0, 101)
-
-
-def test_record_without_a_mass_has_no_frequency_response(fit: LineFit) -> None:
     decay = fit.records[0].decay
     unknown = replace(decay, record=replace(decay.record, drop=replace(decay.record.drop, mass=None)))
     assert compute_frequency_response(fit, replace(fit.records[0], decay=unknown)) is None

@@ -28,13 +28,10 @@ def test_outliers_belong_to_their_group() -> None:
     assert [i for i, row in enumerate(rows) if row.outlier] == [1]
 
 
-def test_three_certain_modes_determine_the_groups() -> None:
+def test_groups_need_three_certain_modes_and_touch() -> None:
     frequencies = np.array([1.0, 1.05, 2.0, 3.1])
     assert list(number_groups(frequencies[:3], frequencies, None)) == [1, 1, 2, 3]
     assert list(number_groups(frequencies[:2], frequencies, None)) == [0, 0, 0, 0]
-
-
-def test_groups_may_touch_and_those_beyond_the_eighth_have_no_number() -> None:
     certain = np.concatenate([k * np.array([0.98, 1.0, 1.02]) for k in range(1, 9)])
     assert list(number_groups(certain, np.array([8.2, 8.4, 8.6, 9.0]), 3)) == [8, 8, 0, 0]
     # Twenty modes at 8.3 times the first group: in the eighth group they would be too many, beyond it they are not.
@@ -42,22 +39,16 @@ def test_groups_may_touch_and_those_beyond_the_eighth_have_no_number() -> None:
     assert list(number_groups(certain, certain, 6)) == [1] * 3 + [0] * 20
 
 
-def test_bending_stretches_the_gaps_of_the_higher_groups_more() -> None:
+def test_gaps_between_groups_follow_bending_and_spans() -> None:
     """Groups at n (1 + 0.02 (n - 1)): 5.4 and 6.6 are the fifth and sixth. The first gap stays near 1.5 (1 + 0.01)."""
     certain = np.concatenate([n * (1 + 0.02 * (n - 1)) * np.array([0.999, 1.0, 1.001]) for n in range(1, 8)])
     assert list(number_groups(certain, certain, 3)) == list(np.repeat(np.arange(1, 8), 3))
     assert list(number_groups(certain, np.array([1.49, 1.53, 5.7, 6.3]), 3)) == [1, 2, 5, 6]
-
-
-def test_group_holds_no_more_modes_than_spans() -> None:
-    """Two modes of the first group around 1.2 Hz. Six more at 1.55 Hz belong to the second: two spans have only two."""
+    # Two modes of the first group around 1.2 Hz. Six more at 1.55 Hz belong to the second: two spans have only two.
     # The search may lower the mean by 15 %, so that the gap lies at 1.53 Hz.
     certain = np.array([1.0, 1.4, *1.55 + 0.001 * np.arange(6)])
     assert list(number_groups(certain, certain, 2)) == [1, 1] + [2] * 6
-
-
-def test_groups_with_a_narrow_gap_between_them_are_told_apart() -> None:
-    """Modes next to the gap below the third group are 0.066 Hz from its middle, just beyond the clearance of 0.06."""
+    # Modes next to the gap below the third group are 0.066 Hz from its middle, just beyond the clearance of 0.06.
     certain = np.array([0.822, 1.0, 1.178, 1.566, 2.0, 2.434, 2.566, 3.0, 3.434])
     assert list(number_groups(certain, certain, 3)) == [1] * 3 + [2] * 3 + [3] * 3
 
@@ -80,7 +71,7 @@ def build_narrow_mode(frequency: float, **changes: bool) -> Mode:
     return Mode(frequency_Hz=frequency, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), **changes)
 
 
-def test_pairs_are_counted_and_named() -> None:
+def test_overlapping_pairs_of_certain_modes_are_counted() -> None:
     """Bandwidth 10 mHz at 1 Hz and 20 mHz at 2 Hz: three modes at 1 Hz make two pairs, those at 2 Hz one."""
     modes = [build_narrow_mode(f) for f in (0.95, 1.0, 1.006, 1.013, 1.5, 1.99, 2.005, 2.03)]
     (warning,) = warn_about_overlap(modes)
@@ -88,9 +79,6 @@ def test_pairs_are_counted_and_named() -> None:
     assert ": 1.000, 1.006, 1.013, 1.990, 2.005 Hz. " in warning
     assert warn_about_overlap(modes[:2]) == ()
     assert warn_about_overlap(modes[:3])[0].startswith("1 near-coincident pair of modes")
-
-
-def test_uncertain_and_lateral_modes_do_not_count() -> None:
     near = build_narrow_mode(1.004)
     for other in (build_narrow_mode(1.0, certain=False), build_narrow_mode(1.0, lateral=True)):
         assert warn_about_overlap([other, near]) == ()

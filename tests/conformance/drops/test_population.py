@@ -71,24 +71,18 @@ def test_damaged_record_is_an_outlier_above(content: PopulationFile) -> None:
     assert "outliers above" in content.warnings[0]
 
 
-def test_medians_over_tests_are_those_of_the_good_tests(content: PopulationFile) -> None:
+def test_medians_and_levels_are_those_of_the_good_tests(content: PopulationFile) -> None:
     """One damaged test of five moves the median of each group from the middle mode at most to the next, by 5 %."""
     assert [group.group for group in content.groups] == [1, 2, 3]
     for group in content.groups:
         assert group.median == pytest.approx(RATIOS[group.group], rel=0.06)
         assert group.interval[0] <= group.median <= group.interval[1]
         assert group.tests == 5
-
-
-def test_variability_decreases_with_frequency(content: PopulationFile) -> None:
-    """Modes differ by 10 % in each group, and the rope adds a decay rate: both are less at higher frequencies."""
+    # Modes differ by 10 % in each group, and the rope adds a decay rate: both are less at higher frequencies.
     heights = [group.upper_quartile - group.lower_quartile for group in content.groups]
     assert heights == sorted(heights, reverse=True)
     assert content.variability.rank_correlation == pytest.approx(-1)
     assert content.variability.last_over_first == pytest.approx(heights[-1] / heights[0])
-
-
-def test_tests_are_grouped_by_the_properties_in_which_they_differ(content: PopulationFile) -> None:
     levels = {(level.factor, level.level): level.tests for level in content.levels}
     assert levels == {
         ("mass", "40 kg"): 4,
@@ -106,15 +100,12 @@ def test_record_that_cannot_be_identified_is_left_out(population: Population, co
         identify_population((population.unusable[0].record,))
 
 
-def test_medians_of_good_tests_agree_with_the_joint_result(population: Population) -> None:
+def test_joint_modes_agree_within_half_a_bandwidth(population: Population) -> None:
     """Three tests of one line, without the damaged one: they differ by noise, less than 1 % of the median."""
     for group in analyse_population(replace(population, tests=population.tests[:3])).groups:
         assert group.agrees
         assert group.joint_median == pytest.approx(RATIOS[group.group], rel=0.01)
         assert group.test_spread < 0.01 * group.median
-
-
-def test_joint_mode_lies_within_half_of_the_half_power_band(population: Population) -> None:
     (mode, *_) = population.tests[0].single.modes
     reach = mode.damping_ratio * mode.frequency_Hz
     near, far = (mode.model_copy(update={"frequency_Hz": mode.frequency_Hz + k * reach}) for k in (0.99, 1.01))

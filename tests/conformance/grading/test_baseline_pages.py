@@ -76,7 +76,7 @@ def test_certificate_shows_the_drift_below_a_heading_of_its_own(drifted: Results
     assert re.search(r"1of\d+valuesdriftedbymorethan1%fromearlier\.json,oraremissing", pdf)
 
 
-def test_terminal_shows_the_drift_in_a_table_of_its_own(drifted: Results) -> None:
+def test_terminal_junit_badge_and_csv_show_the_drift_apart(drifted: Results, passing: dict[str, Any]) -> None:
     console = Console(width=140)
     with console.capture() as capture:
         for part in build_results_output(drifted, (), 1).details:
@@ -85,9 +85,6 @@ def test_terminal_shows_the_drift_in_a_table_of_its_own(drifted: Results) -> Non
     assert "FAIL" not in criteria.split("\n", 4)[-1]
     assert drift.startswith("FAIL")
     assert "drifted by +100 % from the baseline" in drift
-
-
-def test_junit_badge_and_csv_name_the_drift_apart(drifted: Results, passing: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(drifted))
     failed = [test for test in root.iter("testcase") if test.find("failure") is not None]
     assert [test.get("name") for test in failed] == [f"drift of {DRIFTED} of pantograph 1"]

@@ -75,7 +75,7 @@ def test_digest_of_limits_notices_bounds_trust_and_source(change: dict[str, Any]
     assert limits_digest((limits[0].model_copy(update=change), limits[1])) != limits_digest(limits)
 
 
-def test_result_states_identity_and_both_digests_of_the_limits(case_250: Case) -> None:
+def test_result_states_identity_digests_and_removed_limits(case_250: Case) -> None:
     own = LimitOverride(quantity="std_force_N", upper=900.0, trust="secondary", source="own")
     plain, wide = (
         grade_case(case, Skipped("not run"), "secondary") for case in (case_250, *overlay_limits([case_250], [own]))
@@ -84,6 +84,8 @@ def test_result_states_identity_and_both_digests_of_the_limits(case_250: Case) -
     assert plain.limits_digest == plain.stated_limits_digest == wide.stated_limits_digest != wide.limits_digest
     assert not plain.limit_changes
     assert wide.limit_changes == ["std_force_N of pantograph 1: the limit 26 to 31 is widened to <= 900"]
+    changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
+    assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
 
 
 STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, trust="secondary", source="wang2016")
@@ -122,11 +124,6 @@ def test_weaker_limit_is_described(change: dict[str, Any], text: str | None) -> 
 def test_raised_trust_alone_weakens_nothing(change: dict[str, Any], raised: bool) -> None:
     text = describe_limit_change(STATED, STATED.model_copy(update=change))
     assert raises_trust_only(text) == raised
-
-
-def test_removed_limit_is_reported(case_250: Case) -> None:
-    changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
-    assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
 
 
 def test_command_names_a_case_file_that_borrows_the_id_of_the_library(edited_case: EditedCase, tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
     assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")
 
 
-def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None:
+def test_junit_passes_only_what_counts_in_the_default_run(results: dict[str, Any]) -> None:
     """A limit that does not count is skipped; so is a failure in a case for information."""
     root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     assert "provisional limit does not count" in "".join(e.get("message", "") for e in root.iter("skipped"))
@@ -133,9 +133,6 @@ def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None
     shown = ElementTree.fromstring(render_junit(informative))
     assert (root.get("failures"), shown.get("failures")) == ("1", "0")
     assert any(e.get("message", "").startswith("for information: failure: ") for e in shown.iter("skipped"))
-
-
-def test_default_run_takes_the_cases_whose_limits_count() -> None:
     secondary, provisional = (prepare_plan(Plan(trust=trust)) for trust in ("secondary", "provisional"))
     ids = {case.id for case in secondary.cases}
     assert {"en50318-2002/250", "en50318-2018/ac-simple/static"} <= ids

@@ -45,12 +45,15 @@ def test_limit_applies_to_a_finite_item(item: int | None, values: Value, expecte
     assert find_value(target, {0: {"dropper_length_m": values}}) == expected
 
 
-def test_value_belongs_to_its_pantograph_and_a_missing_one_has_its_reason() -> None:
+def test_value_belongs_to_its_pantograph_unit_and_reason() -> None:
     values: dict[int, dict[str, Value]] = {1: {"std_force_N": 28.0}, 2: {"std_force_N": 30.0}}
     assert [find_value(limit(pantograph=number), values) for number in (1, 2, 3)] == [28.0, 30.0, None]
     evaluation = Evaluation({1: {}}, {1: {"std_force_N": "the record is too short"}})
     reasons = [grade_limit(limit(pantograph=number), GradedValues(evaluation), "secondary").reason for number in (1, 2)]
     assert reasons == ["the record is too short", "the system does not deliver this quantity"]
+    found = build_criterion(requirement(None, 0.3, name="cov_20"), 0.35, None, "secondary")
+    assert found.reason == "0.05 above the upper limit"
+    assert build_criterion(requirement(None, 0.3, name="old"), 0.2, None, "secondary").unit == ""
 
 
 def requirement(
@@ -90,12 +93,6 @@ def test_criterion_states_verdict_margin_and_distance(
     expected = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": "not graded: no data"}[verdict]
     assert hypothetical.verdict == "info"
     assert hypothetical.reason == f"{expected}; the limit is provisional and does not count"
-
-
-def test_quantity_without_a_unit_has_no_double_space() -> None:
-    found = build_criterion(requirement(None, 0.3, name="cov_20"), 0.35, None, "secondary")
-    assert found.reason == "0.05 above the upper limit"
-    assert build_criterion(requirement(None, 0.3, name="old"), 0.2, None, "secondary").unit == ""
 
 
 def test_errors_belong_to_the_quantity_and_pantograph_of_the_limit() -> None:

@@ -34,7 +34,7 @@ def test_values_of_the_2002_reference_model() -> None:
     )
 
 
-def test_twin_wires_count_twice_and_a_static_case_has_no_doppler_factor() -> None:
+def test_values_of_twin_wires_and_their_table() -> None:
     [case] = select_cases(["en50318-2002/250"])
     contact = case.line.contact_wire.model_copy(update={"number": 2, "spacing_m": 0.04})
     twin = case.line.model_copy(update={"contact_wire": contact})
@@ -42,6 +42,12 @@ def test_twin_wires_count_twice_and_a_static_case_has_no_doppler_factor() -> Non
     assert mass == pytest.approx(2 * 1.35 + 1.07, rel=1e-12)
     [case] = select_cases(["en50318-2018/ac-simple/static"])
     assert [fact.unit for fact in list_derived_facts(case)] == ["m/s", "m/s", "kg/m", "Hz"]
+    fact = {"name": "Uplift force of pantograph 1", "value": 163.456789, "unit": "N", "basis": "tuned"}
+    *_, case = select_cases(["en50318-2018/ac-simple/320-twin"])
+    result = build_ungraded(case, "skip", "not run")
+    table, _ = derived_blocks(result.model_copy(update={"derived": [DerivedFact.model_validate(fact)]}))
+    assert table.rows == (("Uplift force of pantograph 1", "163.46", "N", "tuned"),)
+    assert derived_blocks(result.model_copy(update={"derived": []})) == ()
 
 
 def test_uplift_forces_are_those_of_the_run_and_unknown_for_a_foreign_system() -> None:
@@ -54,15 +60,6 @@ def test_uplift_forces_are_those_of_the_run_and_unknown_for_a_foreign_system() -
         assert fact.basis == f"tuned to a mean contact force of {lift.target_mean_force:g} N"
     foreign = build_ungraded(case, "skip", "not run").derived
     assert not [fact for fact in foreign if fact.name.startswith("Uplift force")]
-
-
-def test_table_shows_five_digits_and_is_left_out_without_values() -> None:
-    fact = {"name": "Uplift force of pantograph 1", "value": 163.456789, "unit": "N", "basis": "tuned"}
-    *_, case = select_cases(["en50318-2018/ac-simple/320-twin"])
-    result = build_ungraded(case, "skip", "not run")
-    table, _ = derived_blocks(result.model_copy(update={"derived": [DerivedFact.model_validate(fact)]}))
-    assert table.rows == (("Uplift force of pantograph 1", "163.46", "N", "tuned"),)
-    assert derived_blocks(result.model_copy(update={"derived": []})) == ()
 
 
 def test_changed_derived_value_contradicts_the_library() -> None:

@@ -98,12 +98,18 @@ def build_procedure(**states: str) -> Procedure:
     return Procedure(title="Test", digest="sha256:0", steps=steps)
 
 
-def test_a_required_step_that_is_missing_prevents_a_pass() -> None:
+def test_missing_steps_prevent_a_pass_and_informative_ones_decide_nothing() -> None:
     """A step without criteria is `info`, one that was not done `skip`; `error` if its data could not be used."""
     for state, verdict in (("done", "info"), ("not done", "skip"), ("error", "error")):
         decided = decide_procedure(build_procedure(static_check=state), [], accepted=False)
         assert decided.steps[1].verdict == verdict
         assert judge_procedure(decided.steps) == verdict
+    steps = [
+        ProcedureStep(step="line_test", required=False, state="error", verdict="error"),
+        ProcedureStep(step="static_check", required=True, state="done", verdict="pass"),
+    ]
+    assert judge_procedure(steps) == "pass"
+    assert judge_procedure(steps[:1]) == "info"
 
 
 def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClaim:
@@ -135,15 +141,6 @@ def test_a_removed_step_never_improves_a_claim(first: Verdict, second: Verdict) 
     for name in STEP_NAMES[:-1]:
         after = judge_line({name: "not done"}, verdicts | {name: "skip"}).verdict
         assert WORST_FIRST.index(after) <= WORST_FIRST.index(before)
-
-
-def test_a_step_for_information_decides_nothing() -> None:
-    steps = [
-        ProcedureStep(step="line_test", required=False, state="error", verdict="error"),
-        ProcedureStep(step="static_check", required=True, state="done", verdict="pass"),
-    ]
-    assert judge_procedure(steps) == "pass"
-    assert judge_procedure(steps[:1]) == "info"
 
 
 def test_an_exact_value_on_its_limit_has_no_margin() -> None:

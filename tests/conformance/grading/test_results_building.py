@@ -72,16 +72,13 @@ def make_signals(section: tuple[float, float]) -> PantographSignals:
     return PantographSignals(POSITION, ForceChannel(force, RATE, Filter(cutoff_Hz=20.0)), section)
 
 
-def test_force_places_lie_in_the_analysis_section_and_ignore_what_the_filter_removes() -> None:
+def test_places_of_extremes_are_those_of_the_graded_signals() -> None:
     """The filter is of zero phase: it moves no peak by more than the 60 mm between two samples."""
     places = find_force_places({1: make_signals((60.0, 240.0)), 2: make_signals((60.0, 500.0))})
     assert list(places) == ["1"]  # the second record ends before its section
     assert abs(places["1"]["max_force_N"].position_m - 120) <= 0.06
     assert abs(places["1"]["min_force_N"].position_m - 180) <= 0.06
-
-
-def test_uplift_place_is_the_support_and_time_of_the_counted_maximum() -> None:
-    """The larger uplift at 120 m occurs when the last pantograph is more than 60 m past it, and does not count."""
+    # The larger uplift at 120 m occurs when the last pantograph is more than 60 m past it, and does not count.
     uplift = np.array([0.05 * np.exp(-(((TIME - x / SPEED) / 0.1) ** 2)) for x in (60.0, 120.0)])
     uplift[1] *= 0.9
     uplift[1, TIME == 4.0] = 0.2

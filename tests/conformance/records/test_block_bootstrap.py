@@ -67,7 +67,7 @@ def test_intervals_of_95_percent_cover_the_truth(count: int) -> None:
     assert np.all(hits / 400 < 0.985)
 
 
-def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
+def test_uncertainty_decreases_with_the_length_and_needs_the_band() -> None:
     random = np.random.default_rng(5)
     short, long = (
         bootstrap_uncertainties(force_signals(spans(random, count), filter_applied_Hz=20.0), 1.0, DIGEST)
@@ -75,6 +75,10 @@ def test_uncertainty_decreases_with_the_root_of_the_length() -> None:
     )
     for name in ("mean_force_N", "std_force_N", "statistical_min_N", "cov_20"):
         assert short[name] / long[name] == pytest.approx(4, rel=0.35)  # an estimate from 40 blocks is off by a fifth
+    signals = force_signals(spans(np.random.default_rng(6), 50), filter_applied_Hz=10.0)
+    with pytest.raises(AlreadyFiltered):
+        BlockReplicates(STARTS, 2).band_rms(signals, BANDS[1])
+    assert "rms_5_20_N" not in bootstrap_uncertainties(signals, 1.0, DIGEST)
 
 
 def test_same_record_has_the_same_uncertainty_and_a_short_one_none() -> None:
@@ -124,13 +128,6 @@ def test_replicates_of_a_band_are_those_of_its_part_of_the_force() -> None:
     # Near the steps of the amplitude, at 0 s and 5 s, the band would hold a part of the larger line.
     assert replicates.band_rms(bursts, BANDS[1]) == pytest.approx([3.0, 30.0], rel=0.02)
     assert {"rms_0_5_N", "rms_5_20_N"} <= set(bootstrap_uncertainties(signals, 1.0, DIGEST))
-
-
-def test_band_that_the_record_does_not_support_has_no_uncertainty() -> None:
-    signals = force_signals(spans(np.random.default_rng(6), 50), filter_applied_Hz=10.0)
-    with pytest.raises(AlreadyFiltered):
-        BlockReplicates(STARTS, 2).band_rms(signals, BANDS[1])
-    assert "rms_5_20_N" not in bootstrap_uncertainties(signals, 1.0, DIGEST)
 
 
 @pytest.mark.parametrize("block_s", [1.0, 0.997, 1.003, 2.5])

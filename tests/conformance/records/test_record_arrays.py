@@ -118,17 +118,14 @@ FORCE = np.full((2, 401), 120.0)
 TIME = np.arange(401) / 100
 
 
-def test_changing_speed_is_integrated_by_trapezoids() -> None:
+def test_time_and_position_of_a_changing_speed_are_integrated() -> None:
     """A speed of 50 m/s + 2 m/s2 t gives x = 50 t + t^2; trapezoids are exact for it, up to rounding."""
     speed = 50 + 2 * TIME
     time, position = complete_samples(RecordSamples(FORCE, TIME, speed), sidecar(start_m=300.0))
     assert_allclose(time, TIME, rtol=0)
     assert_allclose(position[0], 300 + 50 * TIME + TIME**2, rtol=1e-12)
     assert_allclose(position[1], position[0] - 100, rtol=1e-12)
-
-
-def test_time_of_a_train_sampled_by_distance() -> None:
-    """With 1/v linear in the position, 1/v = (2 + x / 400) / 100, trapezoids are exact: t = (2 x + x^2 / 800) / 100."""
+    # With 1/v linear in the position, 1/v = (2 + x / 400) / 100, trapezoids are exact: t = (2 x + x^2 / 800) / 100.
     x = np.arange(401.0)
     time, position = complete_samples(
         RecordSamples(FORCE, speed=100 / (2 + x / 400), position=(x + 50)[None]), sidecar()

@@ -144,7 +144,7 @@ def test_rear_pantographs_run_behind_the_first(tmp_path: Path, channels: tuple[s
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.h5"])
-def test_same_record_same_bytes_and_another_suffix_is_refused(written: Writer, name: str) -> None:
+def test_same_record_same_bytes(written: Writer, name: str) -> None:
     first = written(name).read_bytes()
     assert written(name).read_bytes() == first
 
@@ -231,12 +231,17 @@ def test_decimal_commas_and_too_many_numbers(written: Writer, record: Record, mo
         read_record(path)
 
 
-def test_section_of_the_case_is_used_if_the_sidecar_states_none(written: Writer, record: Record) -> None:
+def test_section_and_sidecar_of_a_table_are_those_of_its_files(written: Writer, record: Record, tmp_path: Path) -> None:
     sidecar = written("a.csv").with_suffix(".toml")
     assert read_record(sidecar, (200.0, 300.0))[0].evaluated == record.evaluated
     edit_toml(sidecar, {"evaluated_m": None})
     assert read_record(sidecar, (200.0, 300.0))[0].evaluated == (200.0, 300.0)
     assert read_record(sidecar)[0].evaluated != record.evaluated
+    path = tmp_path / "run.csv"
+    path.write_text("time_s,force_1_N\n0,120\n")
+    with pytest.raises(InputError, match=r"its sidecar run\.toml is missing") as error:
+        open_record(path)
+    assert f"pantocheck describe {path} --sidecar {path.with_suffix('.toml')}" in str(error.value)
 
 
 def test_truncated_empty_or_changed_table_is_refused(written: Writer) -> None:
@@ -271,14 +276,6 @@ def test_wrong_sidecar_is_refused(written: Writer, changes: dict[str, Any], mess
     edit_toml(path.with_suffix(".toml"), changes)
     with pytest.raises(InputError, match=message):
         read_record(path)
-
-
-def test_table_without_its_sidecar_names_the_command_that_writes_it(tmp_path: Path) -> None:
-    path = tmp_path / "run.csv"
-    path.write_text("time_s,force_1_N\n0,120\n")
-    with pytest.raises(InputError, match=r"its sidecar run\.toml is missing") as error:
-        open_record(path)
-    assert f"pantocheck describe {path} --sidecar {path.with_suffix('.toml')}" in str(error.value)
 
 
 def test_record_overwrites_no_case_and_has_a_known_suffix(record: Record, tmp_path: Path) -> None:

@@ -50,12 +50,17 @@ def values(found: PreparedRecord) -> dict[str, Value]:
     return evaluate_signals(found.pantographs, LineSignals(found.section)).values[1]
 
 
-def test_simulated_record_is_unchanged() -> None:
+def test_simulated_record_is_unchanged_and_pantographs_share_their_track() -> None:
     """Even samples, a run-in and a run-out: the quantities are those of the record itself, to the last bit."""
     samples = by_time()
     keys = {"evaluated_m": [300.0, 1500.0]}
     expected = evaluate_record(build_record(samples, sidecar(**keys)), Filter()).values[1]
     assert values(ready(samples, **keys)) == expected
+    # After 100 m the second pantograph has just reached the start of the first: the section has no length.
+    time = np.arange(129) / 64
+    force = np.full((2, 129), 120.0)
+    with pytest.raises(RecordInvalid, match="the pantographs share no track"):
+        ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
 
 
 def test_record_in_other_units_is_prepared_in_si(converted_record: Path, two_pantograph_record: Record) -> None:
@@ -64,14 +69,6 @@ def test_record_in_other_units_is_prepared_in_si(converted_record: Path, two_pan
     prepared = prepare_record(samples, described.model_copy(update={"evaluated_m": (160.0, 240.0)}), Filter(), 5.0)
     assert prepared.pantographs[1].section == (160.0, 240.0)
     assert_allclose(prepared.pantographs[1].force.delivered, two_pantograph_record.force[0], rtol=1e-12)
-
-
-def test_pantographs_that_share_no_track_are_refused() -> None:
-    """After 100 m the second pantograph has just reached the start of the first: the section has no length."""
-    time = np.arange(129) / 64
-    force = np.full((2, 129), 120.0)
-    with pytest.raises(RecordInvalid, match="the pantographs share no track"):
-        ready(RecordSamples(force=force, time=time), speed_km_h=180.0, pantographs=2, spacing_m=[100.0])
 
 
 @pytest.mark.parametrize(("run_in", "warned"), [(6.8, True), (7.1, False)])
@@ -95,7 +92,7 @@ def test_sampling_by_distance_gives_the_statistics_of_time(step: float) -> None:
     assert any("sampled by distance" in note for note in found.notes)
 
 
-def test_speed_channel_makes_time_from_distance() -> None:
+def test_time_follows_from_a_steady_speed_channel() -> None:
     """At a speed that rises by 4 %, 12 Hz stays 12 Hz only if time is integrated with that speed."""
     position = np.arange(0, 3000, 0.1)
     speed = SPEED * (1 + 0.04 * position / 3000)
@@ -104,6 +101,21 @@ def test_speed_channel_makes_time_from_distance() -> None:
     part = ready(RecordSamples(force=force[None], position=position[None], speed=speed)).pantographs[1]
     spectrum = np.abs(np.fft.rfft(part.delivered - part.delivered.mean()))
     assert np.fft.rfftfreq(part.delivered.size, 1 / part.force.rate)[spectrum.argmax()] == pytest.approx(12, abs=0.03)
+    # One of them shows a train that is 10 % slower from 1042 m on.
+    samples = by_time()
+    slow = np.where(samples.time < 15, SPEED, 0.9 * SPEED)
+    position = np.concatenate([[0.0], np.cumsum(slow)[:-1] * 0.002])
+    steady = np.full(samples.time.size, SPEED)
+    for changed in ({"speed": slow}, {"speed": steady, "position": position[None]}):
+        assert skip_reason(ready(replace(samples, **changed), evaluated_m=[10.0, 1500.0])) is not None
+    # The channel shows 1 % more than the nominal speed; the last second, at half of it, is cut: 3.3 % of 30 s.
+    samples = by_time()
+    speed = np.where(samples.time < 29, 1.01 * SPEED, 0.5 * SPEED)
+    found = ready(replace(samples, speed=speed), evaluated_m=[100.0, 964.0])
+    assert found.speed == pytest.approx(1.01 * SPEED, rel=1e-9)
+    assert found.warnings == (
+        f"3.3 % of the record was cut, first at {SPEED * 29:.1f} m: the speed differs by more than 5 % from 250 km/h",
+    )
 
 
 def skip_reason(found: PreparedRecord, pantograph: int = 1) -> str | None:
@@ -166,16 +178,6 @@ def test_section_with_a_change_of_speed_has_no_values() -> None:
     assert skip_reason(ready(samples, evaluated_m=[10.0, 2000.0])) is None
     with pytest.raises(RecordInvalid, match="at the nominal speed"):
         ready(samples, speed_km_h=300.0)
-
-
-def test_speed_channel_and_positions_must_both_be_steady() -> None:
-    """One of them shows a train that is 10 % slower from 1042 m on."""
-    samples = by_time()
-    slow = np.where(samples.time < 15, SPEED, 0.9 * SPEED)
-    position = np.concatenate([[0.0], np.cumsum(slow)[:-1] * 0.002])
-    steady = np.full(samples.time.size, SPEED)
-    for changed in ({"speed": slow}, {"speed": steady, "position": position[None]}):
-        assert skip_reason(ready(replace(samples, **changed), evaluated_m=[10.0, 1500.0])) is not None
 
 
 @pytest.mark.parametrize("stated", [True, False])
@@ -319,17 +321,6 @@ def test_speed_differs_by_at_most_the_tolerance_of_the_profile(factor: float, st
     refusal = pytest.raises(RecordInvalid, match="force: pantograph 1 has no section of 1 s without gaps")
     with nullcontext() if steady else refusal:
         assert ready(moved).speed == pytest.approx(factor * SPEED, rel=1e-9)
-
-
-def test_mean_speed_is_that_of_the_steady_part_of_the_speed_channel() -> None:
-    """The channel shows 1 % more than the nominal speed; the last second, at half of it, is cut: 3.3 % of 30 s."""
-    samples = by_time()
-    speed = np.where(samples.time < 29, 1.01 * SPEED, 0.5 * SPEED)
-    found = ready(replace(samples, speed=speed), evaluated_m=[100.0, 964.0])
-    assert found.speed == pytest.approx(1.01 * SPEED, rel=1e-9)
-    assert found.warnings == (
-        f"3.3 % of the record was cut, first at {SPEED * 29:.1f} m: the speed differs by more than 5 % from 250 km/h",
-    )
 
 
 def test_missing_force_and_uplift_are_reported_with_their_shares() -> None:

@@ -79,16 +79,13 @@ def test_extremes_are_those_of_the_whole_filtered_record() -> None:
     assert values(record(force))["max_force_N"] > 101
 
 
-def test_each_pantograph_is_evaluated_at_its_own_position() -> None:
+def test_quantities_belong_to_their_pantograph_and_supports() -> None:
     """The second pantograph runs 100 m behind: it crosses the section 2 s later, at another force."""
     time = np.arange(12_000) / RATE
     position = np.array([SPEED * time, SPEED * time - 100])
     force = np.where(position < 200, 500.0, np.where(position < 400, [[110.0], [130.0]], 900.0))
     found = evaluate_record(record(force, position=position), Filter()).values
     assert_allclose([found[1]["mean_force_N"], found[2]["mean_force_N"]], [110, 130], rtol=1e-12)
-
-
-def test_uplift_is_the_largest_at_the_evaluated_supports() -> None:
     supports = np.array([150.0, 200.0, 300.0, 400.0, 450.0])
     uplift = np.zeros((5, 12_000))
     uplift[:, 7000] = [0.9, 0.04, 0.05, 0.06, 0.9]
@@ -96,16 +93,13 @@ def test_uplift_is_the_largest_at_the_evaluated_supports() -> None:
     assert_allclose(found.values[LINE]["max_uplift_at_support_mm"], 60.0)
 
 
-def test_force_filtered_at_20_hz_has_no_values_above_and_no_contact_loss() -> None:
+def test_filtered_force_and_low_rate_have_no_values_above() -> None:
     evaluation = evaluate_record(record(filter_applied_Hz=20.0), Filter())
     losses = {"contact_loss_pct", "longest_contact_loss_s", "contact_loss_events"}
     assert set(evaluation.skipped[1]) == {"std_force_50_N", "cov_50", "rms_20_50_N", "contact_height_range_mm"} | losses
     assert "filtered at 20 Hz" in evaluation.skipped[1]["rms_20_50_N"]
     assert "filtered at 20 Hz" in evaluation.skipped[1]["std_force_50_N"]
     assert "mean_force_N" in evaluation.values[1]
-
-
-def test_low_rate_has_no_values_up_to_50_hz() -> None:
     evaluation = evaluate_record(record(rate=100.0), Filter())
     assert {"rms_20_50_N", "std_force_50_N", "cov_50"} < set(evaluation.skipped[1])
     assert "100 samples per second; a filter at 50 Hz needs at least 125" in evaluation.skipped[1]["rms_20_50_N"]
@@ -193,7 +187,7 @@ def test_time_is_even_to_a_hundredth_of_a_step(sample: int, shift: float, even: 
 
 
 @pytest.mark.parametrize("sample", [1, 300, 6000, 11_998])
-def test_lost_sample_or_impossible_array_is_refused(sample: int) -> None:
+def test_record_without_one_sample_is_refused(sample: int) -> None:
     """All channels of two pantographs lack the same sample, as after a lost line of a file."""
     good = record(np.full((2, 12_000), 100.0), position=SPEED * np.arange(12_000) / RATE - np.array([[0.0], [100.0]]))
     kept = np.delete(np.arange(12_000), sample)

@@ -41,7 +41,7 @@ def test_counter_gives_the_distance_within_one_sample(direction: int) -> None:
     assert (np.diff(distance[known]) > 0).all()
 
 
-def test_pulse_train_gives_the_distance_within_a_part_of_a_sample() -> None:
+def test_pulses_and_marks_give_the_distance_between_them() -> None:
     """A sensor of 5 V with noise of 0.2 V, and a wave of 1 m: edges are interpolated, so that 2 cm are left."""
     noise = 0.2 * np.random.default_rng(2).standard_normal(TIME.size)
     signal = 2.5 + 2.5 * np.tanh(2 * np.sin(2 * np.pi * DISTANCE)) + noise
@@ -49,10 +49,7 @@ def test_pulse_train_gives_the_distance_within_a_part_of_a_sample() -> None:
     known = np.isfinite(distance)
     assert known.mean() > 0.998
     assert np.ptp((distance - DISTANCE)[known]) < 0.1
-
-
-def test_marks_are_interpolated_and_nothing_is_extrapolated() -> None:
-    """Marks of 100 m at a nearly constant speed: monotone cubics leave 1 cm of 1.2 km."""
+    # Marks of 100 m at a nearly constant speed: monotone cubics leave 1 cm of 1.2 km.
     places = np.arange(100.0, 1200.0, 100.0)
     passing = np.interp(places, DISTANCE, TIME)
     position = interpolate_marks(TIME, passing, places)

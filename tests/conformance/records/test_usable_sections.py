@@ -34,14 +34,6 @@ def test_speed_is_averaged_over_a_second(size: int, rate: float) -> None:
     assert_allclose(local_speed(time, position)[half:-half], expected, rtol=1e-9)
 
 
-def test_speed_of_a_short_or_coarse_record() -> None:
-    """Five samples in half a second, and samples every 2.5 s: the slope of a straight line."""
-    for time in (np.arange(5) / 10, np.arange(4) * 2.5):
-        assert_allclose(local_speed(time, 50 * time), 50.0, rtol=1e-12)
-    coarse = np.arange(4) * 2.5
-    assert_allclose(local_speed(coarse, coarse**2), np.gradient(coarse**2, coarse), rtol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("step", "gap", "parts"),
     [
@@ -58,13 +50,18 @@ def test_gap_is_longer_than_ten_milliseconds_and_half_a_step(step: float, gap: f
     assert_array_equal(np.concatenate(found), np.arange(time.size))
 
 
-def test_unusable_samples_are_a_gap() -> None:
+def test_unusable_samples_are_a_gap_and_short_records_have_a_speed() -> None:
     time = np.arange(1000) / 100
     usable = np.full(1000, True)
     usable[300:310] = False
     first, second = find_usable_sections(time, usable)
     assert (first[0], first[-1], second[0], second[-1]) == (0, 299, 310, 999)
     assert find_usable_sections(time, np.full(1000, False)) == []
+    # Five samples in half a second, and samples every 2.5 s: the slope of a straight line.
+    for time in (np.arange(5) / 10, np.arange(4) * 2.5):
+        assert_allclose(local_speed(time, 50 * time), 50.0, rtol=1e-12)
+    coarse = np.arange(4) * 2.5
+    assert_allclose(local_speed(coarse, coarse**2), np.gradient(coarse**2, coarse), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("samples", "found"), [(100, 0), (102, 1)])

@@ -14,6 +14,9 @@ from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import Finding
 from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, fit_motion
 
+Disturb = Callable[[int, float], Record]
+"""Function that disturbs the motion of one head."""
+
 
 def check(case: Case, record: Record) -> Finding | None:
     return DYNAMICS.run(case, RecordSignals(record, case.file.filter))
@@ -23,13 +26,10 @@ def fit(case: Case, record: Record, row: int) -> ResponseFit:
     """Fit of one pantograph to every second sample of the section: 25 per period of 20 Hz, at 1000 Hz."""
     low_pass, signals = case.file.filter, RecordSignals(record, case.file.filter)
     first, last = np.searchsorted(record.position[row], signals.pantographs[row + 1].section)
-    assert record.contact_height is not None
     force, height = (
         low_pass(channel[row], record.rate)[first:last:2] for channel in (record.force, record.contact_height)
     )
-    result = fit_motion(case.pantographs[row], force, height, 2 / record.rate)
-    assert result is not None
-    return result
+    return fit_motion(case.pantographs[row], force, height, 2 / record.rate)
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def record(two_pantograph_case: Case) -> Record:
 
 
 @pytest.fixture
-def disturb(record: Record) -> Callable[[int, float], Record]:
+def disturb(record: Record) -> Disturb:
     """Record with a motion of one head that the force does not explain, as a share of its motion."""
 
     def disturb(row: int, share: float) -> Record:
@@ -53,7 +53,7 @@ def disturb(record: Record) -> Callable[[int, float], Record]:
 @pytest.mark.parametrize("row", [0, 1])
 @pytest.mark.parametrize("share", [0.13, 0.4])
 def test_motion_that_the_force_does_not_explain_is_stated(
-    two_pantograph_case: Case, disturb: Callable[[int, float], Record], row: int, share: float
+    two_pantograph_case: Case, disturb: Disturb, row: int, share: float
 ) -> None:
     """Three periods per span are added to one; the fit of free motions takes a part of either away."""
     record = disturb(row, share)
@@ -68,14 +68,14 @@ def test_motion_that_the_force_does_not_explain_is_stated(
 
 @pytest.mark.parametrize(("share", "accepted"), [(0.09, True), (0.12, False)])
 def test_misfit_up_to_a_tenth_is_accepted(
-    two_pantograph_case: Case, disturb: Callable[[int, float], Record], share: float, accepted: bool
+    two_pantograph_case: Case, disturb: Disturb, share: float, accepted: bool
 ) -> None:
     """The misfit s / sqrt(1 - s^2) is 0.09 and 0.12; its threshold is 0.1."""
     assert (check(two_pantograph_case, disturb(1, share)) is None) is accepted
 
 
 def test_value_on_a_threshold_is_accepted(
-    two_pantograph_case: Case, disturb: Callable[[int, float], Record], monkeypatch: pytest.MonkeyPatch
+    two_pantograph_case: Case, disturb: Disturb, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each threshold in turn is set to the very number of the record."""
     record = disturb(0, 0.12)

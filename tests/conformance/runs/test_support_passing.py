@@ -79,8 +79,13 @@ def coinciding(five_supports: Case) -> Record:
     return replace(record, force=force, contact_height=5.3 + near + force / stiffness, support_uplift=uplift)
 
 
-def test_coincidence_alone_confirms_the_positions(five_supports: Case, coinciding: Record) -> None:
+def test_coincidence_alone_confirms_and_unclear_passages_are_named(five_supports: Case, coinciding: Record) -> None:
     assert check(five_supports, coinciding) is None
+    found = check(five_supports, replace(coinciding, contact_height=None))
+    assert found == Finding(
+        "unchecked",
+        "the support passing check was not made: the uplift at the supports shows no clear passage of pantograph 1, 2",
+    )
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -108,9 +113,7 @@ def test_passage_without_contact_does_not_count(five_supports: Case, coinciding:
 
 @pytest.mark.parametrize(("shift", "side"), [(12.0, "past"), (-12.0, "before"), (30.0, "past")])
 @pytest.mark.parametrize("row", [0, 1])
-def test_shift_is_stated_with_its_direction(
-    two_pantograph_case: Case, wave: type[Wave], row: int, shift: float, side: str
-) -> None:
+def test_shift_and_direction(two_pantograph_case: Case, wave: type[Wave], row: int, shift: float, side: str) -> None:
     """The position of one pantograph is 12 m too large: the wire bends where it is said to be 12 m past a support."""
     # Force and height repeat in every span of 60 m, so that they coincide with the uplift at any shift, half a span
     # too.
@@ -129,14 +132,6 @@ def test_check_needs_a_rate_for_the_filter(two_pantograph_case: Case, rate: floa
     found = check(two_pantograph_case, Wave(rate=rate).record(two_pantograph_case))
     assert (found is None) is made
     assert made or (found is not None and found.text.endswith(f"a rate of {rate:g} Hz is too low"))
-
-
-def test_all_unclear_passages_are_named(five_supports: Case, coinciding: Record) -> None:
-    found = check(five_supports, replace(coinciding, contact_height=None))
-    assert found == Finding(
-        "unchecked",
-        "the support passing check was not made: the uplift at the supports shows no clear passage of pantograph 1, 2",
-    )
 
 
 # Uplift behind the active window: right or missing in the record of a case, and no reason for a skip.
@@ -169,9 +164,7 @@ def test_record_of_a_case_holds_the_uplift_of_the_whole_line_or_none(records: tu
     assert np.abs(windowed.force - whole.force).max() < 1e-8
 
 
-def test_missing_uplift_changes_no_grade_in_memory_or_from_a_file(
-    case: Case, records: tuple[Record, Record], tmp_path: Path
-) -> None:
+def test_missing_uplift_changes_no_grade(case: Case, records: tuple[Record, Record], tmp_path: Path) -> None:
     """The same verdict and uplift from the windowed record, from the whole one and from a written file."""
     windowed, whole = (grade_case(case, Delivered(record), "secondary") for record in records)
     write_record(tmp_path / "run.csv", records[0], case.id, further={"case_digest": case.digest})

@@ -6,13 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.linalg import eigh
-from typer.testing import CliRunner
 
 from helpers.case_fixtures import EditedCase
+from helpers.command_line import pantocheck
 from helpers.listed_spans import list_spans
 from helpers.short_cases import shorten_case
 from helpers.wave_system import Wave
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
@@ -70,13 +69,10 @@ def test_targets_are_met_in_few_runs(gain: float, cross: float, most_runs: int) 
     assert run.runs <= most_runs
 
 
-def test_force_without_a_target_is_kept_after_one_run() -> None:
+def test_force_without_a_target_needs_one_run_and_the_last_one_can_meet_it() -> None:
     run = CoupledPantographs(1.0)
     assert tune_uplift(run, means, (120.0, 130.0), (None, None)).uplift == (120.0, 130.0)
     assert run.runs == 1
-
-
-def test_last_allowed_run_can_meet_the_target() -> None:
     runs: list[tuple[float, ...]] = []
 
     def run(forces: tuple[float, ...]) -> MeanForces:
@@ -87,16 +83,13 @@ def test_last_allowed_run_can_meet_the_target() -> None:
     assert len(runs) == MAX_RUNS
 
 
-def test_mean_that_does_not_follow_its_uplift_force_is_a_failure() -> None:
-    with pytest.raises(TuningFailed, match=r"^pantograph 1: .* is 50\.00 N, its target_mean_force_N is 144\.00 N$"):
-        tune_uplift(lambda forces: MeanForces(forces, np.full(1, 50.0)), means, (120.0,), (144.0,))
-
-
-def test_failure_names_the_pantograph_that_is_farthest_from_its_target() -> None:
+def test_failure_names_the_pantograph_that_is_farthest_from_its_target_and_both_forces() -> None:
     """The second one is 6 N above its target, the first one 1 N below, the third one has none."""
     values = np.array([143.0, 175.0, 300.0])
     with pytest.raises(TuningFailed, match=r"^pantograph 2: after 12 runs the mean contact force is 175\.00 N"):
         tune_uplift(lambda forces: MeanForces(forces, values), means, (120.0,) * 3, (144.0, 169.0, None))
+    with pytest.raises(TuningFailed, match=r"^pantograph 1: .* is 50\.00 N, its target_mean_force_N is 144\.00 N$"):
+        tune_uplift(lambda forces: MeanForces(forces, np.full(1, 50.0)), means, (120.0,), (144.0,))
 
 
 @pytest.fixture
@@ -111,15 +104,12 @@ def untunable(edited_case: EditedCase, wave: type[Wave], monkeypatch: pytest.Mon
     return edited_case("250.toml", changes)
 
 
-def test_simulate_reports_failed_tuning_with_exit_code_2(untunable: Path, tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["simulate", str(untunable), "--out", str(tmp_path / "record.csv")])
+def test_failed_tuning_ends_a_command_with_exit_code_2(untunable: Path, tmp_path: Path) -> None:
+    done = pantocheck("simulate", untunable, "--out", tmp_path / "record.csv")
     assert done.exit_code == 2
     assert "mean contact force is 119.00 N, its target_mean_force_N is 150.00 N" in done.output
     assert "Traceback" not in done.output
-
-
-def test_run_reports_failed_tuning_as_the_error_of_the_case(untunable: Path, tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["run", str(untunable), "--formats", "json", "--out", str(tmp_path / "report")])
+    done = pantocheck("run", untunable, "--formats", "json", "--out", tmp_path / "report")
     assert done.exit_code == 2
     assert "TuningFailed: pantograph 1: after 12 runs" in " ".join(done.output.split())
 
@@ -159,13 +149,10 @@ def test_estimate_gives_nearly_the_required_mean_forces(name: str, speed: float)
     assert np.abs(error).max() < np.abs(untuned).min()
 
 
-def test_stated_uplift_force_is_the_start() -> None:
+def test_estimate_starts_at_a_stated_force_and_grows_with_the_speed() -> None:
     case = short_case("ac-simple/320", 320.0, stated=171.0)
     assert estimate_uplift_forces(case, discretised(case)) == (171.0, 171.0)
-
-
-def test_uplift_grows_with_the_speed_up_to_the_wave_speed() -> None:
-    """A contact wire of 22 kN and 1.35 kg/m has a wave speed of 127.7 m/s; at 0.6 of it the factor is 1 / 0.8."""
+    # A contact wire of 22 kN and 1.35 kg/m has a wave speed of 127.7 m/s; at 0.6 of it the factor is 1 / 0.8.
     line = discretised(short_case("ac-simple/320", 320.0))
     assert moving_factor(0.6 * np.sqrt(22e3 / 1.35), line) == pytest.approx(1.25, abs=1e-12)
     assert moving_factor(0.0, line) == 1.0
@@ -191,14 +178,8 @@ def descriptions(chain: PantographFile) -> dict[str, PantographFile]:
     model = build_pantograph(chain, 0.0, 0.0)
     w2, shapes = eigh(model.stiffness, model.mass)
     omega = np.sqrt(w2)
-    rows = {
-        key: tuple(map(tuple, matrix.tolist()))
-        for key, matrix in (
-            ("mass_kg", model.mass),
-            ("damping_N_s_m", model.damping),
-            ("stiffness_N_m", model.stiffness),
-        )
-    }
+    tables = {"mass_kg": model.mass, "damping_N_s_m": model.damping, "stiffness_N_m": model.stiffness}
+    rows = {key: tuple(map(tuple, matrix.tolist())) for key, matrix in tables.items()}
     matrices = MatricesTable(**rows, head=(0.0, 0.0, 1.0), uplift_force_on=(1.0, 0.0, 0.0), **PROVENANCE)
     modes = ModesTable(
         frequency_Hz=tuple((omega / (2 * np.pi)).tolist()),
