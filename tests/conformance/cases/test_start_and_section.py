@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from helpers.section_lines import section_line
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import load_case, select_cases
@@ -26,10 +27,6 @@ from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model import discretise
 from pantocheck.model.description.failures import SimulationError
-
-
-def with_keys(case: Case, **keys: object) -> Case:
-    return replace(case, file=case.file.model_copy(update=keys))
 
 
 def case_named(name: str) -> Case:
@@ -70,7 +67,9 @@ def test_other_starts_of_a_short_run_in(case_250: Case) -> None:
     ],
 )
 def test_other_starts_lie_on_the_line_before_the_section(case_250: Case, start: float, places: list[float]) -> None:
-    shifted = [other.case.start for other in list_other_starts(with_keys(case_250, start_m=start)) if not other.ramp_s]
+    shifted = [
+        other.case.start for other in list_other_starts(change_case(case_250, start_m=start)) if not other.ramp_s
+    ]
     assert shifted == pytest.approx(places)
 
 
@@ -84,13 +83,13 @@ def test_other_starts_lie_outside_of_overlaps(case_250: Case) -> None:
 @pytest.mark.parametrize(("start", "short"), [(0.5, True), (20.0, True), (-0.0, False)])
 def test_run_in_of_ten_spans_is_long(start: float, short: bool) -> None:
     """Sections that begin at span 11; the start lies at 0 m or later."""
-    case = with_keys(case_named("en50318-2018/ac-simple/275"), evaluated_spans=(11, 20), start_m=start)
+    case = change_case(case_named("en50318-2018/ac-simple/275"), evaluated_spans=(11, 20), start_m=start)
     assert has_short_run_in(case) is short
 
 
 def test_short_run_in_has_the_sections_of_its_case_and_quarters_of_a_span(case_250: Case) -> None:
     assert list_earlier_sections(case_250) == ()
-    compared = with_keys(case_250, compared_spans=(3, 8))
+    compared = change_case(case_250, compared_spans=(3, 8))
     assert list_earlier_sections(compared) == compared.shifted_sections
     shifted = shift_section(case_250.analysis_section, span_length(case_250))
     assert [start for start, _ in shifted] == pytest.approx([195.0, 210.0, 225.0, 255.0, 270.0, 285.0])
@@ -99,14 +98,14 @@ def test_short_run_in_has_the_sections_of_its_case_and_quarters_of_a_span(case_2
 
 def test_section_in_metres_is_that_of_its_spans_and_has_earlier_ones(case_250: Case) -> None:
     """Spans 5 and 6 of 60 m; other starts and the end of the run are the same."""
-    metres = with_keys(case_250, evaluated_spans=None, evaluated_m=(240.0, 360.0))
+    metres = change_case(case_250, evaluated_spans=None, evaluated_m=(240.0, 360.0))
     assert (metres.analysis_section, metres.analysed_spans) == (case_250.analysis_section, (5, 6))
     assert (metres.end, span_length(metres)) == (case_250.end, 60.0)
     starts, expected = ([other.case.start for other in list_other_starts(case)] for case in (metres, case_250))
     assert starts == expected
     # Section from the middle of span 30 to that of span 40: its mean span is 55 m.
     case = case_named("en50318-2018/ac-simple/320")
-    metres = with_keys(case, evaluated_spans=None, compared_spans=None, evaluated_m=(1622.5, 2172.5))
+    metres = change_case(case, evaluated_spans=None, compared_spans=None, evaluated_m=(1622.5, 2172.5))
     assert list_earlier_sections(metres)[:2] == ((1567.5, 2117.5), (1512.5, 2062.5))
     assert len(list_earlier_sections(metres)) == int(run_in_spans(metres) / 2)
 
@@ -115,7 +114,7 @@ def test_section_in_metres_is_that_of_its_spans_and_has_earlier_ones(case_250: C
     ("section", "spans"), [((230.0, 250.0), (4, 5)), ((241.0, 290.0), (5, 5)), ((0.0, 600.0), (1, 10))]
 )
 def test_section_in_metres_has_spans(case_250: Case, section: tuple[float, float], spans: tuple[int, int]) -> None:
-    assert with_keys(case_250, evaluated_spans=None, evaluated_m=section).analysed_spans == spans
+    assert change_case(case_250, evaluated_spans=None, evaluated_m=section).analysed_spans == spans
 
 
 # Further runs of the reference simulator, from which the uncertainty follows: two meshes and other starts.
@@ -126,12 +125,8 @@ def case() -> Case:
     The elements of 1 m make the four meshes of this test cheap.
     """
     loaded = load_case(library_folder() / "en50318-2002" / "250.toml")
-    geometry = loaded.line.geometry.model_copy(update={"spans": 6})
     keys = {"evaluated_spans": (4, 5), "spacing_m": (60.0,), "run_out_m": 0.0, "pantograph": loaded.file.pantograph * 2}
-    steps = loaded.file.discretisation.model_copy(update={"element_m": 1.0})
-    file = loaded.file.model_copy(update=keys | {"discretisation": steps})
-    line = loaded.line.model_copy(update={"geometry": geometry})
-    return replace(loaded, file=file, line=line, pantographs=loaded.pantographs * 2)
+    return replace(change_case(loaded, 6, (1.0, 1e-3), **keys), pantographs=loaded.pantographs * 2)
 
 
 @pytest.fixture(scope="module")

@@ -2,17 +2,22 @@
 
 import json
 import math
+import re
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from pydantic import ValidationError
+from rich.console import Console
 
 from helpers.command_line import pantocheck
+from helpers.shown_page import shown_certificate
 from helpers.toml_edit import change_keys, write_toml
+from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -20,9 +25,12 @@ from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.case_verdict import Participation
+from pantocheck.conformance.pages.badge import summarise_verdict
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.summary_page import build_summary
+from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.baseline_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -362,3 +370,96 @@ def test_number_of_values_is_bounded(results: Results, tmp_path: Path, number: i
     path.write_bytes(changed(results, "std_force_N", [1.0] * number).to_json())
     with nullcontext() if accepted else pytest.raises(InputError, match="10001 values; at most 10000 can be compared"):
         assert read_baseline(path).cases
+
+
+# Drift from a baseline on the pages: a verdict of its own, and no criterion of EN 50318.
+
+
+SHOWN = "std_force_N"
+
+
+@pytest.fixture
+def shown_drift(passing: dict[str, Any]) -> Results:
+    """Every criterion passes; the standard deviation of pantograph 1 was half as large in the baseline."""
+    now = Participation().decide_run(Results.model_validate(passing))
+    case = now.cases[0]
+    quantities = case.quantities | {"1": case.quantities["1"] | {SHOWN: 0.5 * float(str(case.quantities["1"][SHOWN]))}}
+    before = now.model_copy(update={"cases": [case.model_copy(update={"quantities": quantities})]})
+    return compare_with_baseline(now, before, 1.0, "earlier.json")
+
+
+def test_criteria_pass_and_the_headline_states_the_drift_apart(shown_drift: Results) -> None:
+    assert (shown_drift.verdict, shown_drift.criteria_verdict, shown_drift.baseline_verdict) == ("fail", "pass", "fail")
+    assert find_discrepancies(shown_drift) == []
+    text = build_headline(shown_drift)
+    drift = f"1 value drifted from the baseline, most {SHOWN} of {shown_drift.cases[0].id} by +100 %"
+    assert f"1 fails (0 of 16 counted criteria outside their limits, {drift})" in text
+    rows = [row for row in shown_drift.cases[0].criteria if row.baseline is not None]
+    uncounted = shown_drift.model_copy(update={"cases": [shown_drift.cases[0].model_copy(update={"criteria": rows})]})
+    assert f"1 fails ({drift})" in build_headline(uncounted)
+    assert "EN 50318 criteria: PASS; Drift from the baseline: FAIL." in text
+
+
+def test_summary_has_a_row_and_a_table_of_the_drift(shown_drift: Results) -> None:
+    text = render_markdown(build_summary(shown_drift))
+    assert "## Two verdicts" in text
+    assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes. 16 of 16 counted criteria" in text
+    assert re.search(
+        r"\| Drift from the baseline \| FAIL \| decides \| 0 of 1 case passes. 1 of \d+ values drifted", text
+    )
+    assert "## Drift from the baseline" in text
+    table = text.split("Drift from the baseline: FAIL")[-1]
+    [row] = [line for line in table.splitlines() if "drift from the baseline" in line]
+    assert row.endswith("| FAIL | – |")  # earlier values have no trust
+
+
+def test_certificate_shows_the_drift_below_a_heading_of_its_own(shown_drift: Results) -> None:
+    html = shown_certificate(shown_drift.to_dict())
+    headings = re.findall(r"<h[23][^>]*>(.*?)</h[23]>", html, re.DOTALL)
+    assert [heading for heading in headings if "Drift from the baseline" in heading]
+    assert "Two verdicts" in html
+    assert "16 criteria: 16 " in html
+    text = re.sub(r"<[^>]*>|\s|&nbsp;|\u200b|&#8203;", "", html)
+    assert re.search(r"1of\d+valuesdriftedbymorethan1%fromearlier\.json,oraremissing", text)
+
+
+def test_terminal_junit_badge_and_csv_show_the_drift_apart(shown_drift: Results, passing: dict[str, Any]) -> None:
+    console = Console(width=140)
+    with console.capture() as capture:
+        for part in build_results_output(shown_drift, (), 1).details:
+            console.print(part)
+    criteria, drift = capture.get().split("Drift from the baseline: ")
+    assert "FAIL" not in criteria.split("\n", 4)[-1]
+    assert drift.startswith("FAIL")
+    assert "drifted by +100 % from the baseline" in drift
+    root = ElementTree.fromstring(render_junit(shown_drift))
+    failed = [test for test in root.iter("testcase") if test.find("failure") is not None]
+    assert [test.get("name") for test in failed] == [f"drift of {SHOWN} of pantograph 1"]
+    failure = failed[0].find("failure")
+    assert "bounds of the baseline" in "".join(failure.itertext()) + str(failure.attrib)
+    assert summarise_verdict(shown_drift) == "fail 16/16, baseline fail"
+    # The bounds of a drift do not replace the limits of the standard.
+    assert render_quantity_list(shown_drift) == render_quantity_list(Results.model_validate(passing))
+
+
+def test_baseline_without_drift_is_shown_and_passes(passing: dict[str, Any]) -> None:
+    now = Participation().decide_run(Results.model_validate(passing))
+    same = compare_with_baseline(now, now, 1.0, "earlier.json")
+    assert (same.verdict, same.baseline_verdict) == ("pass", "pass")
+    assert "Drift from the baseline: PASS." in build_headline(same)
+    assert summarise_verdict(same) == "pass 16/16"
+    assert find_discrepancies(same) == []
+
+
+def test_baseline_that_cannot_be_compared_decides_in_junit(passing: dict[str, Any]) -> None:
+    """Its skipped criterion counts whichever verdict is requested."""
+    passing["cases"][0]["criteria_verdict"] = "pass"
+    now = Participation(requested=("verification",)).decide_run(Results.model_validate(passing))
+    empty = now.model_copy(update={"cases": []})
+    compared = compare_with_baseline(now, empty, 1.0, "earlier.json")
+    assert compared.baseline_verdict == "skip"
+    assert find_discrepancies(compared) == []
+    tests = ElementTree.fromstring(render_junit(compared)).iter("testcase")
+    [test] = [test for test in tests if test.get("name") == "baseline of line"]
+    skipped = test.find("skipped")
+    assert "for information" not in str(skipped.attrib)

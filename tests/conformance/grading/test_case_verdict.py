@@ -9,14 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.command_line import pantocheck
+from helpers.converged_fixtures import StateConverged
 from helpers.example_results import example, passing_case
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import CaseVerification
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.documents.verification import find_gaps
-from pantocheck.conformance.execution.plan import Plan, prepare_plan
+from pantocheck.conformance.execution.plan import Plan, PreparedPlan, prepare_plan
 from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
 from pantocheck.conformance.pages.junit import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
@@ -141,6 +144,7 @@ def test_junit_passes_only_what_counts_in_the_default_run(results: dict[str, Any
     assert secondary.participation.information == ()
 
 
+CASE, RESULTS = CaseResult.model_validate(passing_case()), Results.model_validate(example())
 VERDICTS = st.sampled_from(WORST_FIRST)
 REQUESTS = st.sampled_from([("criteria",), ("verification",), ("criteria", "verification")])
 
@@ -154,14 +158,13 @@ def case_result(
         other = CaseVerification(
             verdict=verification, reason=None, confirmed_by="another code", digest="", omitted=[], criteria=[]
         )
-    template = CaseResult.model_validate(passing_case())
-    row = template.criteria[0].model_copy(update={"verdict": drift, "baseline": 1.0})
+    row = CASE.criteria[0].model_copy(update={"verdict": drift, "baseline": 1.0})
     changes = {"id": case_id, "verdict": criteria, "criteria_verdict": criteria, "verification": other}
-    return template.model_copy(update=changes | {"criteria": [] if drift is None else [row]})
+    return CASE.model_copy(update=changes | {"criteria": [] if drift is None else [row]})
 
 
 def decide(participation: Participation, *cases: CaseResult) -> Results:
-    return participation.decide_run(Results.model_validate(example()).model_copy(update={"cases": list(cases)}))
+    return participation.decide_run(RESULTS.model_copy(update={"cases": list(cases)}))
 
 
 def rank(verdict: Verdict | None) -> int:
@@ -223,7 +226,7 @@ def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
     failed = case_result("a", "fail", "pass")
     assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
-    both, name = ("criteria", "verification"), example()["system"]["name"]
+    both, name = ("criteria", "verification"), RESULTS.system.name
     case = case_result("a", "unverified", "unverified")
     assert decide(Participation(requested=both), case).verdict == "unverified"
     assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"
@@ -234,7 +237,7 @@ def test_baseline_never_improves_a_verdict(
     criteria: Verdict, verification: Verdict | None, drift: Verdict, requested: tuple[VerdictName, ...], listed: bool
 ) -> None:
     """Whether its criteria are listed or only its verdict is stated; the other verdicts do not depend on it."""
-    participation = Participation(requested=requested, accepted_unverified=(example()["system"]["name"],))
+    participation = Participation(requested=requested, accepted_unverified=(RESULTS.system.name,))
     plain = case_result("a", criteria, verification)
     comparison = BaselineComparison(verdict=drift, name="b.json", drift_pct=1.0, values=8, drifted=1)
     row = case_result("a", criteria, verification, drift).criteria
@@ -246,3 +249,67 @@ def test_baseline_never_improves_a_verdict(
     assert results.criteria_verdict == without.criteria_verdict
     assert results.verification_verdict == without.verification_verdict
     assert read_participation(results).decide_run(results) == results
+
+
+# Selection: requested verdicts by system, and the cases of a run without a list of cases.
+
+
+TWIN, PUBLISHED = "en50318-2018/ac-simple/320-twin", "en50318-2002/250"
+BOTH = ("criteria", "verification")
+
+
+@pytest.fixture
+def verifiable(state_converged: StateConverged, case_250: Case) -> None:
+    """Converged values for a case with published limits and for one without any."""
+    for name in (PUBLISHED, TWIN):
+        renamed = case_250.file.model_copy(update={"id": name})
+        state_converged(Case(renamed, case_250.line, case_250.pantographs, ()), {})
+
+
+@pytest.mark.parametrize(
+    ("choice", "system", "cases", "expected"),
+    [
+        (None, "builtin", [PUBLISHED], ("criteria",)),
+        (None, "record:folder", [PUBLISHED], BOTH),
+        (None, "command:program", ["own", PUBLISHED], BOTH),
+        (None, "record:folder", ["own"], ("criteria",)),
+        ("both", "builtin", ["own"], BOTH),
+        ("verification", "builtin", [PUBLISHED], ("verification",)),
+        ("criteria", "record:folder", [PUBLISHED], ("criteria",)),
+    ],
+)
+@pytest.mark.usefixtures("verifiable")
+def test_requested_verdicts_by_system(
+    choice: VerdictChoice | None, system: str, cases: list[str], expected: tuple[str, ...]
+) -> None:
+    assert choose_verdicts(choice, system, cases) == expected
+
+
+def ids(prepared: PreparedPlan) -> set[str]:
+    return {case.id for case in prepared.cases}
+
+
+@pytest.mark.usefixtures("verifiable")
+def test_default_run_of_another_system_takes_the_cases_with_converged_values() -> None:
+    builtin, foreign = (prepare_plan(Plan(system=system)) for system in ("builtin", "record:folder"))
+    assert ids(foreign) - ids(builtin) == {TWIN}
+    assert builtin.participation.requested == ("criteria",)
+    assert builtin.participation.verification_only == ()
+    assert foreign.participation.requested == BOTH
+    assert foreign.participation.verification_only == (TWIN,)
+    assert foreign.participation.information == builtin.participation.information
+
+
+@pytest.mark.usefixtures("verifiable")
+def test_verification_takes_no_other_case_than_required_or_named_ones() -> None:
+    """The static check that the twin requires has no converged values here: it is shown for information."""
+    prepared = prepare_plan(Plan(verdicts="verification"))
+    assert ids(prepared) == {PUBLISHED, TWIN, "en50318-2018/ac-simple/static"}
+    assert prepared.participation.information == ("en50318-2018/ac-simple/static",)
+    # A case that the user names has no limit that counts: the criteria stay informative.
+    assert prepare_plan(Plan(cases=(TWIN,), verdicts="both")).participation.verification_only == ()
+
+
+def test_default_run_without_converged_values_needs_a_limit(state_converged: StateConverged) -> None:
+    with pytest.raises(InputError, match="no limit counts"):
+        prepare_plan(Plan(verdicts="verification"))

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.converged_fixtures import StateConverged
+from helpers.short_cases import change_case
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -86,8 +87,7 @@ def test_result_shows_the_start(case_250: Case, start: StartTable | None, state:
 
 
 def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertainty(case_250: Case) -> None:
-    mesh = case_250.file.discretisation.model_copy(update={"element_m": 5.0, "time_step_s": 0.005})
-    coarse = replace(case_250, file=case_250.file.model_copy(update={"discretisation": mesh}))
+    coarse = change_case(case_250, mesh=(5.0, 0.005))
     run = ReferenceSimulator().run_unrefined(coarse)
     assert run.start == StartTable(**START)
     (effect,) = grade_case(coarse, run, "secondary").model_uncertainty

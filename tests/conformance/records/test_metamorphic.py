@@ -65,7 +65,7 @@ class Subject:
 
 @pytest.fixture(scope="module")
 def subject(twin_case: Case, wave: Any) -> Subject:
-    sound, strong = wave().record(twin_case), wave(sigma=34.0).record(twin_case)
+    sound, strong = (wave(sigma=sigma, rate=250.0).record(twin_case) for sigma in (28.0, 34.0))
     start, end = sound.evaluated
     inside = np.flatnonzero((sound.support_position >= start) & (sound.support_position <= end))
     uplift = sound.support_uplift.copy()

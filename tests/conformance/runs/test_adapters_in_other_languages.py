@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.listed_spans import vary_short_line
+from helpers.short_cases import change_case
 from pantocheck.conformance.app.self_test.adapter_check import build_short_case, check_adapter
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.evaluation import Value
@@ -36,9 +37,7 @@ def adapter(request: pytest.FixtureRequest) -> System:
 @pytest.fixture(scope="module")
 def coarse() -> Case:
     """The short case with elements of 2 m and a time step of 4 ms, which each program computes in seconds."""
-    case = build_short_case()
-    discretisation = case.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 0.004})
-    return replace(case, file=case.file.model_copy(update={"discretisation": discretisation}))
+    return change_case(build_short_case(), mesh=(2.0, 0.004))
 
 
 @pytest.fixture(scope="module")

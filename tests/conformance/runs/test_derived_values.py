@@ -9,6 +9,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from helpers.listed_spans import list_spans
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.toml_file import read_toml
@@ -30,10 +31,8 @@ def library_case(name: str) -> Case:
 
 def shorten(case: Case, spans: int, **section: object) -> Case:
     """The case on its first spans, with the second as its analysis section."""
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(spans)})
     spacing = (20.0,) * (len(case.pantographs) - 1) or None
-    file = case.file.model_copy(update={**SECTION, "spacing_m": spacing, **section})
-    return replace(case, line=line, file=file)
+    return change_case(case, spans, **SECTION | {"spacing_m": spacing} | section)
 
 
 @cache

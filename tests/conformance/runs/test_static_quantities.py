@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from helpers.listed_spans import list_spans
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.core.toml_file import read_model, read_toml
@@ -27,9 +28,8 @@ from pantocheck.model import discretise
 def shortened(name: str, spans: int = 8) -> Case:
     """Case of the library on a shorter line; its ends hardly affect the middle span."""
     case = next(case for case in select_cases([name]) if case.id == name)
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(spans)})
     sections = {} if case.is_static else {"evaluated_spans": (3, 4), "compared_spans": None}
-    return replace(case, line=line, file=case.file.model_copy(update=sections))
+    return change_case(case, spans, **sections)
 
 
 @pytest.fixture(scope="module")
@@ -80,8 +80,7 @@ def test_modes_are_those_of_ten_spans() -> None:
     case = shortened("en50318-2018/ac-simple/static", 12)
     modes = first_modes(case.line, 5.0)
     assert modes.frequency.size == 10
-    ten = case.line.model_copy(update={"geometry": case.line.geometry.shorten(10)})
-    mesh = discretise(build_catenary(ten), 5.0).mesh
+    mesh = discretise(build_catenary(change_case(case, 10).line), 5.0).mesh
     assert modes.shape.shape == (10, mesh.rows, mesh.position.size, 2)
     lateral = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     size = (modes.shape[..., 0] ** 2).sum(axis=2)
@@ -113,8 +112,7 @@ def test_stitched_line_fits_its_figure_and_a_failed_check_skips_its_cases() -> N
     assert found["dropper_length_m"] == pytest.approx(case.line.droppers.length_m, abs=0.0101)
     static, running = (shortened(f"en50318-2018/ac-simple/{name}") for name in ("static", "275"))
     wrong = static.limits[0].model_copy(update={"lower": 2.0, "upper": 3.0})
-    coarse = static.file.discretisation.model_copy(update={"element_m": 4.0})
-    static = replace(static, file=static.file.model_copy(update={"discretisation": coarse}), limits=(wrong,))
+    static = replace(change_case(static, mesh=(4.0, 1e-3)), limits=(wrong,))
     results = run_cases([static, running], ReferenceSimulator())
     assert [case.verdict for case in results.cases] == ["fail", "skip"]
     assert results.cases[1].reason == f"requires {static.id}, whose verdict is fail"
@@ -165,9 +163,7 @@ def test_elasticity_grows_with_the_length_of_the_span() -> None:
 
 def test_only_lines_with_listed_spans_have_values_of_every_span(listed: Case) -> None:
     """A static case of the reference simulator delivers them; a line of equal spans has those of its middle span."""
-    coarse = listed.file.discretisation.model_copy(update={"element_m": 5.0})
-    case = replace(listed, file=listed.file.model_copy(update={"discretisation": coarse}))
-    delivered = ReferenceSimulator().run_unrefined(case).static
+    delivered = ReferenceSimulator().run_unrefined(change_case(listed, mesh=(5.0, 1e-3))).static
     assert len(delivered["elasticity_of_spans_mm_N"]) == 5
     equal = load_case(library_folder() / "en50318-2018" / "ac-simple" / "static.toml").line
     few = equal.model_copy(update={"geometry": equal.geometry.shorten(2)})

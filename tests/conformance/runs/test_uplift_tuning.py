@@ -10,11 +10,13 @@ from scipy.linalg import eigh
 from helpers.case_fixtures import EditedCase
 from helpers.command_line import pantocheck
 from helpers.listed_spans import list_spans
-from helpers.short_cases import shorten_case
+from helpers.short_cases import change_case, shorten_case
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.step_log import ShareCallback
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
@@ -25,6 +27,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs import case_run
 from pantocheck.conformance.runs.case_run import PassageRun, build_passage, run_passage, start_forces
+from pantocheck.conformance.runs.static_quantities import sample_span
 from pantocheck.conformance.runs.uplift_tuning import (
     MAX_RUNS,
     TuningFailed,
@@ -32,8 +35,9 @@ from pantocheck.conformance.runs.uplift_tuning import (
     moving_factor,
     tune_uplift,
 )
-from pantocheck.model import DiscretisedLine, discretise, simulate_passage
+from pantocheck.model import DiscretisedLine, History, Passage, discretise, simulate_passage
 from pantocheck.model.description.pantograph import equilibrium
+from pantocheck.model.statics.elasticity import static_uplift
 
 
 @dataclass(frozen=True)
@@ -197,12 +201,9 @@ def descriptions(chain: PantographFile) -> dict[str, PantographFile]:
 
 def simulate(case: Case, file: PantographFile) -> np.ndarray:
     """Contact force of an untuned passage over two spans of the line of EN 50318:2002."""
-    short = case.line.model_copy(update={"geometry": case.line.geometry.shorten(4)})
-    sections = {"evaluated_spans": (2, 3), "run_out_m": 0.0}
-    case = replace(case, line=short, pantographs=(file,), file=case.file.model_copy(update=sections))
-    line = discretise(build_catenary(short), 2.0)
-    discretisation = case.file.discretisation.model_copy(update={"element_m": 2.0, "time_step_s": 2e-3})
-    return simulate_passage(line, build_passage(case, line, discretisation, (UPLIFT_FORCE,))).force[0]
+    case = change_case(replace(case, pantographs=(file,)), 4, (2.0, 2e-3), evaluated_spans=(2, 3), run_out_m=0.0)
+    line = discretise(build_catenary(case.line), 2.0)
+    return simulate_passage(line, build_passage(case, line, case.file.discretisation, (UPLIFT_FORCE,))).force[0]
 
 
 def test_chain_matrices_and_modes_have_one_mean_force(case_250: Case, descriptions: dict[str, PantographFile]) -> None:
@@ -246,3 +247,36 @@ def test_height_of_the_line_does_not_change_the_forces(case_250: Case, chain: Pa
         forces.append(simulate(replace(case_250, line=LineFile.model_validate(tables)), pantograph))
     assert np.abs(forces[1] - forces[0]).max() < 1e-6
     assert forces[0].mean() > 100.0
+
+
+# Passage of a case: working height of the pantographs.
+
+
+def test_working_height_is_the_mean_static_height_in_the_first_evaluated_span(two_pantograph_case: Case) -> None:
+    """The frame spring is unstretched at the working height: its preload is 50 N/m times this height."""
+    # The height is the mean static uplift of the contact wire plus the compression of the contact spring, 50 kN/m. The
+    # first span ends at an anchor, so that its mean uplift differs by millimetres from that of the second span.
+    sections = {"evaluated_spans": (1, 2), "spacing_m": (20.0,), "run_out_m": 0.0}
+    case = change_case(two_pantograph_case, 4, **sections)
+    line, forces = discretise(build_catenary(case.line), 2.0), (120.0, 150.0)
+    passage = build_passage(case, line, case.file.discretisation, forces)
+    for pantograph, force in zip(passage.pantographs, forces, strict=True):
+        first, second = (static_uplift(line, sample_span(*case.line.geometry.span(n)), force).mean() for n in (1, 2))
+        assert abs(first - second) > 1e-3
+        assert pantograph.static_force == force
+        assert (pantograph.force[0] - force) / 50.0 == pytest.approx(first + force / 50e3)
+
+
+def test_computing_time_begins_after_a_first_step(two_pantograph_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A passage without a step would leave the compilation of the time step to the run that is timed."""
+    steps = []
+
+    def simulate(line: DiscretisedLine, passage: Passage, progress: ShareCallback | None = None) -> History:
+        steps.append(round(passage.duration / passage.time_step))
+        return simulate_passage(line, passage, progress)
+
+    monkeypatch.setattr(case_run, "integrate_passage", simulate)
+    line, discretisation = discretise(build_catenary(two_pantograph_case.line), 5.0), Discretisation(time_step_s=0.004)
+    run_passage(two_pantograph_case, line, discretisation)
+    duration = (two_pantograph_case.end - two_pantograph_case.start) / two_pantograph_case.speed
+    assert steps == [1, round(duration / discretisation.time_step_s)]

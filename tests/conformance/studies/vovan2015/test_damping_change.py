@@ -6,6 +6,7 @@ from typing import Literal
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.criterion import Criterion
@@ -33,10 +34,8 @@ class Unrefined:
 def coarse_case(**changes: object) -> Case:
     """Case of the study with a coarse mesh and untuned mean forces: only the signs of the changes are graded."""
     (case,) = select_cases(["vovan2015/contact-force"])
-    coarse = case.file.discretisation.model_copy(update={"element_m": 1.0, "time_step_s": 0.002})
     untuned = tuple(use.model_copy(update={"target_mean_force_N": None}) for use in case.file.pantograph)
-    update = {"discretisation": coarse, "pantograph": untuned, **changes}
-    return replace(case, file=case.file.model_copy(update=update))
+    return change_case(case, mesh=(1.0, 0.002), pantograph=untuned, **changes)
 
 
 @pytest.fixture(scope="module")

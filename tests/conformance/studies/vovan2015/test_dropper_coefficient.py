@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import grade_findings
 from helpers.lines import simple_line
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
@@ -70,12 +71,9 @@ def test_wrong_or_missing_transition_is_detected() -> None:
 
 def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     (case,) = select_cases(["vovan2015/dropper-damping"])
-    coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-8, 3e-3, 1e-1), "x_m": 283.5})
-    file = case.file.model_copy(
-        update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
-    )
-    outcome = run_dropper_damping(replace(case, file=file), study)
+    coarse = change_case(case, mesh=(1.5, 0.002), study=study, evaluated_spans=(4, 5), run_out_m=0.0)
+    outcome = run_dropper_damping(coarse, study)
     (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
     # Without damping the laws are the same. A dropper slackens within a time step: 4 % at 2 ms, 2 % at 1 ms.
@@ -90,9 +88,8 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
 def test_motion_of_a_dropper_far_behind_the_train_is_known_until_the_end() -> None:
     """The last pantograph stops 1.5 spans behind the dropper; without its motion there, no force would be found."""
     (case,) = select_cases(["vovan2015/dropper-damping"])
-    coarse = case.file.discretisation.model_copy(update={"element_m": 2.25, "time_step_s": 0.004})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 1e-1)})
-    outcome = run_dropper_damping(replace(case, file=case.file.model_copy(update={"discretisation": coarse})), study)
+    outcome = run_dropper_damping(change_case(case, mesh=(2.25, 0.004)), study)
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
 
 
@@ -180,14 +177,11 @@ def test_oscillation_is_the_extension_above_50_hertz_after_the_release() -> None
 def case() -> Case:
     """Three spans, coarse elements, three coefficients."""
     (case,) = select_cases(["vovan2015/dropper-oscillation"])
-    steps = case.file.discretisation.model_copy(update={"element_m": 2.25, "time_step_s": 1e-3})
     sensors = tuple(sensor.model_copy(update={"x_m": 87.75}) for sensor in case.file.mass_drop.sensor)
     drop = case.file.mass_drop.drop[0].model_copy(update={"x_m": 85.5})
     mass_drop = case.file.mass_drop.model_copy(update={"sensor": sensors, "drop": (drop,), "record_s": 1.7})
     study = case.file.study.model_copy(update={"coefficients_s": (0.0, 1e-5, 1e-3)})
-    file = case.file.model_copy(update={"discretisation": steps, "mass_drop": mass_drop, "study": study})
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(3)})
-    return replace(case, file=file, line=line)
+    return change_case(case, 3, (2.25, 1e-3), mass_drop=mass_drop, study=study)
 
 
 def test_more_damping_shortens_the_oscillation_of_a_drop(case: Case) -> None:
