@@ -84,13 +84,16 @@ def test_a_path_may_still_name_a_modified_copy(edited_case) -> None:  # noqa: AN
     assert case.origin.kind == "file"
 
 
-def test_folders_and_their_problems_are_named(tmp_path: Path) -> None:
+def test_two_folders_with_one_id_are_an_error_that_names_both(tmp_path: Path) -> None:
     paths = [write_case(tmp_path / folder / "a.toml", "own/a") for folder in ("first", "second")]
     with pytest.raises(InputError) as caught:
         open_catalogue([tmp_path / "first", tmp_path / "second"])
     assert all(str(path) in str(caught.value) for path in paths)
     same = open_catalogue([tmp_path / "first", tmp_path / "first" / ".." / "first"])
     assert len(same.folders) == 1
+
+
+def test_all_problems_of_a_folder_are_listed(tmp_path: Path) -> None:
     write_case(tmp_path / "a.toml", "first")
     write_case(tmp_path / "b.toml", "second")
     with pytest.raises(InputError) as caught:
@@ -105,13 +108,16 @@ def test_a_wrong_folder_is_refused(tmp_path: Path, path: str, found: str) -> Non
         open_catalogue([tmp_path / path])
 
 
-def test_distributions_offer_cases_with_their_own_ids(site: Path) -> None:
+def test_a_distribution_offers_cases_without_being_imported(site: Path) -> None:
     install_cases(site, "acme_lines", "own/acme-lines/fast")
     (case,) = select_cases(["own/acme-lines/fast"])
     assert case.origin.text == "distribution acme_lines 1.0"
     assert "own/acme-lines/fast" in list_cases()
     # A default run does not depend on the packages that happen to be installed.
     assert "own/acme-lines/fast" not in {case.id for case in select_cases(["*"])}
+
+
+def test_a_distribution_must_use_its_own_name_in_ids(site: Path) -> None:
     install_cases(site, "acme_lines", "own/other/fast")
     with pytest.raises(InputError, match=r"cases 'lines' of acme_lines 1.0: .*does not begin with own/acme-lines/"):
         select_cases(["own/*"])

@@ -99,13 +99,19 @@ def test_arrays_are_copied_and_read_only(two_pantograph_record: Record) -> None:
         record.force[0, 0] = 0.0
 
 
-@pytest.mark.parametrize(("share", "even"), [(0.009, True), (0.011, False)])
+@pytest.mark.parametrize(("share", "even"), [(0.009, True), (0.011, False), (0.5, False)])
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_time_is_even_to_a_hundredth(share: float, even: bool, sign: int, two_pantograph_record: Record) -> None:
-    """Printed times are rounded by less; a gap is a whole step."""
-    time = put(two_pantograph_record.time, 200, two_pantograph_record.time[200] + sign * share / 200)
-    with nullcontext() if even else pytest.raises(RecordInvalid, match="not evenly spaced"):
-        assert change(two_pantograph_record, time=time).rate == pytest.approx(200.0)
+    """Printed times are rounded by less; a gap is a whole step, as after a lost line of a file."""
+    record = two_pantograph_record
+    for sample in (1, 200, 398):
+        time = put(record.time, sample, record.time[sample] + sign * share / 200)
+        with nullcontext() if even else pytest.raises(RecordInvalid, match="not evenly spaced"):
+            assert change(record, time=time).rate == pytest.approx(200.0)
+        kept = np.delete(np.arange(400), sample)
+        channels = {name: getattr(record, name)[:, kept] for name in ("position", "force", "support_uplift")}
+        with pytest.raises(RecordInvalid, match="not evenly spaced"):
+            change(record, time=record.time[kept], contact_height=None, **channels)
 
 
 def sidecar(**keys: Any) -> RecordSidecar:

@@ -1,7 +1,5 @@
 """Quantities of a record: values computed by hand, and a reason for each quantity that is not available."""
 
-from contextlib import nullcontext
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -171,41 +169,3 @@ def test_registry_has_every_name_of_the_contract() -> None:
         name == quantity.name and quantity.label and quantity.definition and quantity.needs.text and quantity.source
         for name, quantity in QUANTITIES.items()
     )
-
-
-@pytest.mark.parametrize(
-    ("shift", "even"), [(0.005, True), (-0.005, True), (0.02, False), (-0.02, False), (0.5, False)]
-)
-@pytest.mark.parametrize("sample", [1, 6000, 11_998])
-def test_time_is_even_to_a_hundredth_of_a_step(sample: int, shift: float, even: bool) -> None:
-    """The time of one sample is shifted by a share of the step, as printing with few digits does."""
-    good = record(np.full((2, 12_000), 100.0), position=SPEED * np.arange(12_000) / RATE - np.array([[0.0], [100.0]]))
-    time = good.time.copy()
-    time[sample] += shift / RATE
-    with nullcontext() if even else pytest.raises(ValueError, match="not evenly spaced"):
-        assert replace(good, time=time).rate == pytest.approx(RATE, rel=1e-9)
-
-
-@pytest.mark.parametrize("sample", [1, 300, 6000, 11_998])
-def test_record_without_one_sample_is_refused(sample: int) -> None:
-    """All channels of two pantographs lack the same sample, as after a lost line of a file."""
-    good = record(np.full((2, 12_000), 100.0), position=SPEED * np.arange(12_000) / RATE - np.array([[0.0], [100.0]]))
-    kept = np.delete(np.arange(12_000), sample)
-    with pytest.raises(ValueError, match="not evenly spaced"):
-        replace(good, time=good.time[kept], position=good.position[:, kept], force=good.force[:, kept])
-
-
-def test_impossible_record_is_rejected() -> None:
-    good = record()
-    bad = good.force.copy()
-    bad[0, 17] = np.nan
-    with pytest.raises(ValueError, match="force: 1 values are not finite, the first at sample 18"):
-        replace(good, force=bad)
-    with pytest.raises(ValueError, match="not evenly spaced"):
-        replace(good, time=np.r_[good.time[:-1], good.time[-1] + 0.5])
-    with pytest.raises(ValueError, match="expected \\(1, 12000\\)"):
-        replace(good, position=good.position[:, :-1])
-    with pytest.raises(ValueError, match="does not increase from each sample"):
-        replace(good, position=good.position[:, ::-1])
-    with pytest.raises(ValueError, match="read-only"):
-        good.force[0, 0] = 1.0
