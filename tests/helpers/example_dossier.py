@@ -56,5 +56,4 @@ def validate_example(path: Path, system: CachedSimulator, folder: Path) -> Resul
 
 def list_verdicts(results: Results) -> dict[str, str]:
     """Verdict of every step."""
-    assert results.procedure is not None
     return {step.step: step.verdict for step in results.procedure.steps}

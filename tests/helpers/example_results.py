@@ -47,7 +47,6 @@ def margin(value: float, lower: float | None, upper: float | None) -> float:
         return min(value - lower, upper - value) / ((upper - lower) / 2)
     if upper is not None:
         return (upper - value) / (abs(upper) or 1.0)
-    assert lower is not None
     return (value - lower) / (abs(lower) or 1.0)
 
 

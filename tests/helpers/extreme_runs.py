@@ -9,7 +9,10 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import build_passage, record_passage
+from pantocheck.conformance.runs.check import CheckName
+from pantocheck.conformance.runs.record_checks import check_record
 from pantocheck.model import History, Passage, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 
@@ -60,3 +63,12 @@ def simulate(case: Case, run: Callable[[DiscretisedLine, Passage], History] = si
     forces = tuple(use.uplift_force_N or 0.0 for use in case.file.pantograph)
     passage = build_passage(case, line, case.file.discretisation, forces)
     return record_passage(case, passage, run(line, passage))
+
+
+def read_signals(case: Case, record: Record) -> RecordSignals:
+    return RecordSignals(record, case.file.filter, case.line.geometry.supports)
+
+
+def list_kinds(case: Case, record: Record) -> dict[CheckName, str]:
+    """Kind of the finding of every check that has one."""
+    return {name: finding.kind for name, finding in check_record(case, read_signals(case, record)).items()}

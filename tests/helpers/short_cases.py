@@ -1,6 +1,7 @@
 """Cases of the library on a short line."""
 
 from dataclasses import replace
+from typing import Any
 
 from pantocheck.conformance.cases.case import Case
 
@@ -28,3 +29,14 @@ def shorten_case(case: Case, speed_km_h: float, mass_coefficient: float, pantogr
         line=case.line.model_copy(update=line),
         pantographs=case.pantographs[:1] * pantographs,
     )
+
+
+def change_case(case: Case, spans: int | None = None, mesh: tuple[float, float] | None = None, **keys: Any) -> Case:
+    """Case with changed keys of its file, on its first spans, with another element length [m] and time step [s]."""
+    if mesh is not None:
+        steps = {"element_m": mesh[0], "time_step_s": mesh[1]}
+        keys["discretisation"] = case.file.discretisation.model_copy(update=steps)
+    line = case.line
+    if spans is not None:
+        line = line.model_copy(update={"geometry": line.geometry.shorten(spans)})
+    return replace(case, file=case.file.model_copy(update=keys), line=line)

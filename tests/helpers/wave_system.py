@@ -3,8 +3,8 @@
 A ripple at 40 Hz gives the force the content above 20 Hz of every contact force. It changes the variance by 2e-6.
 """
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
@@ -62,3 +62,10 @@ class Wave:
         stiffness = model.stiffness + 1j * omega * model.damping - omega**2 * model.mass
         compliance = model.head @ np.linalg.solve(stiffness, model.head)
         return np.asarray(-np.imag(compliance * np.sqrt(2) * self.sigma * np.exp(2j * np.pi * position / span)))
+
+
+def cut_bare(record: Record, samples: Any) -> Record:
+    """Some samples of a record, without contact height and uplift."""
+    cut = {name: getattr(record, name)[:, samples] for name in ("position", "force")}
+    bare = dict.fromkeys(("contact_height", "support_position", "support_uplift"))
+    return replace(record, time=record.time[samples], **cut, **bare)

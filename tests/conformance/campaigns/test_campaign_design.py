@@ -31,10 +31,16 @@ def list_runs(folder: Path = Path(), **content: Any) -> list[PlannedRun]:
     return list(prepare(folder, **content).design.list_runs())
 
 
-def test_range_has_decimal_steps_and_keeps_whole_numbers() -> None:
+def test_ranges_and_tables_of_designs_keep_their_numbers(tmp_path: Path) -> None:
     runs = list_runs(vary=[parse_variation("speed_km_h=250.1:250.5:0.1")])
     assert [run.inputs["speed_km_h"] for run in runs] == [250.1, 250.2, 250.3, 250.4, 250.5]
     assert list_runs(vary=[parse_variation("speed_km_h=200:230:20")])[-1].inputs == {"speed_km_h": 220}
+    (tmp_path / "designs.csv").write_text("speed_km_h;filter.phase\n250,5;zero\n260;causal\n")
+    runs = list_runs(tmp_path, vary=[{"table": "designs.csv"}])
+    expected = [{"speed_km_h": 250.5, "filter.phase": "zero"}, {"speed_km_h": 260, "filter.phase": "causal"}]
+    assert [run.inputs for run in runs] == expected
+    first, second, other = ([run.inputs for run in sample("random", 10, UNIFORM, seed=seed)] for seed in (3, 3, 4))
+    assert first == second != other
 
 
 def test_grid_varies_the_last_axis_fastest_and_the_system_from_run_to_run(tmp_path: Path) -> None:
@@ -46,15 +52,6 @@ def test_grid_varies_the_last_axis_fastest_and_the_system_from_run_to_run(tmp_pa
     assert [run.number for run in runs] == list(range(1, 9))
     assert [tuple(run.inputs.values()) for run in runs[::2]] == [(200, 20, 6), (200, 50, 4), (250, 20, 6), (250, 50, 4)]
     assert runs[5].system == f"record:{tmp_path}/3"
-
-
-def test_table_of_designs_has_decimal_commas_and_words(tmp_path: Path) -> None:
-    (tmp_path / "designs.csv").write_text("speed_km_h;filter.phase\n250,5;zero\n260;causal\n")
-    runs = list_runs(tmp_path, vary=[{"table": "designs.csv"}])
-    assert [run.inputs for run in runs] == [
-        {"speed_km_h": 250.5, "filter.phase": "zero"},
-        {"speed_km_h": 260, "filter.phase": "causal"},
-    ]
 
 
 def test_link_follows_and_condition_leaves_designs_out_without_a_change_of_numbers() -> None:
@@ -70,10 +67,8 @@ def test_link_follows_and_condition_leaves_designs_out_without_a_change_of_numbe
 
 
 def sample(method: str, runs: int, *inputs: dict[str, Any], seed: int = 0) -> list[PlannedRun]:
-    table = [
-        {"key": key, "distribution": content}
-        for key, content in zip(("speed_km_h", "start_m", "run_out_m"), inputs, strict=False)
-    ]
+    pairs = zip(("speed_km_h", "start_m", "run_out_m"), inputs, strict=False)
+    table = [{"key": key, "distribution": content} for key, content in pairs]
     return list_runs(sampling={"method": method, "runs": runs, "seed": seed, "input": table})
 
 
@@ -90,19 +85,10 @@ def test_stratified_samples_have_one_value_per_stratum(method: str) -> None:
     assert sorted((64 * starts).astype(int)) == list(range(64))
 
 
-def test_samples_repeat_with_their_seed_alone() -> None:
-    first, second, other = ([run.inputs for run in sample("random", 10, UNIFORM, seed=seed)] for seed in (3, 3, 4))
-    assert first == second != other
-
-
 def test_truncated_and_discrete_values_follow_their_distribution() -> None:
     """The share of a discrete value deviates from its weight by less than one run in stratified samples."""
-    runs = sample(
-        "latin-hypercube",
-        1000,
-        {"kind": "truncated-normal", "mean": 250.0, "std": 20.0, "lower": 240.0, "upper": 280.0},
-        {"kind": "discrete", "values": [60.0, 70.0], "weights": [3.0, 1.0]},
-    )
+    speed = {"kind": "truncated-normal", "mean": 250.0, "std": 20.0, "lower": 240.0, "upper": 280.0}
+    runs = sample("latin-hypercube", 1000, speed, {"kind": "discrete", "values": [60.0, 70.0], "weights": [3.0, 1.0]})
     speeds = np.array([run.inputs["speed_km_h"] for run in runs])
     assert 240 <= speeds.min() < 240.1
     assert 279 < speeds.max() <= 280
@@ -160,9 +146,12 @@ def test_wrong_campaign_is_refused_before_the_first_run(content: dict[str, Any],
     assert message in str(caught.value)
 
 
-def test_single_invalid_design_is_accepted() -> None:
+def test_single_invalid_design_is_accepted_and_a_wrong_value_named() -> None:
     """Its run fails, and the row has the reason."""
     assert len(list_runs(vary=[parse_variation("speed_km_h=0,250")])) == 2
+    with pytest.raises(InputError) as caught:
+        list_runs(vary=[parse_variation("line.contact_wire.tension_N=-1,-2")])
+    assert str(caught.value).startswith("line 'line.toml' with line.contact_wire.tension_N = -1 (file: ")
 
 
 @pytest.mark.parametrize(
@@ -185,12 +174,6 @@ def test_wrong_key_of_the_short_form_names_its_option(text: str, message: str) -
     with pytest.raises(InputError) as caught:
         check_variation(parse_variation(text))
     assert message in str(caught.value)
-
-
-def test_wrong_value_names_the_line_and_the_input() -> None:
-    with pytest.raises(InputError) as caught:
-        list_runs(vary=[parse_variation("line.contact_wire.tension_N=-1,-2")])
-    assert str(caught.value).startswith("line 'line.toml' with line.contact_wire.tension_N = -1 (file: ")
 
 
 def test_campaign_of_the_documentation_is_valid(tmp_path: Path) -> None:

@@ -59,20 +59,7 @@ def test_list_of_values_is_a_json_cell(tmp_path: Path) -> None:
     assert (tmp_path / "campaign.csv").read_text().splitlines()[1] == '1,1,cheap,builtin,"[85, 200]",pass,pass,,'
 
 
-def test_campaign_from_python_gives_a_table(tmp_path: Path) -> None:
-    content = {
-        "cases": ["en50318-2002/250"],
-        "set": ["discretisation.element_m=3", "discretisation.time_step_s=0.005"],
-        "vary": [{"key": "pantograph.uplift_force_N", "values": [110.0, 130.0]}],
-        "execution": {"workers": 1},
-    }
-    table = run_campaign(content, tmp_path)
-    assert list(table["pantograph.uplift_force_N"]) == [110.0, 130.0]
-    # The mean force of a passage is the uplift force within some newtons.
-    assert list(table["1.mean_force_N"]) == pytest.approx([110, 130], abs=5)
-
-
-def test_traces_of_failing_runs_are_stored_with_their_rows(tmp_path: Path) -> None:
+def test_campaign_from_python_gives_a_table_and_traces_of_failing_runs(tmp_path: Path) -> None:
     """The mean of the stored force is the mean force of the row; the curves have six digits and all samples."""
     (tmp_path / "limits.toml").write_text(
         '[[limit]]\ncase = "*"\nquantity = "mean_force_N"\nupper = 120.0\ntrust = "primary"\nsource = "test"\n'
@@ -85,6 +72,9 @@ def test_traces_of_failing_runs_are_stored_with_their_rows(tmp_path: Path) -> No
         "execution": {"workers": 1, "traces": "failing"},
     }
     table = run_campaign(content, tmp_path)
+    assert list(table["pantograph.uplift_force_N"]) == [110.0, 130.0]
+    # The mean force of a passage is the uplift force within some newtons.
+    assert list(table["1.mean_force_N"]) == pytest.approx([110, 130], abs=5)
     traces = read_traces(tmp_path, 2)
     assert float(np.mean(traces.traces["1"].force_N)) == pytest.approx(table["1.mean_force_N"][1], rel=1e-4)
     assert len(traces.uplift) >= 1

@@ -64,8 +64,6 @@ def test_scheduler_that_cannot_be_reached_is_named(monkeypatch: pytest.MonkeyPat
 
 def test_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "dask_jobqueue", None)
-    with (
-        pytest.raises(InputError, match=r"pip install 'pantocheck\[cluster\]'"),
-        choose_executor(Execution(cluster="pbs")),
-    ):
+    missing = pytest.raises(InputError, match=r"pip install 'pantocheck\[cluster\]'")
+    with missing, choose_executor(Execution(cluster="pbs")):
         pass

@@ -26,15 +26,12 @@ def test_rules_become_limits_at_the_speed_for_every_pantograph(two_pantograph_ca
     assert missing == ()
 
 
-def test_rule_without_a_bound_is_named(case_250: Case) -> None:
+def test_rule_without_a_bound_is_named_and_another_kind_of_profile_refused(case_250: Case) -> None:
     slow = replace(case_250, file=case_250.file.model_copy(update={"speed_km_h": 190.0}))
     limits, missing = ProfileLimits(PROFILE, None).resolve(slow)
     assert [limit.quantity for limit in limits] == ["cov_20", "statistical_min_N", "speed_over_wave_speed"]
     assert missing[0].startswith("mean_force_N: the speed of the record is 190 km/h")
     assert missing[1].startswith("max_uplift_at_support_mm: the record does not state uplift_space_mm")
-
-
-def test_profile_for_another_filter_or_a_comparison_is_refused(case_250: Case) -> None:
     other = replace(case_250, file=case_250.file.model_copy(update={"filter": Filter(cutoff_Hz=50.0)}))
     with pytest.raises(InputError, match="has another filter"):
         ProfileLimits(PROFILE, None).resolve(other)

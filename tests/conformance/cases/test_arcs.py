@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.record_keys import record_keys
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
@@ -19,6 +20,7 @@ from pantocheck.conformance.results.results_format import Results
 RATE, SPEED = 1000.0, 70.0
 TIME = np.arange(30_000) / RATE
 CURRENT = {"column": "I", "unit": "kA"}
+ARC = {"pantograph": 1, "detector": "UV", "above": 2.5, "current": CURRENT, "nominal_current_A": 600.0}
 
 
 @pytest.fixture
@@ -31,23 +33,10 @@ def sidecar(tmp_path: Path) -> Path:
     columns = [TIME, SPEED * TIME, *force, arc, current]
     write_csv_table(tmp_path / "a.csv", ["t", "x", "F1", "F2", "UV", "I"], np.column_stack(columns), 9)
     (tmp_path / "a.toml").write_text("")
-    content: dict[str, Any] = {
-        "schema": "pantocheck.record/1",
-        "file": "a.csv",
-        "speed_km_h": 252.0,
-        "pantographs": 2,
-        "filter_applied_Hz": "none",
-        "spacing_m": [200.0],
-        "evaluated_m": [350.0, 1750.0],
-        "arc": [{"pantograph": 1, "detector": "UV", "above": 2.5, "current": CURRENT, "nominal_current_A": 600.0}],
-        "columns": {
-            "time_s": {"column": "t", "unit": "s"},
-            "position_1_m": {"column": "x", "unit": "m"},
-            "force_1_N": {"column": "F1", "unit": "N"},
-            "force_2_N": {"column": "F2", "unit": "N"},
-        },
-    }
-    return edit_toml(tmp_path / "a.toml", content)
+    units = {"time_s": ("t", "s"), "position_1_m": ("x", "m"), "force_1_N": ("F1", "N"), "force_2_N": ("F2", "N")}
+    described = {key: {"column": name, "unit": unit} for key, (name, unit) in units.items()}
+    keys = record_keys(speed_km_h=252.0, pantographs=2, spacing_m=[200.0], evaluated_m=[350.0, 1750.0])
+    return edit_toml(tmp_path / "a.toml", keys | {"arc": [ARC], "columns": described})
 
 
 def assess(sidecar: Path, *rules: dict[str, Any]) -> Results:
@@ -83,7 +72,6 @@ def test_arc_share_is_graded_and_contact_losses_are_listed(sidecar: Path) -> Non
     assert verdicts["longest_contact_loss_s", 2] == "fail"
     assert verdicts["long_contact_loss_pct", 2] == "pass"
     assert case.uncertainty["2"]["longest_contact_loss_s"] is not None
-    assert case.contact_losses is not None
     assert len(case.contact_losses["2"]) == 20
     assert "1" not in case.contact_losses
     loss = case.contact_losses["2"][0]
@@ -92,19 +80,19 @@ def test_arc_share_is_graded_and_contact_losses_are_listed(sidecar: Path) -> Non
     assert "20 contact losses in the unfiltered force" in page
 
 
-def test_arc_share_needs_the_current(sidecar: Path) -> None:
-    """Without the current, the share of the whole time would be too small."""
-    edit_toml(sidecar, {"arc": [{"pantograph": 1, "detector": "UV", "above": 2.5}]})
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        # Without the current, the share of the whole time would be too small.
+        ({"arc": [{"pantograph": 1, "detector": "UV", "above": 2.5}]}, "the current is not known"),
+        ({"evaluated_m": [350.0, 9000.0]}, "the record covers"),
+    ],
+)
+def test_arc_share_needs_the_current_and_the_section(sidecar: Path, keys: dict[str, Any], reason: str) -> None:
+    edit_toml(sidecar, keys)
     (case,) = assess(sidecar, {"quantity": "arc_share_pct", "upper": 5.0, **RULE}).cases
     assert case.verdict == "skip"
-    assert "the current is not known" in case.skipped["1"]["arc_share_pct"]
-
-
-def test_section_beyond_the_record_skips_every_quantity(sidecar: Path) -> None:
-    edit_toml(sidecar, {"evaluated_m": [350.0, 9000.0]})
-    (case,) = assess(sidecar, {"quantity": "arc_share_pct", "upper": 5.0, **RULE}).cases
-    assert case.verdict == "skip"
-    assert "the record covers" in case.skipped["1"]["arc_share_pct"]
+    assert reason in case.skipped["1"]["arc_share_pct"]
 
 
 def test_filtered_force_lists_no_losses(sidecar: Path) -> None:
@@ -124,7 +112,6 @@ def test_filtered_force_lists_no_losses(sidecar: Path) -> None:
     ],
 )
 def test_wrong_arc_tables_are_refused(sidecar: Path, arc: dict[str, Any], message: str) -> None:
-    stated = {"pantograph": 1, "detector": "UV", "above": 2.5, "current": CURRENT, "nominal_current_A": 600.0, **arc}
-    edit_toml(sidecar, {"arc": [{key: value for key, value in stated.items() if value is not None}]})
+    edit_toml(sidecar, {"arc": [{key: value for key, value in (ARC | arc).items() if value is not None}]})
     with pytest.raises(InputError, match=message):
         load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
 
 from helpers.case_fixtures import EditedCase
+from helpers.command_line import pantocheck
 from pantocheck.conformance import open_case
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.input_changes import parse_changes
@@ -28,10 +27,6 @@ STATED = "line.contact_wire.tension_N = 21000.0 (file: 20000.0)"
 def change(*texts: str, case: str = "en50318-2002/250") -> Case:
     """Library case with changes."""
     return select_cases([case], parse_changes(texts))[-1]
-
-
-def pantocheck(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.mark.parametrize(
@@ -61,33 +56,40 @@ def test_changed_case_is_that_of_an_edited_file(
     assert changed.limits == changed.file.limit == ()  # they were published for the inputs of the library
     assert len(changed.changes) == 1
     converged = find_converged(changed.id)
-    assert converged is not None
     assert find_obstacle(case_250, converged) is None
     assert find_obstacle(changed, converged) == find_obstacle(edited, converged) is not None
 
 
-def test_changed_inputs_are_provisional() -> None:
+def test_changed_inputs_are_provisional_and_their_damping_kept() -> None:
     trust = {item.group: item.trust for item in change("speed_km_h=300", TENSION).inputs}
     assert trust["case"] == trust["line.contact_wire"] == "secondary"
     assert trust["case.speed_km_h"] == trust["line.contact_wire.tension_N"] == "provisional"
+    case = open_case("vovan2015/mass-drop/printed").with_({"line.damping.stitch_wire.stiffness_coefficient_s": 1e-3})
+    assert case.case.line.damping.stitch_wire.stiffness_coefficient_s == 1e-3
 
 
-def test_value_of_the_file_changes_nothing(case_250: Case) -> None:
+def test_value_of_the_file_changes_nothing(case_250: Case, edited_case: EditedCase) -> None:
     assert change("speed_km_h=250", "line.contact_wire.tension_N=20000") == case_250
+    own = load_case(edited_case("250.toml", {"id": "own/a"}), parse_changes([TENSION]))
+    assert (own.limits, len(own.changes)) == (case_250.limits, 1)
+    # A key that also takes a single number keeps it.
+    changes = parse_changes(["spacing_m=85", "speed_km_h=300", "line.droppers.x_m[2]=9.5"])
+    assert [change.value for change in changes] == [[85], 300, 9.5]
 
 
-def test_pantographs_are_changed_one_by_one_or_together() -> None:
+def test_pantographs_and_required_cases_are_changed_together() -> None:
     name = "en50318-2018/ac-simple/275-twin"
     both = change("pantograph.contact.stiffness_N_m=6e4", case=name)
     second = change("pantograph[2].contact.stiffness_N_m=6e4", "pantograph[2].target_mean_force_N=150", case=name)
     assert [model.contact.stiffness_N_m for model in both.pantographs] == [6e4, 6e4]
     assert [model.contact.stiffness_N_m for model in second.pantographs] == [5e4, 6e4]
     assert [use.target_mean_force_N for use in second.file.pantograph] == [144.0, 150.0]
-
-
-def test_own_case_keeps_its_limits(edited_case: EditedCase, case_250: Case) -> None:
-    own = load_case(edited_case("250.toml", {"id": "own/a"}), parse_changes([TENSION]))
-    assert (own.limits, len(own.changes)) == (case_250.limits, 1)
+    changes = parse_changes(["line.contact_wire.tension_N=23e3", "speed_km_h=280"])
+    static, passage = select_cases(["en50318-2018/ac-simple/275"], changes)
+    assert static.is_static
+    assert static.line == passage.line
+    assert static.changes == ("line.contact_wire.tension_N = 23000.0 (file: 22000.0)",)
+    assert passage.changes == ("speed_km_h = 280 (file: 275.0)", *static.changes)
 
 
 def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Path, case_250: Case) -> None:
@@ -106,15 +108,6 @@ def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Pa
     result = pantocheck(*arguments, "--verdicts", "criteria", "--set", "filter.cutoff_Hz=5")
     assert (result.exit_code, result.output.split()[0]) == (1, "INFO")
     assert "The limits of the library do not apply." in result.output
-
-
-def test_required_cases_have_the_changed_line() -> None:
-    changes = parse_changes(["line.contact_wire.tension_N=23e3", "speed_km_h=280"])
-    static, passage = select_cases(["en50318-2018/ac-simple/275"], changes)
-    assert static.is_static
-    assert static.line == passage.line
-    assert static.changes == ("line.contact_wire.tension_N = 23000.0 (file: 22000.0)",)
-    assert passage.changes == ("speed_km_h = 280 (file: 275.0)", *static.changes)
 
 
 @pytest.mark.parametrize(
@@ -192,24 +185,15 @@ def test_record_of_a_changed_case_states_the_changes(tmp_path: Path, edited_case
     assert result.output.startswith("ERROR")
 
 
-def test_changes_need_a_named_case(tmp_path: Path) -> None:
+def test_changes_need_a_named_case_and_a_known_key_in_a_plan(tmp_path: Path) -> None:
     result = pantocheck("run", "--set", "speed_km_h=300", "--out", tmp_path)
     assert result.exit_code == 2
     assert "option --set: no case is named" in result.stderr
-
-
-def test_plan_may_state_changes(tmp_path: Path) -> None:
     plan = tmp_path / "plan.toml"
     plan.write_text('cases = ["en50318-2002/250"]\nsystem = "record:none"\nset = ["speed_kmh=300"]\n')
     result = pantocheck("run", "--plan", plan)
     assert result.exit_code == 2
     assert "Did you mean speed_km_h ?" in result.stderr
-
-
-def test_number_for_a_key_that_holds_a_list_is_a_list_of_one_item() -> None:
-    """A key that also takes a single number keeps it."""
-    changes = parse_changes(["spacing_m=85", "speed_km_h=300", "line.droppers.x_m[2]=9.5"])
-    assert [change.value for change in changes] == [[85], 300, 9.5]
 
 
 # Changes of the damping of a line that its case replaces.
@@ -219,8 +203,3 @@ def test_a_change_without_effect_is_refused(key: str) -> None:
     value = [] if key == "modal" else 1e-3
     with pytest.raises(InputError, match=f"line.damping.{key}: has no effect.*\n.*key damping of the case"):
         open_case("vovan2015/mass-drop/printed").with_({f"line.damping.{key}": value})
-
-
-def test_a_damping_that_the_case_keeps_can_be_changed() -> None:
-    case = open_case("vovan2015/mass-drop/printed").with_({"line.damping.stitch_wire.stiffness_coefficient_s": 1e-3})
-    assert case.case.line.damping.stitch_wire.stiffness_coefficient_s == 1e-3

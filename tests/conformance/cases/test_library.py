@@ -9,6 +9,7 @@ import pytest
 from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, find_campaign_file, read_campaign
+from pantocheck.conformance.cases import catalogue
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import Catalogue
 from pantocheck.conformance.cases.library import (
@@ -25,34 +26,19 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 
-LIMITS = {  # Wang et al., Table III
-    "en50318-2002/250": {
-        "mean_force_N": (110, 120),
-        "std_force_N": (26, 31),
-        "statistical_max_N": (190, 210),
-        "statistical_min_N": (20, 40),
-        "max_force_N": (175, 210),
-        "min_force_N": (50, 75),
-        "max_uplift_at_support_mm": (48, 55),
-        "contact_loss_pct": (0, 0),
-    },
-    "en50318-2002/300": {
-        "mean_force_N": (110, 120),
-        "std_force_N": (32, 40),
-        "statistical_max_N": (210, 230),
-        "statistical_min_N": (-5, 20),
-        "max_force_N": (190, 225),
-        "min_force_N": (30, 55),
-        "max_uplift_at_support_mm": (55, 65),
-        "contact_loss_pct": (0, 0),
-    },
+NAMES = ["mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "max_force_N", "min_force_N"]
+LIMITS = {  # Wang et al., Table III; the last ones are those of max_uplift_at_support_mm and contact_loss_pct
+    "en50318-2002/250": ((110, 120), (26, 31), (190, 210), (20, 40), (175, 210), (50, 75), (48, 55), (0, 0)),
+    "en50318-2002/300": ((110, 120), (32, 40), (210, 230), (-5, 20), (190, 225), (30, 55), (55, 65), (0, 0)),
 }
 
 
 @pytest.mark.parametrize("name", sorted(LIMITS))
 def test_limits_are_the_published_ones_with_their_trust(name: str) -> None:
     (case,) = select_cases([name])
-    assert {limit.quantity: (limit.lower, limit.upper) for limit in case.limits} == LIMITS[name]
+    names = (*NAMES, "max_uplift_at_support_mm", "contact_loss_pct")
+    expected = dict(zip(names, LIMITS[name], strict=True))
+    assert {limit.quantity: (limit.lower, limit.upper) for limit in case.limits} == expected
     assert {limit.trust for limit in case.limits} == {"secondary"}
     assert case.speed == pytest.approx(float(name[-3:]) / 3.6)
     assert case.analysis_section == (240.0, 360.0)
@@ -60,15 +46,11 @@ def test_limits_are_the_published_ones_with_their_trust(name: str) -> None:
 
 def test_inputs_name_provisional_keys(case_250: Case) -> None:
     provisional = {item.group for item in case_250.inputs if item.trust == "provisional"}
-    assert provisional == {
-        "case.evaluated_spans",
-        "case.filter",
-        "line.geometry.encumbrance_m",
-        "line.steady_arm.static_share",
-        "pantograph 1.uplift_force_N",
-        "pantograph 1.chain.uplift_force_on",
-        "pantograph 1.chain.base_spring_unstretched",
+    uplift = {
+        f"pantograph 1.{key}" for key in ("uplift_force_N", "chain.uplift_force_on", "chain.base_spring_unstretched")
     }
+    line = {"line.geometry.encumbrance_m", "line.steady_arm.static_share"}
+    assert provisional == {"case.evaluated_spans", "case.filter", "pantograph 1.uplift_force_N"} | line | uplift
     notes = " ".join(case_250.notes)
     assert "The other reading, static_share" in notes
     assert 'The other reading, "wire_height"' in notes
@@ -79,9 +61,8 @@ def test_every_case_loads_under_the_id_of_its_path_and_its_sources_are_in_the_bi
         case = load_case(path)
         assert case.id == name
         sources = {key for item in case.inputs for key in item.source}
-        sources |= {
-            key for limit in case.limits for key in ([limit.source] if isinstance(limit.source, str) else limit.source)
-        }
+        stated = [limit.source for limit in case.limits]
+        sources |= {key for source in stated for key in ([source] if isinstance(source, str) else source)}
         assert sources <= set(read_bibliography())
 
 
@@ -99,21 +80,11 @@ def test_message_names_the_nearest_ids(wrong: str) -> None:
         select_cases([wrong])
 
 
-def test_case_file_uses_files_beside_it_and_of_the_library(edited_case: EditedCase) -> None:
+def test_files_of_a_case_and_required_cases_are_found(edited_case: EditedCase) -> None:
     (case,) = select_cases([str(edited_case("line.toml", {"geometry.spans": 12}))])
     assert case.line.geometry.spans == 12
     path = edited_case("250.toml", {"line": "en50318-2002/line.toml"})
     assert load_case(path).line.geometry.spans == 10
-
-
-def test_two_files_with_one_id_are_refused(edited_case: EditedCase) -> None:
-    changed = str(edited_case("250.toml", {"filter.order": 4}))
-    assert len(select_cases([changed, changed])) == 1
-    with pytest.raises(InputError, match="two different files have this id"):
-        select_cases([changed, "en50318-2002/250"])
-
-
-def test_required_cases_come_first(edited_case: EditedCase) -> None:
     path = edited_case("250.toml", {"requires": ["en50318-2002/300"]})
     assert [case.id for case in select_cases([str(path)])] == ["en50318-2002/300", "en50318-2002/250"]
     path = edited_case("250.toml", {"requires": ["en50318-2002/static"]})
@@ -121,11 +92,13 @@ def test_required_cases_come_first(edited_case: EditedCase) -> None:
         select_cases([str(path)])
 
 
-def test_circular_requirement_is_refused(edited_case: EditedCase, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_circles_and_doubles_are_refused(edited_case: EditedCase, monkeypatch: pytest.MonkeyPatch) -> None:
+    changed = str(edited_case("250.toml", {"filter.order": 4}))
+    assert len(select_cases([changed, changed])) == 1
+    with pytest.raises(InputError, match="two different files have this id"):
+        select_cases([changed, "en50318-2002/250"])
     path = edited_case("250.toml", {"requires": ["en50318-2002/250"]})
-    monkeypatch.setattr(
-        "pantocheck.conformance.cases.catalogue.list_library", lambda folder: {"en50318-2002/250": path}
-    )
+    monkeypatch.setattr(catalogue, "list_library", lambda _: {"en50318-2002/250": path})
     with pytest.raises(InputError, match="requires itself"):
         select_cases(["en50318-2002/250"], (), Catalogue())  # another catalogue than the cached one
 
@@ -155,16 +128,14 @@ def test_two_pantographs_start_and_end_on_the_line(two_pantograph_case: Case, ed
     assert (two_pantograph_case.start, two_pantograph_case.end) == (60.0, 420.0)
     pantographs = [use.model_dump(mode="json", exclude_none=True) for use in file.pantograph]
     path = edited_case("250.toml", {"spacing_m": [250.0], "pantograph": pantographs})
-    with pytest.raises(
-        InputError, match=r"key run_out_m: the first pantograph would run to 610 m, but the line is 600 m"
-    ):
+    with pytest.raises(InputError, match=r"run_out_m: the first pantograph would run to 610 m, but the line is 600 m"):
         load_case(path)
     path = edited_case("250.toml", {"pantograph": pantographs})
     with pytest.raises(InputError, match="0 distances for 2 pantographs"):
         load_case(path)
 
 
-def test_limits_of_a_user_replace_and_add(tmp_path: Path, case_250: Case) -> None:
+def test_limits_of_a_user_replace_and_add_in_the_named_cases(tmp_path: Path, case_250: Case) -> None:
     path = tmp_path / "limits.toml"
     entry = {"case": "*/250", "trust": "primary", "source": "my copy"}
     deviation, band = ({"quantity": "std_force_N", "upper": 30.0}, {"quantity": "rms_20_50_N", "upper": 9.0})
@@ -177,9 +148,6 @@ def test_limits_of_a_user_replace_and_add(tmp_path: Path, case_250: Case) -> Non
     write_toml(path, {"limit": [entry | deviation | {"case": "*/251"}]})
     with pytest.raises(InputError, match=r"no case of this run matches '\*/251'"):
         overlay_limits([case_250], read_limits(path))
-
-
-def test_limits_of_a_user_apply_to_the_named_cases_only(tmp_path: Path) -> None:
     path = tmp_path / "limits.toml"
     path.write_text(
         '[[limit]]\ncase = "*/250"\nquantity = "std_force_N"\nupper = 99.0\ntrust = "primary"\nsource = "my copy"\n'
@@ -214,9 +182,7 @@ RUNS = {
 
 
 def read(name: str) -> PreparedCampaign:
-    path = find_campaign_file(f"campaigns/{name}")
-    assert path is not None
-    return read_campaign(path)
+    return read_campaign(find_campaign_file(f"campaigns/{name}"))
 
 
 def test_all_campaigns_of_the_library_are_tested() -> None:
@@ -235,17 +201,14 @@ def test_campaign_of_the_library_is_valid_and_states_its_sources(name: str, runs
         assert set(sources) <= set(read_bibliography())
 
 
-def test_spacings_belong_to_the_speeds_of_the_regulation() -> None:
+def test_designs_of_campaigns_follow_the_regulation_or_differ_in_their_seeds() -> None:
     """TSI ENE table 4.2.13, column B, as another document prints it: the trust is that of a secondary source."""
     prepared = read("ac-simple-tsi-spacing")
     assert prepared.file.vary[0].trust == "secondary"
     for run in prepared.design.list_runs():
         speed, spacing = run.inputs["speed_km_h"], run.inputs["spacing_m"]
         assert spacing == (200 if speed >= 250 else 85 if speed > 120 else 15 if speed > 80 else 8)
-
-
-def test_designs_of_the_tolerances_differ_in_their_seeds() -> None:
-    """Seeds are whole numbers; 128 of them from 2^31 numbers are equal with a probability of 4e-6."""
+    # Seeds are whole numbers; 128 of them from 2^31 numbers are equal with a probability of 4e-6.
     keys = ("line.variation.droppers.seed", "line.variation.supports.seed")
     for key in keys:
         seeds = [run.inputs[key] for run in read("ac-simple-tolerances").design.list_runs()]
@@ -259,19 +222,14 @@ def values(case: Case) -> dict:
     return evaluate_record(record, case.file.filter).values[1]
 
 
-@pytest.mark.parametrize(("speed", "deviation"), [(250, 32.9), (300, 38.2)])
-def test_arm_without_static_share_increases_the_standard_deviation(speed: int, deviation: float) -> None:
-    """Printed to a tenth in the note; above the limit of 31 N at 250 km/h."""
+@pytest.mark.parametrize(("speed", "deviation", "mean"), [(250, 32.9, 116.5), (300, 38.2, 115.7)])
+def test_other_readings_have_the_values_of_the_notes(speed: int, deviation: float, mean: float) -> None:
+    """Printed to a tenth in the notes; the first is above the limit of 31 N at 250 km/h."""
+    # An arm without a static share, and a base spring that is unstretched at the wire and carries part of the force.
     (case,) = select_cases([f"en50318-2002/{speed}"])
     arm = case.line.steady_arm.model_copy(update={"static_share": "none"})
     found = values(replace(case, line=case.line.model_copy(update={"steady_arm": arm})))
     assert found["std_force_N"] == pytest.approx(deviation, abs=0.06)
-
-
-@pytest.mark.parametrize(("speed", "mean"), [(250, 116.5), (300, 115.7)])
-def test_base_spring_unstretched_at_the_wire_carries_part_of_the_uplift_force(speed: int, mean: float) -> None:
-    """Printed to a tenth in the note."""
-    (case,) = select_cases([f"en50318-2002/{speed}"])
     (pantograph,) = case.pantographs
     chain = pantograph.chain.model_copy(update={"base_spring_unstretched": "wire_height"})
     found = values(replace(case, pantographs=(pantograph.model_copy(update={"chain": chain}),)))

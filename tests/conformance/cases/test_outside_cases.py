@@ -28,17 +28,13 @@ def install_cases(site: Path, package: str, *names: str, version: str = "1.0") -
     write_distribution(site, package, version, {GROUP: {"lines": f"{package}.cases"}}, files | code)
 
 
-def test_library_has_no_id_of_cases_from_outside() -> None:
+def test_a_folder_adds_cases_beside_those_of_the_library(tmp_path: Path) -> None:
     assert not [name for name in list_library(library_folder()) if name.startswith("own/")]
-
-
-def test_a_folder_adds_cases(tmp_path: Path) -> None:
     write_case(tmp_path / "acme" / "fast.toml", "own/acme/fast", 260.0)
     (tmp_path / "notes.toml").write_text("text = 'no case'")
     write_case(tmp_path / ".hidden" / "copy.toml", "own/acme/fast")
     (case,) = select_cases(["own/*"], (), open_catalogue([tmp_path]))
     assert (case.id, case.file.speed_km_h) == ("own/acme/fast", 260.0)
-    assert case.origin is not None
     assert (case.origin.kind, case.origin.name) == ("folder", tmp_path.name)
     assert compare_with_library(case) == "own"
     assert "own/acme/fast" in list_cases(tmp_path)
@@ -85,7 +81,6 @@ def test_a_path_may_still_name_a_modified_copy(edited_case) -> None:  # noqa: AN
     """As before: a file given by its path may have the id of a library case, and is shown as a modified copy."""
     (case,) = select_cases([str(edited_case("250.toml", {"speed_km_h": 251.0}))])
     assert compare_with_library(case) == "modified"
-    assert case.origin is not None
     assert case.origin.kind == "file"
 
 
@@ -98,13 +93,6 @@ def test_two_folders_with_one_id_are_an_error_that_names_both(tmp_path: Path) ->
     assert len(same.folders) == 1
 
 
-@pytest.mark.parametrize(("path", "found"), [("none", "there is no such folder"), ("empty", "holds no case file")])
-def test_a_wrong_folder_is_refused(tmp_path: Path, path: str, found: str) -> None:
-    (tmp_path / "empty").mkdir()
-    with pytest.raises(InputError, match=found):
-        open_catalogue([tmp_path / path])
-
-
 def test_all_problems_of_a_folder_are_listed(tmp_path: Path) -> None:
     write_case(tmp_path / "a.toml", "first")
     write_case(tmp_path / "b.toml", "second")
@@ -113,10 +101,16 @@ def test_all_problems_of_a_folder_are_listed(tmp_path: Path) -> None:
     assert len(caught.value.problems) == 2
 
 
+@pytest.mark.parametrize(("path", "found"), [("none", "there is no such folder"), ("empty", "holds no case file")])
+def test_a_wrong_folder_is_refused(tmp_path: Path, path: str, found: str) -> None:
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match=found):
+        open_catalogue([tmp_path / path])
+
+
 def test_a_distribution_offers_cases_without_being_imported(site: Path) -> None:
     install_cases(site, "acme_lines", "own/acme-lines/fast")
     (case,) = select_cases(["own/acme-lines/fast"])
-    assert case.origin is not None
     assert case.origin.text == "distribution acme_lines 1.0"
     assert "own/acme-lines/fast" in list_cases()
     # A default run does not depend on the packages that happen to be installed.
@@ -161,36 +155,24 @@ CHECKOUT = Path(__file__).parents[3]
 
 def complete(*words: str) -> list[str]:
     """Answers to a request of bash to complete the last word."""
-    environment = {
-        "COMP_WORDS": " ".join(("pantocheck", *words)),
-        "COMP_CWORD": str(len(words)),
-        "_PANTOCHECK_COMPLETE": "complete_bash",
-    }
+    environment = {"COMP_WORDS": " ".join(("pantocheck", *words)), "COMP_CWORD": str(len(words))}
+    environment["_PANTOCHECK_COMPLETE"] = "complete_bash"
     return CliRunner().invoke(app, [], env=environment, prog_name="pantocheck").stdout.splitlines()
 
 
-def test_module_runs_the_command() -> None:
+def test_the_command_starts_as_a_module_and_its_launcher_hides_no_package() -> None:
     """A checkout that is not installed finds `pantocheck/__main__.py` in the current folder."""
     command = [sys.executable, "-m", "pantocheck", "--version"]
     ended = subprocess.run(command, cwd=CHECKOUT, capture_output=True, text=True, check=True)
     assert ended.stdout.startswith("pantocheck ")
-
-
-def test_launcher_leaves_the_name_a_namespace() -> None:
-    """An `__init__.py` would hide the packages `pantocheck.*` of a checkout, and of extensions."""
+    # An `__init__.py` would hide the packages `pantocheck.*` of a checkout, and of extensions.
     assert [path.name for path in (CHECKOUT / "pantocheck").glob("*.py")] == ["__main__.py"]
 
 
-def test_shell_completes_commands() -> None:
+def test_shell_completes_commands_options_and_cases() -> None:
     assert complete("comp") == ["compare"]
-
-
-def test_shell_completes_options() -> None:
     assert complete("simulate", "--o") == ["--out"]
-
-
-@pytest.mark.parametrize("words", [("show",), ("compare", "a.csv", "--case")])
-def test_shell_completes_cases(words: tuple[str, ...]) -> None:
     expected = [name for name in list_library(library_folder()) if name.startswith("en50318-2002/")]
     assert len(expected) == 2
-    assert complete(*words, "en50318-2002/") == expected
+    for words in (("show",), ("compare", "a.csv", "--case")):
+        assert complete(*words, "en50318-2002/") == expected

@@ -10,10 +10,11 @@ from pydantic import BaseModel
 from helpers.case_fixtures import EditedCase
 from helpers.toml_edit import write_toml
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import library_folder, list_library, load_case
+from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.cases.profile_file import list_profiles, load_profile
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.case_grading import build_ungraded
+from pantocheck.conformance.line.library_folder import library_folder
 
 LIBRARY = list_library(library_folder())
 
@@ -29,19 +30,13 @@ def list_tables(tree: Any, name: str) -> Iterator[tuple[str, BaseModel]]:
         yield from list_tables(part, f"{name}.{key}")
 
 
-@pytest.mark.parametrize("name", sorted(LIBRARY))
+@pytest.mark.parametrize("name", [*sorted(LIBRARY), *sorted(list_profiles())])
 def test_library_states_source_and_trust(name: str) -> None:
-    case = load_case(LIBRARY[name])
-    parts = {"file": case.file, "line": case.line, "pantographs": case.pantograph_files, "dampings": case.dampings}
+    parts: Any = load_profile(name) if name in list_profiles() else load_case(LIBRARY[name])
+    if isinstance(parts, Case):
+        parts = {"": parts.file, "line": parts.line, "pantographs": parts.pantograph_files, "dampings": parts.dampings}
     tables = list(list_tables(parts, name))
-    assert len(tables) >= 8  # the case and the seven tables of every line
-    assert [where for where, table in tables if not {"trust", "source"} <= table.model_fields_set] == []
-
-
-@pytest.mark.parametrize("name", sorted(list_profiles()))
-def test_profiles_of_the_library_state_source_and_trust(name: str) -> None:
-    tables = list(list_tables(load_profile(name), name))
-    assert tables
+    assert len(tables) >= (8 if name in LIBRARY else 1)  # the case and the seven tables of every line
     assert [where for where, table in tables if not {"trust", "source"} <= table.model_fields_set] == []
 
 

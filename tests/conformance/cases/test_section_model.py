@@ -25,11 +25,9 @@ LINES = ["en50318-2002", "en50318-2018/ac-simple", "en50318-2018/ac-stitched"]
 
 @pytest.mark.parametrize("name", LINES)
 def test_raised_droppers_carry_the_weight_less_the_curvature_of_the_parabola(name: str) -> None:
-    """Strings: a parabola with z'' = 2 R / D^2 relieves a dropper by T z'' times its share of the wire; to 1e-6 N.
-
-    The wires rise by 0.4 m over the two spans next to the anchors. The masses of the droppers are left out: they follow
-    from lengths that differ with and without the rise.
-    """
+    """Strings: a parabola with z'' = 2 R / D^2 relieves a dropper by T z'' times its share of the wire; to 1e-6 N."""
+    # The wires rise by 0.4 m over the two spans next to the anchors. The masses of the droppers are left out: they
+    # follow from lengths that differ with and without the rise.
     raised = section_line(name, overlap={"spans": 3, "anchor_rise_m": 0.4})
     span, end = raised.geometry.longest_span, 6 * raised.geometry.longest_span
     catenary, alone = (without_dropper_masses(build_catenary(line)) for line in (raised, raised.shorten(6)))
@@ -80,42 +78,24 @@ def test_lines_of_the_library_have_an_initial_state_with_any_overlap(name: str, 
     assert len([wire for wire in catenary.wires if wire.kind is Kind.MESSENGER_WIRE]) == 3
 
 
-def test_line_without_overlap_is_the_one_of_before() -> None:
-    """Wires of a file without sections keep their names."""
-    line = section_line().shorten(9)
-    assert [wire.name for wire in build_catenary(line).wires] == ["contact wire", "messenger wire"]
-
-
 def test_uplift_in_an_overlap_is_that_of_the_lowest_wire(case_250: Case) -> None:
     """Sections from 0 m to 360 m and from 180 m on: the wires cross at 270 m; each support counts once."""
-    case = replace(
-        case_250,
-        line=section_line(),
-        file=case_250.file.model_copy(update={"evaluated_spans": (3, 8), "start_m": 60.0}),
-    )
+    file = case_250.file.model_copy(update={"evaluated_spans": (3, 8), "start_m": 60.0})
+    case = replace(case_250, line=section_line(), file=file)
     line = discretise(build_catenary(case.line), 2.0)
     passage = build_passage(case, line, case.file.discretisation, (120.0,))
-    assert passage.watched == tuple(
-        (f"section {1 if x < 270.0 else 2} contact wire", x) for x in (120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0)
-    )
+    supports = (120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0)
+    assert passage.watched == tuple((f"section {1 if x < 270.0 else 2} contact wire", x) for x in supports)
 
 
 @pytest.mark.parametrize("pantographs", [1, 2])
-def test_forces_before_the_overlap_are_those_without_it(
-    case_250: Case, two_pantograph_case: Case, pantographs: int
-) -> None:
-    """To 1e-9 N, the tolerance of a step, until a wave can return from the overlap; more than 10 N in it.
-
-    The overlap begins at 180 m. The first head starts at 30 m or 60 m, and waves travel at 122 m/s, at the frequencies
-    of interest at less than 140 m/s. The wires change at 270 m.
-    """
+def test_forces_before_the_overlap_are_equal(case_250: Case, two_pantograph_case: Case, pantographs: int) -> None:
+    """To 1e-9 N, the tolerance of a step, until a wave can return from the overlap; more than 10 N in it."""
+    # The overlap begins at 180 m. The first head starts at 30 m or 60 m, and waves travel at 122 m/s, at the
+    # frequencies of interest at less than 140 m/s. The wires change at 270 m.
     case = {1: case_250, 2: two_pantograph_case}[pantographs]
-    case = replace(
-        case,
-        file=case.file.model_copy(
-            update={"evaluated_spans": (2, 8), "start_m": 30.0, "spacing_m": (30.0,) if pantographs == 2 else None}
-        ),
-    )
+    keys = {"evaluated_spans": (2, 8), "start_m": 30.0, "spacing_m": (30.0,) if pantographs == 2 else None}
+    case = replace(case, file=case.file.model_copy(update=keys))
     forces, lines = [], (section_line(), section_line().shorten(9))
     for line_file in lines:
         on_line = replace(case, line=line_file)
@@ -132,15 +112,10 @@ def test_forces_before_the_overlap_are_those_without_it(
 
 
 def test_force_in_an_overlap_converges_with_the_mesh(case_250: Case) -> None:
-    """20 Hz force between 180 m and 360 m with half the elements and steps: errors of σ and of the largest force.
-
-    Against elements of 0.25 m; those of 1 m are wrong by less than 3 N, and those of 0.5 m by less than half of that.
-    """
-    case = replace(
-        case_250,
-        line=section_line(),
-        file=case_250.file.model_copy(update={"evaluated_spans": (2, 8), "start_m": 60.0}),
-    )
+    """20 Hz force between 180 m and 360 m with half the elements and steps: errors of σ and of the largest force."""
+    # Against elements of 0.25 m; those of 1 m are wrong by less than 3 N, and those of 0.5 m by less than half of that.
+    file = case_250.file.model_copy(update={"evaluated_spans": (2, 8), "start_m": 60.0})
+    case = replace(case_250, line=section_line(), file=file)
     values = []
     for element, step in ((1.0, 2e-3), (0.5, 1e-3), (0.25, 5e-4)):
         line, settings = discretise(build_catenary(case.line), element), Discretisation(time_step_s=step)
@@ -153,23 +128,20 @@ def test_force_in_an_overlap_converges_with_the_mesh(case_250: Case) -> None:
     assert (middle < coarse / 2).all()
 
 
-def test_section_has_its_own_wires() -> None:
+def test_sections_have_their_own_wires_and_a_single_one_the_names_of_before() -> None:
     """The second section has a tension of its own and a heavier messenger wire; everything else is that of the line."""
     tables = section_tables()
     tables["section"][1] |= {"contact_wire": {"tension_N": 25e3}, "messenger_wire": {"mass_kg_m": 1.2}}
     catenary = build_catenary(LineFile.model_validate(tables))
-    first, second = (
-        {
-            wire.name.removeprefix(f"section {n} "): wire
-            for wire in catenary.wires
-            if wire.name.startswith(f"section {n}")
-        }
-        for n in (1, 2)
-    )
+    wires = {wire.name: wire for wire in catenary.wires}
+    first, second = ({name[10:]: wire for name, wire in wires.items() if name[8] == number} for number in "12")
     assert [first["contact wire"].tension, second["contact wire"].tension] == [20e3, 25e3]
     assert first["contact wire"].mass_per_length == second["contact wire"].mass_per_length == 1.35
     assert [first["messenger wire"].mass_per_length, second["messenger wire"].mass_per_length] == [1.07, 1.2]
     assert first["messenger wire"].tension == second["messenger wire"].tension == 16e3
+    # Wires of a file without sections keep their names.
+    line = section_line().shorten(9)
+    assert [wire.name for wire in build_catenary(line).wires] == ["contact wire", "messenger wire"]
 
 
 def test_terminations_and_mid_point_anchor_hold_the_messenger_wires() -> None:

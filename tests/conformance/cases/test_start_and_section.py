@@ -1,11 +1,13 @@
 """Other starts and sections with which the uncertainty of a case is determined."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from helpers.section_lines import section_line
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.library import load_case, select_cases
@@ -27,20 +29,24 @@ from pantocheck.model import discretise
 from pantocheck.model.description.failures import SimulationError
 
 
-def with_keys(case: Case, **keys: object) -> Case:
-    return replace(case, file=case.file.model_copy(update=keys))
-
-
 def case_named(name: str) -> Case:
     (case,) = (case for case in select_cases([name]) if case.id == name)
     return case
 
 
-def test_run_in_counts_from_the_first_pantograph() -> None:
+def test_run_in_counts_from_the_first_pantograph_and_determines_the_sections() -> None:
     """The 2002 model starts at 60 m, its section at 240 m; the first of two pantographs starts 200 m ahead."""
     assert run_in_spans(case_named("en50318-2002/250")) == pytest.approx(3.0)
     assert run_in_spans(case_named("en50318-2018/ac-simple/320")) == pytest.approx(29.0)
     assert run_in_spans(case_named("en50318-2018/ac-simple/320-twin")) == pytest.approx(29.0 - 200 / 55)
+    # 320 km/h: run-in of 29 spans, so that sections of span 30-39 down to 17-26 keep at least half of it.
+    case = case_named("en50318-2018/ac-simple/320")
+    assert list_other_starts(case) == ()
+    sections = list_earlier_sections(case)
+    assert len(sections) == 14
+    assert sections[0] == (29 * 55.0, 39 * 55.0)
+    assert sections[-1] == (16 * 55.0, 26 * 55.0)
+    assert (sections[-1][0] - case.start_positions[0]) / 55 >= run_in_spans(case) / 2
 
 
 def test_other_starts_of_a_short_run_in(case_250: Case) -> None:
@@ -61,7 +67,9 @@ def test_other_starts_of_a_short_run_in(case_250: Case) -> None:
     ],
 )
 def test_other_starts_lie_on_the_line_before_the_section(case_250: Case, start: float, places: list[float]) -> None:
-    shifted = [other.case.start for other in list_other_starts(with_keys(case_250, start_m=start)) if not other.ramp_s]
+    shifted = [
+        other.case.start for other in list_other_starts(change_case(case_250, start_m=start)) if not other.ramp_s
+    ]
     assert shifted == pytest.approx(places)
 
 
@@ -72,61 +80,41 @@ def test_other_starts_lie_outside_of_overlaps(case_250: Case) -> None:
     assert [start.case.start for start in list_other_starts(case)] == pytest.approx([20.0, 40.0, 60.0, 60.0])
 
 
-def test_long_run_in_needs_no_other_start_but_has_earlier_sections() -> None:
-    """320 km/h: run-in of 29 spans, so that sections of span 30-39 down to 17-26 keep at least half of it."""
-    case = case_named("en50318-2018/ac-simple/320")
-    assert list_other_starts(case) == ()
-    sections = list_earlier_sections(case)
-    assert len(sections) == 14
-    assert sections[0] == (29 * 55.0, 39 * 55.0)
-    assert sections[-1] == (16 * 55.0, 26 * 55.0)
-    assert (sections[-1][0] - case.start_positions[0]) / 55 >= run_in_spans(case) / 2
-
-
 @pytest.mark.parametrize(("start", "short"), [(0.5, True), (20.0, True), (-0.0, False)])
 def test_run_in_of_ten_spans_is_long(start: float, short: bool) -> None:
     """Sections that begin at span 11; the start lies at 0 m or later."""
-    case = with_keys(case_named("en50318-2018/ac-simple/275"), evaluated_spans=(11, 20), start_m=start)
+    case = change_case(case_named("en50318-2018/ac-simple/275"), evaluated_spans=(11, 20), start_m=start)
     assert has_short_run_in(case) is short
 
 
-def test_short_run_in_has_only_the_sections_that_the_case_compares(case_250: Case) -> None:
+def test_short_run_in_has_the_sections_of_its_case_and_quarters_of_a_span(case_250: Case) -> None:
     assert list_earlier_sections(case_250) == ()
-    compared = with_keys(case_250, compared_spans=(3, 8))
+    compared = change_case(case_250, compared_spans=(3, 8))
     assert list_earlier_sections(compared) == compared.shifted_sections
-
-
-def test_section_is_shifted_by_quarters_of_a_span(case_250: Case) -> None:
     shifted = shift_section(case_250.analysis_section, span_length(case_250))
     assert [start for start, _ in shifted] == pytest.approx([195.0, 210.0, 225.0, 255.0, 270.0, 285.0])
     assert {end - start for start, end in shifted} == {120.0}
 
 
-def test_section_in_metres_is_that_of_its_spans(case_250: Case) -> None:
+def test_section_in_metres_is_that_of_its_spans_and_has_earlier_ones(case_250: Case) -> None:
     """Spans 5 and 6 of 60 m; other starts and the end of the run are the same."""
-    metres = with_keys(case_250, evaluated_spans=None, evaluated_m=(240.0, 360.0))
+    metres = change_case(case_250, evaluated_spans=None, evaluated_m=(240.0, 360.0))
     assert (metres.analysis_section, metres.analysed_spans) == (case_250.analysis_section, (5, 6))
     assert (metres.end, span_length(metres)) == (case_250.end, 60.0)
-    assert [other.case.start for other in list_other_starts(metres)] == [
-        other.case.start for other in list_other_starts(case_250)
-    ]
+    starts, expected = ([other.case.start for other in list_other_starts(case)] for case in (metres, case_250))
+    assert starts == expected
+    # Section from the middle of span 30 to that of span 40: its mean span is 55 m.
+    case = case_named("en50318-2018/ac-simple/320")
+    metres = change_case(case, evaluated_spans=None, compared_spans=None, evaluated_m=(1622.5, 2172.5))
+    assert list_earlier_sections(metres)[:2] == ((1567.5, 2117.5), (1512.5, 2062.5))
+    assert len(list_earlier_sections(metres)) == int(run_in_spans(metres) / 2)
 
 
 @pytest.mark.parametrize(
     ("section", "spans"), [((230.0, 250.0), (4, 5)), ((241.0, 290.0), (5, 5)), ((0.0, 600.0), (1, 10))]
 )
-def test_section_in_metres_has_parts_of_spans(
-    case_250: Case, section: tuple[float, float], spans: tuple[int, int]
-) -> None:
-    assert with_keys(case_250, evaluated_spans=None, evaluated_m=section).analysed_spans == spans
-
-
-def test_earlier_sections_of_a_section_in_metres_are_a_mean_span_apart() -> None:
-    """Section from the middle of span 30 to that of span 40: its mean span is 55 m."""
-    case = case_named("en50318-2018/ac-simple/320")
-    metres = with_keys(case, evaluated_spans=None, compared_spans=None, evaluated_m=(1622.5, 2172.5))
-    assert list_earlier_sections(metres)[:2] == ((1567.5, 2117.5), (1512.5, 2062.5))
-    assert len(list_earlier_sections(metres)) == int(run_in_spans(metres) / 2)
+def test_section_in_metres_has_spans(case_250: Case, section: tuple[float, float], spans: tuple[int, int]) -> None:
+    assert change_case(case_250, evaluated_spans=None, evaluated_m=section).analysed_spans == spans
 
 
 # Further runs of the reference simulator, from which the uncertainty follows: two meshes and other starts.
@@ -137,18 +125,8 @@ def case() -> Case:
     The elements of 1 m make the four meshes of this test cheap.
     """
     loaded = load_case(library_folder() / "en50318-2002" / "250.toml")
-    geometry = loaded.line.geometry.model_copy(update={"spans": 6})
-    file = loaded.file.model_copy(
-        update={
-            "evaluated_spans": (4, 5),
-            "spacing_m": (60.0,),
-            "run_out_m": 0.0,
-            "pantograph": loaded.file.pantograph * 2,
-            "discretisation": loaded.file.discretisation.model_copy(update={"element_m": 1.0}),
-        }
-    )
-    line = loaded.line.model_copy(update={"geometry": geometry})
-    return replace(loaded, file=file, line=line, pantographs=loaded.pantographs * 2)
+    keys = {"evaluated_spans": (4, 5), "spacing_m": (60.0,), "run_out_m": 0.0, "pantograph": loaded.file.pantograph * 2}
+    return replace(change_case(loaded, 6, (1.0, 1e-3), **keys), pantographs=loaded.pantographs * 2)
 
 
 @pytest.fixture(scope="module")
@@ -157,8 +135,6 @@ def delivered(case: Case) -> Delivered:
 
 
 def test_runs_have_other_meshes_and_starts(case: Case, delivered: Delivered) -> None:
-    assert delivered.refined is not None
-    assert delivered.coarse is not None
     steps = [(run.run.element_m, run.run.dt_s) for run in (delivered.coarse, delivered, delivered.refined)]
     assert steps == [(2.0, 0.002), (1.0, 0.001), (0.5, 0.0005)]
     starts = [run.record for run in delivered.starts]
@@ -187,9 +163,7 @@ def test_coarse_run_that_does_not_converge_leaves_two_meshes(
 ) -> None:
     """The run of the case counts all the same; the half-width has the large safety factor."""
 
-    def deliver(
-        case: Case, discretisation: Discretisation, uplift_forces: object = None, *_: object, **__: object
-    ) -> object:
+    def deliver(case: Case, discretisation: Discretisation, uplift_forces: Any = None, *_: Any, **__: Any) -> Any:
         if discretisation.element_m > 1.0:
             raise SimulationError("the forces of a time step did not converge")
         return (delivered, (120.0, 120.0)) if uplift_forces is None else (delivered.refined, (120.0, 120.0))
@@ -213,5 +187,4 @@ def test_runs_are_reproducible(case: Case, delivered: Delivered) -> None:
     line = discretise(build_catenary(case.line), discretisation.element_m)
     (again,) = case_run.run_starts([start], case, line, discretisation, (120.0, 120.0))
     before = delivered.starts[-1].record
-    assert before is not None
     np.testing.assert_array_equal(again.force, before.force)

@@ -4,19 +4,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
 
+from helpers.command_line import pantocheck
 from helpers.example_dossier import EXAMPLE, copy_example
 from helpers.toml_edit import edit_toml
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.dossier.dossier_reading import read_dossier
 
 OTHER = {"name": "example line", "file": "line.toml"}
-
-
-def invoke(command: str, *arguments: object) -> Result:
-    return CliRunner().invoke(app, [command, *map(str, arguments)])
 
 
 @pytest.mark.parametrize(
@@ -36,11 +31,7 @@ def invoke(command: str, *arguments: object) -> Result:
         ({"validity.speed_km_h": [200.0, 160.0]}, "validity.speed_km_h", "is above the second"),
         ({"line.0.tolerance.source": None}, "line[1].tolerance.source", "missing, although the trust"),
         ({"pantograph.0.limit.0.source": None}, "pantograph[1].limit[1].source", "missing, although the trust"),
-        (
-            {"line_test.tolerance.0.tolerance": None, "line_test.tolerance.0.upper": 1.0},
-            "line_test.tolerance",
-            "no tolerance",
-        ),
+        ({"line_test.tolerance.0": {"quantity": "mean_force_N", "upper": 1.0}}, "line_test.tolerance", "no tolerance"),
         ({"required": ["line_tests"]}, "required", "line_tests"),
         ({"pair.0.simulated": {"case": "run-160.toml"}}, "pair[1].simulated", "direction"),
         ({"sytem": "builtin"}, "sytem", "unknown key"),
@@ -53,7 +44,7 @@ def test_problem_is_reported_with_its_key(tmp_path: Path, changes: dict[str, Any
     assert any(key in message and found in message for message in messages), messages
 
 
-def test_problems_of_several_files_are_reported_together(tmp_path: Path) -> None:
+def test_problems_of_several_files_and_of_the_system_are_reported(tmp_path: Path) -> None:
     path = copy_example(tmp_path, {"line.0.statics": "none.csv", "reference.cases": ["none/*"]})
     edit_toml(tmp_path / "pantograph.toml", {"chain.masses_kg": [1.0]})
     with pytest.raises(InputError) as error:
@@ -61,6 +52,9 @@ def test_problems_of_several_files_are_reported_together(tmp_path: Path) -> None
     text = str(error.value)
     for key in ("pantograph[1].file", "line[1].statics", "reference.cases"):
         assert f"dossier 'dossier.toml', key {key}" in text
+    result = pantocheck("validate", copy_example(tmp_path, {"system": "none"}), "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "there is no such system" in result.stderr
 
 
 MEASURED = sorted(path.name for path in (EXAMPLE / "measured").iterdir())
@@ -71,14 +65,14 @@ def test_missing_document_ends_check_and_validation_before_any_run(tmp_path: Pat
     """Every measured table and every sidecar of the example, removed in turn."""
     path = copy_example(tmp_path / "in")
     (path.parent / "measured" / name).unlink()
-    for result in (invoke("check", path), invoke("validate", path, "--out", tmp_path / "out")):
+    for result in (pantocheck("check", path), pantocheck("validate", path, "--out", tmp_path / "out")):
         assert result.exit_code == 2
         assert "dossier 'dossier.toml', key" in result.stderr
         assert name in result.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_document_outside_the_folder_is_refused(tmp_path: Path) -> None:
+def test_folder_or_document_outside_is_no_table(tmp_path: Path) -> None:
     path = copy_example(tmp_path / "in", {"line.0.statics": "../measured/statics.csv"})
     (path.parent / "measured").rename(tmp_path / "measured")
     (path.parent / "measured").symlink_to(tmp_path / "measured")
@@ -106,9 +100,9 @@ def test_folder_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
 def test_check_reads_every_document(tmp_path: Path, name: str, key: str) -> None:
     """A table that is no table of its kind is an error of `check`; `validate` states it in its step."""
     path = copy_example(tmp_path)
-    assert invoke("check", path).exit_code == 0
+    assert pantocheck("check", path).exit_code == 0
     (tmp_path / "measured" / name).write_text("no table\n", encoding="utf-8")
-    result = invoke("check", path)
+    result = pantocheck("check", path)
     assert result.exit_code == 2
     assert f"key {key}: record '{name}'" in result.stderr
     assert read_dossier(path).file.title
@@ -144,9 +138,8 @@ def test_exit_code_and_files(tmp_path: Path, changes: dict[str, Any], exit_code:
     """Dossier of a static check alone, which takes no simulation of a train."""
     short = {"required": ["static_check"], "pair": None, "reference": None, "validity": None, "line.0.element_m": 1.0}
     path = copy_example(tmp_path / "in", {"reference.cases": []} | short | changes)
-    result = invoke(
-        "validate", path, "--out", tmp_path / "out", "--formats", "json,md,badge,junit", "--report-number", "R 1"
-    )
+    options = ("--formats", "json,md,badge,junit", "--report-number", "R 1")
+    result = pantocheck("validate", path, "--out", tmp_path / "out", *options)
     assert (result.exit_code, result.stderr) == (exit_code, "")
     assert result.stdout.startswith(word)
     if word == "FAIL":
@@ -155,9 +148,3 @@ def test_exit_code_and_files(tmp_path: Path, changes: dict[str, Any], exit_code:
     names = sorted(file.name for file in (tmp_path / "out").iterdir())
     assert names == ["badge.svg", "junit.xml", "results.json", "summary.md"]
     assert '"report_number": "R 1"' in (tmp_path / "out" / "results.json").read_text(encoding="utf-8")
-
-
-def test_wrong_dossier_ends_with_exit_code_2(tmp_path: Path) -> None:
-    result = invoke("validate", copy_example(tmp_path, {"system": "none"}), "--out", tmp_path / "out")
-    assert result.exit_code == 2
-    assert "there is no such system" in result.stderr

@@ -44,12 +44,8 @@ def list_sections(blocks: tuple[doc.Block, ...]) -> list[doc.Section]:
 
 
 def count_figures(section: doc.Section) -> int:
-    return sum(
-        len(block.figures)
-        for part in list_sections((section,))
-        for block in part.blocks
-        if isinstance(block, doc.Figures)
-    )
+    blocks = [block for part in list_sections((section,)) for block in part.blocks]
+    return sum(len(block.figures) for block in blocks if isinstance(block, doc.Figures))
 
 
 def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
@@ -62,14 +58,12 @@ def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     steps = {block.heading: block for block in document.blocks if isinstance(block, doc.Section)}
     for heading in STEPS[:2] + STEPS[3:]:
         assert count_figures(steps[heading]) >= 1
-    assert isinstance(document.header, doc.VerdictHeader)
     assert document.header.statement == "self-declared conformance report, in the style of EN 50318"
     assert "certified" not in render_markdown(document).lower()
 
 
 def headline(content: dict[str, Any]) -> str:
     results = Results.model_validate(content)
-    assert results.procedure is not None
     return build_procedure_headline(results, results.procedure)
 
 
@@ -99,7 +93,6 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
     )
     (section,) = list_step_reasons(Procedure.model_validate(changed["procedure"]))
     (block,) = section.blocks
-    assert isinstance(block, doc.BulletList)
     assert block.items == (
         "Static check of the line model, Largest difference of the elasticity, relative to the measured one: 2 % above "
         "the upper limit",
@@ -117,9 +110,8 @@ def test_junit_has_a_suite_for_every_step_and_case(content: dict[str, Any]) -> N
     assert (root.attrib["failures"], root.attrib["errors"]) == ("0", "0")
     changed = copy.deepcopy(content)
     change_keys(changed["procedure"], {"steps.1.verdict": "fail", "steps.2.required": False, "steps.2.verdict": "fail"})
-    suites = {
-        suite.attrib["name"]: suite for suite in ElementTree.fromstring(render_junit(Results.model_validate(changed)))
-    }
+    root = ElementTree.fromstring(render_junit(Results.model_validate(changed)))
+    suites = {suite.attrib["name"]: suite for suite in root}
     assert suites["step/static_check"].attrib["failures"] == "1"
     assert suites["step/simulation_parameters"].attrib["failures"] == "0"
     assert len(suites["step/limits_of_validity"]) == 1 + len(content["procedure"]["claims"])

@@ -46,27 +46,21 @@ def test_declared_parameters_bound_every_run() -> None:
     assert [row.verdict for row in check_parameters(dossier, [good, good]).criteria] == ["pass"] * 3
 
 
-def test_parameter_that_is_not_declared_is_skipped() -> None:
-    step = check_parameters(build_dossier({"start": "at rest"}), [build_run()])
-    assert {row.quantity: row.verdict for row in step.criteria} == dict.fromkeys(
-        ("largest_element_m", "largest_time_step_s", "shortest_run_s"), "skip"
-    )
-    step = check_parameters(build_dossier({"element_m": 1.0}), [build_run(element_m=0.5)])
-    assert {row.quantity: (row.verdict, row.reason) for row in step.criteria}["start"] == (
-        "skip",
-        "the dossier does not declare it",
-    )
-
-
-def test_every_claimed_input_is_listed(case_250: Case) -> None:
+def test_inputs_and_parameters_of_a_claim_are_listed(case_250: Case) -> None:
     """An input of pantographs that differ, one that does not exist, and a text have no number."""
     line, pantographs = case_250.line, case_250.pantographs
     tension, force = "line.contact_wire.tension_N", "pantograph.chain.masses_kg.2"
     dossier = build_dossier({}, tension, force, "pantograph.chain.masses_kg.9", "line.title", "speed_km_h")
     chain = pantographs[0].chain
-    assert chain is not None
     expected = {tension: line.contact_wire.tension_N, force: chain.masses_kg[1]}
     assert list_inputs(dossier, line, pantographs) == expected
+    step = check_parameters(build_dossier({"start": "at rest"}), [build_run()])
+    assert {row.quantity: row.verdict for row in step.criteria} == dict.fromkeys(
+        ("largest_element_m", "largest_time_step_s", "shortest_run_s"), "skip"
+    )
+    step = check_parameters(build_dossier({"element_m": 1.0}), [build_run(element_m=0.5)])
+    (start,) = (row for row in step.criteria if row.quantity == "start")
+    assert (start.verdict, start.reason) == ("skip", "the dossier does not declare it")
 
 
 def test_run_with_another_filter_than_the_line_tests_is_refused(case_250: Case, tmp_path: Any) -> None:

@@ -18,6 +18,7 @@ from pantocheck.conformance.drops.decay_kernel import (
     low_pass_decay,
     real_columns,
 )
+from pantocheck.conformance.drops.decay_search import DecaySearch, ResidualWindows
 
 DT, N = 0.025, 400
 
@@ -38,7 +39,7 @@ def test_model_is_the_transform_of_the_decay(frequency: float, damping_ratio: fl
     assert np.abs(modelled - measured).max() < 1e-10 * np.abs(measured).max()
 
 
-def test_derivative_is_that_of_the_kernel() -> None:
+def test_columns_of_kernels_have_their_derivatives_and_residues() -> None:
     """Central differences of step h have an error of order h^2: here h = 1e-4, and the kernel varies over 0.05 1/s."""
     poles = np.array([-0.05 + 6.0j, -0.2 + 11.3j])
     omega = 2 * np.pi * np.arange(5, 60) / (N * DT)
@@ -46,9 +47,6 @@ def test_derivative_is_that_of_the_kernel() -> None:
     slope = kernel_and_derivative(poles, omega, DT, N)[1]
     difference = (decay_kernel(poles + h, omega, DT, N) - decay_kernel(poles - h, omega, DT, N)) / (2 * h)
     assert np.abs(slope - difference).max() < 1e-5 * np.abs(slope).max()
-
-
-def test_real_columns_carry_residues_as_real_numbers() -> None:
     poles, residue = np.array([-0.1 + 5.0j]), 0.7 - 1.9j
     omega = 2 * np.pi * np.arange(1, 50) / (N * DT)
     kernels = decay_kernel(join_conjugates(poles), omega, DT, N)
@@ -57,7 +55,7 @@ def test_real_columns_carry_residues_as_real_numbers() -> None:
     assert rows == pytest.approx(np.concatenate([expected.real, expected.imag]), rel=1e-12, abs=1e-12)
 
 
-def test_drift_columns_absorb_a_slow_drift() -> None:
+def test_extra_columns_absorb_a_drift_and_distant_modes() -> None:
     """A cubic drift is a combination of the first three Legendre polynomials: the residual is rounding."""
     t = np.linspace(0, 1, N)
     lines = np.arange(1, 60)
@@ -66,10 +64,7 @@ def test_drift_columns_absorb_a_slow_drift() -> None:
     columns = drift_columns(4, N, lines)
     left = rows - columns @ np.linalg.lstsq(columns, rows, rcond=None)[0]
     assert np.linalg.norm(left) < 1e-10 * np.linalg.norm(rows)
-
-
-def test_far_pole_columns_absorb_modes_outside_the_band() -> None:
-    """Poles at three half-widths from the middle of the band; the terms of a series in 1 / 3 fall by 3^4 to 1 %."""
+    # Poles at three half-widths from the middle of the band; the terms of a series in 1 / 3 fall by 3^4 to 1 %.
     omega = 2 * np.pi * np.arange(40, 120) / (N * DT)
     columns = far_pole_columns(omega, 3)
     assert columns.shape == (2 * omega.size, 8)
@@ -118,3 +113,64 @@ def test_filter_gain_is_that_of_a_filtered_decay() -> None:
     assert filtered.shape[0] == 200 - taps.size + 1
     expected = filter_gain(taps, poles, rate) * decay[taps.size // 2 :][: filtered.shape[0]]
     assert filtered == pytest.approx(expected, abs=1e-12)
+
+
+# Search for the end of a linear decay: disturbed windows, and a disturbance of one sensor among many.
+
+
+def build_windows(pattern: str) -> ResidualWindows:
+    """Windows of 20 samples, one every 5 samples; x is disturbed."""
+    disturbed = np.array([mark == "x" for mark in pattern])
+    return ResidualWindows(5 * np.arange(disturbed.size), disturbed, window=20, reach=30)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "begin", "end"),
+    [
+        ("xx.....x....xx.xxx..", 0, 55),  # four of six windows, the first of them less a quarter of a window
+        ("xxxxxx....xxxx......", 0, 45),  # the disturbance at the very beginning is not the end
+        ("xxxxxx....xxxx......", 55, np.iinfo(np.int64).max),
+        ("..........xxx.......", 0, np.iinfo(np.int64).max),  # three windows are chance
+        ("..........xxx..x....", 0, 45),
+        ("xxxxxxxxxxxxxxxxxxxx", 15, 15),  # no calm window
+        ("....................", 0, np.iinfo(np.int64).max),
+    ],
+)
+def test_disturbance_after_a_calm_window_lasts(pattern: str, begin: int, end: int) -> None:
+    assert build_windows(pattern).first_after_calm(begin) == end
+
+
+@pytest.mark.parametrize(
+    ("pattern", "sample", "stays"),
+    [
+        (".......xxxxx...", 35, True),  # five of eight windows
+        (".......xxxx....", 35, False),  # four of eight
+        ("........xxxxxxx", 40, False),  # seven windows are too few
+        (".......xxxxxxxx", 35, True),
+        ("xxxxxxxxxxxx....xx..", 60, False),
+    ],
+)
+def test_wind_disturbs_most_of_at_least_eight_windows(pattern: str, sample: int, stays: bool) -> None:
+    assert build_windows(pattern).stays_disturbed(sample) == stays
+
+
+@pytest.mark.parametrize(("factor", "ends"), [(1.3, False), (3.5, True)])
+def test_one_disturbed_sensor_among_sixteen_ends_the_decay(factor: float, ends: bool) -> None:
+    """Noise times 3.5 in one channel from 30 s on: 12 times the mean square there, 1.7 times in the mean of sixteen."""
+    # A window of 4 s up to 4 Hz has 30 degrees of freedom: one channel alone counts from 1 + 9 sqrt(2 / 30) = 3.3
+    # times, all together from twice.
+    dt, n = 0.05, 900
+    random = np.random.default_rng(1)
+    t = dt * np.arange(n)
+    poles = 2 * np.pi * np.array([0.9, 1.7]) * (-0.004 + 1j)
+    residues = random.standard_normal((2, 16)) * np.exp(1j * random.uniform(0, 6, (2, 16)))
+    noise = 0.02 * random.standard_normal((n, 16))
+    noise[t > 30.0, 3] *= factor
+    samples = 2 * (np.exp(np.outer(t, poles)) @ residues).real + noise
+    search = DecaySearch(np.asarray(samples), 40, dt, FrequencyBand.up_to(4.0, 50.0))
+    start, end, found = search.find_linear_part()
+    assert start * dt < 2.1
+    # A window of 4 s and its filter reach beyond the start of the disturbance.
+    assert (25.5 < end * dt < 30.5) if ends else end == n
+    for pole in poles:
+        assert np.abs(found - pole).min() < 0.1 * -pole.real

@@ -54,23 +54,22 @@ def test_a_written_drop_is_read_again(drop: OpenedDrop, tmp_path: Path, suffix: 
     np.testing.assert_allclose(again.signals()["time_s"], np.arange(100) / 100, atol=1e-12)
 
 
-def test_a_wrong_run_or_format_is_named(drop: OpenedDrop, tmp_path: Path) -> None:
+def test_wrong_run_format_drop_or_line_is_named(drop: OpenedDrop, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no run 2"):
         open_drop(drop.write(tmp_path / "drop.csv"), run=2)
     with pytest.raises(InputError, match=r"\.xls.*\n.*\.uff, \.csv, \.h5"):
         drop.write(tmp_path / "drop.xls")
-
-
-def test_the_figure_shows_the_chosen_channel(drop: OpenedDrop) -> None:
-    (line,) = drop.plot("S2z").lines
-    np.testing.assert_array_equal(line.get_ydata(), drop.record.signals[:, 1])
-
-
-def test_a_drop_that_the_case_does_not_have_is_named() -> None:
     with pytest.raises(InputError, match="has 3 mass drops, not drop 4"):
         CASE.simulate_drop(4)
     with pytest.raises(InputError, match=r"Choose a case with a \[mass_drop\] table"):
         open_case("en50318-2002/250").simulate_drop()
+    # The modes state the spans of their record.
+    modes = computed_modes(build_catenary(CASE.case.line), 5, 4.0)
+    stated = tuple(mode.model_copy(update={"line": MeasuredLine(spans_m=(50.0,) * 5)}) for mode in modes)
+    with pytest.raises(InputError, match="the line of the record is not that"):
+        IdentifiedLines(stated).fit_damping(CASE, ELEMENT)
+    (line,) = drop.plot("S2z").lines
+    np.testing.assert_array_equal(line.get_ydata(), drop.record.signals[:, 1])
 
 
 def test_fit_finds_the_coefficients_of_the_line(fit: FittedDamping) -> None:
@@ -86,14 +85,6 @@ def test_fit_finds_the_coefficients_of_the_line(fit: FittedDamping) -> None:
     assert len(fit.plot().lines) == 4  # the measured points and three models
     with pytest.raises(KeyError):
         fit.coefficient("contact_wire", "viscous")
-
-
-def test_fit_with_another_line_is_refused() -> None:
-    """The modes state the spans of their record."""
-    modes = computed_modes(build_catenary(CASE.case.line), 5, 4.0)
-    stated = tuple(mode.model_copy(update={"line": MeasuredLine(spans_m=(50.0,) * 5)}) for mode in modes)
-    with pytest.raises(InputError, match="the line of the record is not that"):
-        IdentifiedLines(stated).fit_damping(CASE, ELEMENT)
 
 
 def test_files_of_a_fit_are_those_of_the_command(fit: FittedDamping, tmp_path: Path) -> None:

@@ -15,9 +15,8 @@ from pantocheck.conformance.drops.identify import PoleSearch
 from pantocheck.conformance.drops.start_poles import BandTrials
 from pantocheck.conformance.results.identified_modes import Mode
 
-PAPER = Mode(
-    frequency_Hz=0.9, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), half_power_points=1.08
-)  # in 120 s
+PAPER = Mode(frequency_Hz=0.9, damping_ratio=0.005, damping_ratio_std=1e-6, sensor_shape=(), half_power_points=1.08)
+"""Mode in a record of 120 s."""
 MANY = PAPER.model_copy(update={"frequency_Hz": 9.0, "half_power_points": 10.8})
 
 
@@ -41,10 +40,8 @@ SLOW, FAST = 2.0, 12.0
 
 
 def test_tones_appear_at_their_times_and_frequencies() -> None:
-    """A tone has 0 dB at its line, and a Hann window leaves nothing three lines away. The fast tone ends after 2 s.
-
-    The second channel moves most and is shown. Only windows without a step of the signal are compared.
-    """
+    """A tone has 0 dB at its line, and a Hann window leaves nothing three lines away. The fast tone ends after 2 s."""
+    # The second channel moves most and is shown. Only windows without a step of the signal are compared.
     decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1e-3, 2e-3]], dtype=complex), duration=80.0)
     t = np.arange(decay.record.signals.shape[0]) / RATE - RELEASE
     tones = np.sin(2 * np.pi * SLOW * t) + np.where((t > 0) & (t < 2.0), np.sin(2 * np.pi * FAST * t), 0.0)
@@ -64,13 +61,6 @@ def test_tones_appear_at_their_times_and_frequencies() -> None:
     during = (time > 0.5) & (time < 1.5)
     assert levels[during][:, int(np.argmin(np.abs(frequency - FAST)))].min() >= -1
     assert levels[~during & (time < -0.5)][:, frequency > 5].max() <= -50
-
-
-def test_long_records_have_no_more_columns() -> None:
-    """About 120 columns, so that the file stays small: steps of whole seconds."""
-    decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1.0]], dtype=complex), duration=240.0)
-    assert np.ptp(np.diff(compute_spectrogram(decay).whole.time_s)) < 1e-6
-    assert 60 <= len(compute_spectrogram(decay).whole.time_s) <= 120
 
 
 # Description of the search for the model order.
@@ -96,9 +86,13 @@ def test_pole_is_stable_if_frequency_and_damping_stay() -> None:
     assert band.stable == (False, True, False, False, False, False, False)
 
 
-def test_steps_keep_their_order_and_their_poles() -> None:
+def test_steps_keep_their_order_and_long_records_their_columns() -> None:
     first, second = np.array([pole(1.0, 0.005)]), np.array([pole(1.0, 0.005), pole(2.0, 0.01)])
     search = describe_search(PoleSearch((), (("start poles", first), ("refined", second))))
     assert [(step.name, len(step.frequency_Hz)) for step in search.steps] == [("start poles", 1), ("refined", 2)]
     np.testing.assert_allclose(search.steps[1].frequency_Hz, [1.0, 2.0])
     assert search.bands == ()
+    # About 120 columns, so that the file stays small: steps of whole seconds.
+    decay = build_exact_decay(np.array([-0.1 + 6j]), np.array([[1.0]], dtype=complex), duration=240.0)
+    assert np.ptp(np.diff(compute_spectrogram(decay).whole.time_s)) < 1e-6
+    assert 60 <= len(compute_spectrogram(decay).whole.time_s) <= 120

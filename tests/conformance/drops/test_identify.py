@@ -34,15 +34,8 @@ def build_record(synthetic: SyntheticDrop, name: str = "synthetic", lateral: Rea
     if lateral is not None:
         channels += (DropChannel("S1_y", 1, "y", "CW", 20.0),)
         signals = np.column_stack([signals, lateral])
-    return DropRecord(
-        name,
-        name,
-        synthetic.rate,
-        signals.copy(),
-        channels,
-        drop=DropDescription(20, "CW", 100, 5.0),
-        line=MeasuredLine(spans_m=SPANS),
-    )
+    facts, line = DropDescription(20, "CW", 100, 5.0), MeasuredLine(spans_m=SPANS)
+    return DropRecord(name, name, synthetic.rate, signals.copy(), channels, drop=facts, line=line)
 
 
 def simulate(
@@ -212,22 +205,36 @@ def test_hand_placed_poles_are_refined_and_none_is_removed() -> None:
     assert complex_poles(identification.modes) == pytest.approx(true, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("duration", "message"),
-    [(8.0, "s after the release"), (4.0, "the release is planned")],
-)
+@pytest.mark.parametrize(("duration", "message"), [(8.0, "s after the release"), (4.0, "the release is planned")])
 def test_short_records_are_refused(duration: float, message: str) -> None:
     *_, synthetic = simulate(60, duration=duration, weak=0.15)
     with pytest.raises(InputError, match=message):
         identify_modes((build_record(synthetic),))
 
 
-def test_sampling_rate_too_low_for_any_mode_is_refused() -> None:
+def test_records_that_cannot_be_identified_are_refused(tmp_path: Path) -> None:
     """At 1 Hz the filters pass nothing above 0.32 Hz, and the band begins at 0.3 Hz."""
     synthetic = build_record(drop(np.random.default_rng(64), span_modes(np.random.default_rng(64), 6), rate=50.0))
     for rate in (0.5, 1.0):
         with pytest.raises(InputError, match=r"sampling rate of .* is too low"):
             identify_modes((replace(synthetic, rate=rate),))
+    signals = np.random.default_rng(68).standard_normal((60, 1))
+    short = DropRecord("short", "short", 200.0, signals, (DropChannel("S1_z", 1, "z"),))
+    with pytest.raises(InputError, match="neither a planned release nor a rest at its start"):
+        identify_modes((short,))
+    (tmp_path / "modes.json").write_text("[]")
+    with pytest.raises(InputError, match="holds no mode"):
+        read_poles(tmp_path / "modes.json")
+    *_, synthetic = simulate(67, duration=40.0, weak=0.15)
+    synthetic.samples[int(synthetic.release * synthetic.rate) + 10 :, 2] = 0.0
+    with pytest.raises(InputError, match=r"channel 'S3_z'.*is constant after the release"):
+        identify_modes((build_record(synthetic),))
+    *_, synthetic = simulate(61, duration=40.0, sensors=1, weak=0.15)
+    sideways = DropRecord(
+        "x", "x", 50.0, synthetic.samples, (DropChannel("S1_y", 1, "y"),), drop=DropDescription(trigger_nominal=5.0)
+    )
+    with pytest.raises(InputError, match="no vertical channel"):
+        identify_modes((sideways,))
 
 
 def test_low_highest_frequency_does_not_blame_the_sampling_rate() -> None:
@@ -247,45 +254,6 @@ def test_repeats_at_a_low_rate_are_compared() -> None:
     assert repeats.verdict == "repeatable"
 
 
-def test_channel_lost_at_the_release_is_named() -> None:
-    *_, synthetic = simulate(67, duration=40.0, weak=0.15)
-    synthetic.samples[int(synthetic.release * synthetic.rate) + 10 :, 2] = 0.0
-    with pytest.raises(InputError, match=r"channel 'S3_z'.*is constant after the release"):
-        identify_modes((build_record(synthetic),))
-
-
-def test_record_shorter_than_a_window_of_rest_is_refused() -> None:
-    signals = np.random.default_rng(68).standard_normal((60, 1))
-    short = DropRecord("short", "short", 200.0, signals, (DropChannel("S1_z", 1, "z"),))
-    with pytest.raises(InputError, match="neither a planned release nor a rest at its start"):
-        identify_modes((short,))
-
-
-def test_empty_modes_file_gives_no_start_poles(tmp_path: Path) -> None:
-    (tmp_path / "modes.json").write_text("[]")
-    with pytest.raises(InputError, match="holds no mode"):
-        read_poles(tmp_path / "modes.json")
-
-
-def test_record_without_vertical_channel_is_refused() -> None:
-    *_, synthetic = simulate(61, duration=40.0, sensors=1, weak=0.15)
-    sideways = DropRecord(
-        "x", "x", 50.0, synthetic.samples, (DropChannel("S1_y", 1, "y"),), drop=DropDescription(trigger_nominal=5.0)
-    )
-    with pytest.raises(InputError, match="no vertical channel"):
-        identify_modes((sideways,))
-
-
-def test_clipped_start_is_left_out() -> None:
-    *_, synthetic = simulate(62)
-    top = 0.6 * np.abs(synthetic.samples).max()
-    synthetic.samples[:] = np.clip(synthetic.samples, -top, top)
-    (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
-    clipped = np.flatnonzero((np.abs(synthetic.samples) >= top).any(axis=1))
-    assert identification.fit.records[0].decay.linear.start * synthetic.rate > clipped[0]
-    assert identification.fit.misfit < 1.3
-
-
 def test_linear_decay_begins_after_the_last_clipped_sample() -> None:
     """A clean decay with a false clipping time: without it the linear decay begins at 1-2 s."""
     random = np.random.default_rng(62)
@@ -299,11 +267,18 @@ def test_linear_decay_begins_after_the_last_clipped_sample() -> None:
     assert late.start >= last
 
 
-def test_single_sensor_is_marked() -> None:
+def test_single_sensor_and_clipped_start_are_marked() -> None:
     *_, synthetic = simulate(63, sensors=1)
     (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
     assert any("a single channel does not show" in text for text in identification.warnings)
     assert all(mode.phase_collinearity is None for mode in identification.modes)
+    *_, synthetic = simulate(62)
+    top = 0.6 * np.abs(synthetic.samples).max()
+    synthetic.samples[:] = np.clip(synthetic.samples, -top, top)
+    (identification,) = identify_modes((build_record(synthetic),), highest=4.0)
+    clipped = np.flatnonzero((np.abs(synthetic.samples) >= top).any(axis=1))
+    assert identification.fit.records[0].decay.linear.start * synthetic.rate > clipped[0]
+    assert identification.fit.misfit < 1.3
 
 
 def test_groups_hold_one_mode_per_span_where_they_touch() -> None:

@@ -7,9 +7,8 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
@@ -25,11 +24,12 @@ SENSORS = (("contact wire", "CW", 130.0), ("contact wire", "CW", 205.5), ("messe
 RATE, RELEASE = 25.0, 4.0
 
 
-def run_identify(folder: Path, name: str) -> None:
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / name), "--highest", "2.2"]
-    command += ["--export", str(folder / name / "modes.csv"), "--export", str(folder / name / "modes.uff")]
-    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
+def run_identify(folder: Path, name: str, *options: str) -> str:
+    exports = [option for suffix in ("csv", "uff") for option in ("--export", folder / name / f"modes.{suffix}")]
+    out = ("--out", folder / name, "--highest", "2.2")
+    result = pantocheck("drop", "identify", folder / "T.csv", *out, *exports, *options, SOURCE_DATE_EPOCH="0")
     assert result.exit_code == 0, result.output
+    return result.output
 
 
 @pytest.fixture(scope="module")
@@ -77,24 +77,12 @@ def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
     assert page.count("<script") == 1  # that of every page
 
 
-def test_identify_is_deterministic(folder: Path) -> None:
-    run_identify(folder, "again")
-    written = sorted(path.name for path in (folder / "out").iterdir())
-    names = ["identification.html", "identification.json", "identification.pdf"]
-    assert written == [*names, "modes.csv", "modes.json", "modes.uff"]
-    for file in written:
-        assert (folder / "out" / file).read_bytes() == (folder / "again" / file).read_bytes()
-
-
 def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
-    """The fitted model gives every mode its measured ratio within 1 %.
-
-    Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire is
-    not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
-    """
-    command = ["drop", "fit", str(folder / "out" / "modes.json"), "--line", CASE]
-    command += ["--out", str(folder / "fit"), "--element", "2"]
-    result = CliRunner().invoke(app, command)
+    """The fitted model gives every mode its measured ratio within 1 %."""
+    # Both wires of the case have the same damping and only two groups of modes are measured, so the share of each wire
+    # is not determined: damping.toml leaves the coefficients out. Other tests cover wires with different damping.
+    options = ("--line", CASE, "--out", folder / "fit", "--element", "2")
+    result = pantocheck("drop", "fit", folder / "out" / "modes.json", *options)
     assert result.exit_code == 0, result.output
     text = (folder / "fit" / "damping.toml").read_text()
     Damping.model_validate(tomllib.loads(text)["damping"])
@@ -130,38 +118,34 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
 )
 def test_bad_modes_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (tmp_path / "modes.json").write_bytes(content)
-    result = CliRunner().invoke(
-        app, ["drop", "fit", str(tmp_path / "modes.json"), "--line", CASE, "--out", str(tmp_path)]
-    )
+    result = pantocheck("drop", "fit", tmp_path / "modes.json", "--line", CASE, "--out", tmp_path)
     assert result.exit_code == 2
     assert message in result.output
 
 
-def test_unknown_export_is_refused_before_the_identification(tmp_path: Path, folder: Path) -> None:
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(tmp_path / "out"), "--export", "modes.xlsx"]
-    result = CliRunner().invoke(app, command)
+def test_unknown_export_or_missing_record_is_refused(tmp_path: Path, folder: Path) -> None:
+    result = pantocheck("drop", "identify", folder / "T.csv", "--out", tmp_path / "out", "--export", "modes.xlsx")
     assert result.exit_code == 2
     assert "format '.xlsx' cannot be written" in result.output
     assert not (tmp_path / "out").exists()
-
-
-def test_missing_record_is_refused(tmp_path: Path) -> None:
-    result = CliRunner().invoke(app, ["drop", "identify", str(tmp_path / "none.csv"), "--out", str(tmp_path)])
+    result = pantocheck("drop", "identify", tmp_path / "none.csv", "--out", tmp_path)
     assert result.exit_code == 2
     assert "cannot be read" in result.output
 
 
 def test_identify_each_writes_the_population(folder: Path) -> None:
-    """One record: a population of one test, which agrees with itself."""
-    command = ["drop", "identify", str(folder / "T.csv"), "--out", str(folder / "each"), "--highest", "2.2", "--each"]
-    result = CliRunner(env={"SOURCE_DATE_EPOCH": "0"}).invoke(app, command)
-    assert result.exit_code == 0, result.output
+    """One record: a population of one test, which agrees with itself; the identification is deterministic."""
+    output = run_identify(folder, "each", "--each")
+    written = sorted(path.name for path in (folder / "out").iterdir())
+    names = ["identification.html", "identification.json", "identification.pdf"]
+    assert written == [*names, "modes.csv", "modes.json", "modes.uff"]
+    for file in written:
+        assert (folder / "out" / file).read_bytes() == (folder / "each" / file).read_bytes(), file
     population = json.loads((folder / "each" / "population.json").read_text())
     jsonschema.validate(population, build_schema("population"))
     assert [record["record"] for record in population["records"]] == ["T"]
     assert all(group["agrees"] for group in population["groups"])
-    assert "group 1: median over tests" in result.output
+    assert "group 1: median over tests" in output
     assert (folder / "each" / "population.pdf").read_bytes().startswith(b"%PDF")
     page = (folder / "each" / "population.html").read_text()
     assert "1 test identified one by one" in page
-    assert (folder / "each" / "modes.json").read_bytes() == (folder / "out" / "modes.json").read_bytes()

@@ -47,19 +47,7 @@ def test_modes_of_an_exact_fit_are_exact(fit: LineFit) -> None:
     assert [mode.phase_collinearity for mode in modes][1:] == pytest.approx([0.9997, 1.0], abs=5e-4)
 
 
-def test_modes_on_the_edges_of_the_band_are_reported(fit: LineFit) -> None:
-    edges = np.abs(fit.poles) / (2 * np.pi)
-    band = replace(BAND, low=edges[0], high=edges[2])
-    assert len(build_modes(replace(fit, band=band), 6)) == 3
-
-
-def test_relative_residual_does_not_depend_on_the_noise_of_the_channels(fit: LineFit) -> None:
-    """A residual of a tenth of the spectrum; its share is the same whatever noise scales the channels."""
-    modes = build_modes(with_residual(fit, 0.1 * fit.blocks[0].data.spectrum), 6)
-    assert [mode.error for mode in modes] == pytest.approx([0.1] * 3, rel=1e-9)
-
-
-def test_relative_residual_is_that_of_the_half_power_band(fit: LineFit) -> None:
+def test_residual_and_edges_of_the_band(fit: LineFit) -> None:
     """The half-power band reaches to the decay rate on either side of the mode, and at least to the next line."""
     omega, spectrum = fit.blocks[0].data.omega, fit.blocks[0].data.spectrum
     reach = np.maximum(-POLES.real, 2 * np.pi / fit.blocks[0].data.duration)
@@ -68,13 +56,17 @@ def test_relative_residual_is_that_of_the_half_power_band(fit: LineFit) -> None:
     assert [mode.error for mode in modes] == [0.0] * 3
     modes = build_modes(with_residual(fit, np.where(inside[:, None], spectrum, 0.0)), 6)
     assert [mode.error for mode in modes] == pytest.approx([1.0] * 3)
+    # A residual of a tenth of the spectrum; its share is the same whatever noise scales the channels.
+    modes = build_modes(with_residual(fit, 0.1 * fit.blocks[0].data.spectrum), 6)
+    assert [mode.error for mode in modes] == pytest.approx([0.1] * 3, rel=1e-9)
+    edges = np.abs(fit.poles) / (2 * np.pi)
+    band = replace(BAND, low=edges[0], high=edges[2])
+    assert len(build_modes(replace(fit, band=band), 6)) == 3
 
 
 def test_residual_above_the_noise_widens_the_uncertainty(fit: LineFit) -> None:
-    """A residual of three times the noise, whose parts have one standard deviation each: 3 times as uncertain.
-
-    One mode has a half-power band wider than three lines: there the residual counts over two decay rates.
-    """
+    """A residual of three times the noise, whose parts have one standard deviation each: 3 times as uncertain."""
+    # One mode has a half-power band wider than three lines: there the residual counts over two decay rates.
     shape = fit.blocks[0].data.spectrum.shape
     exact = build_modes(with_residual(fit, np.zeros(shape, complex)), 6)
     white = build_modes(with_residual(fit, np.full(shape, 3 * np.sqrt(2)) * NOISE + 0j), 6)
@@ -139,15 +131,12 @@ def test_close_modes_are_near_coincident() -> None:
 
 @pytest.mark.parametrize(("quantity", "power"), [("acceleration", 1), ("velocity", 2), ("displacement", 3)])
 def test_frequency_response_is_the_transform_of_the_decay(quantity: str, power: int) -> None:
-    """A release of 20 kg: H = (i w)^p X / (m g), where X is the transform of the sensor from the release to the end.
-
-    The lines lie at multiples of 1 / 40 s from 0.3 to 4.0 Hz. The measured transform is a sum over samples: it has
-    half a sample more at the start, and aliases, together below 1 % of the largest line.
-    """
+    """A release of 20 kg: H = (i w)^p X / (m g), where X is the transform of the sensor from the release to the end."""
+    # The lines lie at multiples of 1 / 40 s from 0.3 to 4.0 Hz. The measured transform is a sum over samples: it has
+    # half a sample more at the start, and aliases, together below 1 % of the largest line.
     decay = with_quantity(build_exact_decay(POLES, RESIDUES), quantity)
     fit = build_exact_fit([decay], POLES, NOISE)
     response = compute_frequency_response(fit, fit.records[0])
-    assert response is not None
     assert response.frequency == pytest.approx(np.arange(12, 161) / 40.0)
     omega = 2 * np.pi * response.frequency
     transform = np.zeros((omega.size, 2), dtype=complex)
@@ -163,15 +152,11 @@ def test_frequency_response_is_the_transform_of_the_decay(quantity: str, power: 
     assert np.abs(summed - transform).max() < 0.01 * np.abs(transform).max()
 
 
-def test_frequency_response_includes_the_edges_of_the_band(fit: LineFit) -> None:
+def test_frequency_response_includes_its_edges_and_needs_a_mass(fit: LineFit) -> None:
     """Lines at multiples of 1 / 40 s, of which 0.5 and 3 Hz are exact numbers."""
     banded = replace(fit, band=replace(BAND, low=0.5, high=3.0))
     response = compute_frequency_response(banded, fit.records[0])
-    assert response is not None
     assert (response.frequency[0], response.frequency[-1], response.frequency.size) == (0.5, 3.0, 101)
-
-
-def test_record_without_a_mass_has_no_frequency_response(fit: LineFit) -> None:
     decay = fit.records[0].decay
     unknown = replace(decay, record=replace(decay.record, drop=replace(decay.record.drop, mass=None)))
     assert compute_frequency_response(fit, replace(fit.records[0], decay=unknown)) is None

@@ -11,6 +11,8 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.mode_export import select_mode_writer
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")  # pyuff leaves files to the garbage collector
+
 FIRST = Mode(
     frequency_Hz=0.87654321,
     frequency_std_Hz=1e-5,
@@ -34,11 +36,9 @@ SECOND = FIRST.model_copy(
 
 
 def read_universal_file(path: Path) -> list[dict[str, object]]:
-    sets = pyuff.UFF(str(path)).read_sets()
-    return list(sets)
+    return list(pyuff.UFF(str(path)).read_sets())
 
 
-@pytest.mark.filterwarnings("ignore::ResourceWarning")  # pyuff leaves its files to the garbage collector
 def test_universal_file_holds_nodes_and_complex_modes(tmp_path: Path) -> None:
     """Read back by pyuff; the format keeps six digits. The eigenvalue gives frequency and damping ratio back."""
     select_mode_writer(tmp_path / "modes.uff")((FIRST, SECOND), tmp_path / "modes.uff")
@@ -58,8 +58,7 @@ def test_universal_file_holds_nodes_and_complex_modes(tmp_path: Path) -> None:
     np.testing.assert_array_equal(modes[1]["node_nums"], [2])
 
 
-@pytest.mark.filterwarnings("ignore::ResourceWarning")
-def test_two_places_of_one_sensor_are_two_nodes(tmp_path: Path) -> None:
+def test_nodes_are_numbered_anew_by_sensor_and_wire_or_left_out(tmp_path: Path) -> None:
     """Two lines may both have a sensor 1. Their nodes are numbered anew, in the order of sensor and wire."""
     moved = SECOND.model_copy(
         update={"sensor_shape": (SensorShape(sensor=1, wire="CW", position_m=33.0, re=1.0, im=0.0),)}
@@ -69,10 +68,6 @@ def test_two_places_of_one_sensor_are_two_nodes(tmp_path: Path) -> None:
     np.testing.assert_allclose(nodes["x"], [33.0, 195.75, 212.25])
     np.testing.assert_array_equal(first["node_nums"], [2, 3])
     np.testing.assert_array_equal(second["node_nums"], [1])
-
-
-@pytest.mark.filterwarnings("ignore::ResourceWarning")
-def test_nodes_are_left_out_if_a_position_is_unknown(tmp_path: Path) -> None:
     unknown = SECOND.model_copy(update={"sensor_shape": (SensorShape(sensor=2, re=1.0, im=0.0),)})
     select_mode_writer(tmp_path / "modes.uff")((FIRST, unknown), tmp_path / "modes.uff")
     assert [data_set["type"] for data_set in read_universal_file(tmp_path / "modes.uff")] == [164, 55, 55]

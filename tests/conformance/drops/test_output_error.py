@@ -47,7 +47,7 @@ def test_gradient_is_that_of_the_cost() -> None:
             )
 
 
-def test_start_poles_of_a_clean_decay_are_exact() -> None:
+def test_start_poles_of_a_clean_decay_are_exact_and_found_once() -> None:
     """Without noise a subspace method is limited by its 60 dB filter alone: a thousandth of the damping."""
     true = complex_poles((0.9, 0.005), (1.3, 0.003), (2.2, 0.002))
     random = np.random.default_rng(2)
@@ -55,13 +55,9 @@ def test_start_poles_of_a_clean_decay_are_exact() -> None:
     for pole in true:
         nearest = start[np.argmin(np.abs(start - pole))]
         assert abs(nearest - pole) < 1e-3 * abs(pole.real)
-
-
-def test_pole_between_two_bands_is_found_once() -> None:
-    """Bands meet at 1.3, 2.3 and 3.3 Hz. Poles 0.05 Hz below and above an edge are also in the flank of the other band.
-
-    In a clean decay both bands would give the pole to a tenth of its damping.
-    """
+    # Bands meet at 1.3, 2.3 and 3.3 Hz.
+    # Poles 0.05 Hz below and above an edge are also in the flank of the other band. In a clean decay both bands would
+    # give the pole to a tenth of its damping.
     true = complex_poles((1.25, 0.003), (2.25, 0.002), (2.35, 0.002), (3.35, 0.003))
     start = find_start_poles([build_decays(np.random.default_rng(2), true, 120, 2, 1e-7)], 1 / DT, 0.3, 4.3)
     found = [int(np.sum(np.abs(start - pole) < 0.1 * abs(pole.real))) for pole in true]

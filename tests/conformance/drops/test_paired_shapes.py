@@ -58,14 +58,11 @@ def test_measured_values_lie_on_the_computed_shape(line: Catenary, measured: lis
             assert sensor.value == pytest.approx(np.interp(sensor.position_m, curve.position_m, curve.value), abs=0.02)
 
 
-def test_supports_are_those_of_the_line(line: Catenary, measured: list[Mode]) -> None:
+def test_supports_of_the_line_and_modes_with_several_sensors_are_listed(line: Catenary, measured: list[Mode]) -> None:
     """Ten spans of 60 m."""
     supports = list_paired_shapes(match_modes(measured, line, 2.0, "modes"), line).supports_m
     assert [b - a for a, b in pairwise(supports)] == pytest.approx([60.0] * 10)
-
-
-def test_modes_with_one_sensor_are_left_out(line: Catenary, measured: list[Mode]) -> None:
-    """At a single sensor every shape agrees. At most twelve modes of a group are listed."""
+    # At a single sensor every shape agrees. At most twelve modes of a group are listed.
     single = [mode.model_copy(update={"sensor_shape": mode.sensor_shape[:1], "group": 1}) for mode in measured]
     assert list_paired_shapes(match_modes(single, line, 2.0, "modes"), line).modes == ()
     one_group = [mode.model_copy(update={"group": 1}) for mode in measured]

@@ -7,8 +7,9 @@ import pytest
 
 from helpers.exact_decays import RATE, RELEASE, build_exact_decay
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.units import MotionQuantity
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay, Release
-from pantocheck.conformance.drops.repeatability import compare_records, overlay_records
+from pantocheck.conformance.drops.repeatability import compare_records, convert_motion, overlay_records
 
 POLES = 2 * np.pi * np.array([0.9, 1.7, 2.6]) * (-0.002 + 1j)
 RESIDUES = np.array([[0.5, -0.4], [0.3j, 0.6j], [0.2, 0.9]])
@@ -110,3 +111,33 @@ def test_overlay_has_the_velocity_of_the_decay() -> None:
         expected = 2 * (np.exp(np.outer(t, POLES)) @ velocity[:, column]).real
         difference = (np.array(window.velocity_m_s) - (expected - expected.mean()))[t > begin + 0.5]
         assert np.abs(difference).max() < 0.05 * np.abs(expected).max()
+
+
+# Conversion of decays whose derivatives are known in closed form.
+
+
+SAMPLED_HZ, SLOW = 50.0, 2 * np.pi * 0.9 * (-0.04 + 1j)
+T = np.arange(int(80 * SAMPLED_HZ)) / SAMPLED_HZ - 6.0
+AFTER = np.maximum(T, 0.0)
+QUANTITIES: tuple[MotionQuantity, ...] = ("displacement", "velocity", "acceleration")
+POLYNOMIALS = (AFTER**3, 3 * AFTER**2 + SLOW * AFTER**3, 6 * AFTER + 6 * SLOW * AFTER**2 + SLOW**2 * AFTER**3)
+MOTION = {q: (p * np.exp(SLOW * AFTER)).imag[:, None] for q, p in zip(QUANTITIES, POLYNOMIALS, strict=True)}
+"""t^3 exp(p t) after the release and its derivatives, which have no step at the release."""
+
+
+@pytest.mark.parametrize("given", QUANTITIES)
+@pytest.mark.parametrize("wanted", QUANTITIES)
+def test_decay_becomes_its_derivative_or_integral(given: MotionQuantity, wanted: MotionQuantity) -> None:
+    """Within 1 % of the largest value, because the high-pass removes the little content below 0.08 Hz."""
+    # An offset of the sensor changes nothing else: it fades in the high-pass at the ends of the record.
+    offset = 0.0 if given == wanted else 0.1
+    result = convert_motion(MOTION[given] + offset, SAMPLED_HZ, given, wanted)
+    shown = (T > -2.0) & (T < 60.0)
+    assert np.abs(result - MOTION[wanted])[shown].max() < 0.01 * np.abs(MOTION[wanted]).max()
+
+
+def test_slow_drift_is_left_out() -> None:
+    """A drift with a period of 50 s, whose integral would have an amplitude of 8 m/s, and that of a mode 0.18 m/s."""
+    drift = np.sin(2 * np.pi * 0.02 * T)[:, None]
+    result = convert_motion(drift, SAMPLED_HZ, "acceleration", "velocity")
+    assert np.abs(result[(T > 10) & (T < 60)]).max() < 0.4

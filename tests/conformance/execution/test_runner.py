@@ -60,7 +60,7 @@ def limited(case: Case, *bounds: tuple[str, float | None, float | None], trust: 
     return replace(case, limits=limits)
 
 
-def test_results_follow_their_schema_and_hold_the_numbers(cases: list[Case], wave: type[Wave]) -> None:
+def test_results_follow_their_schema_and_are_reproducible(cases: list[Case], wave: type[Wave]) -> None:
     results = run_cases(cases, wave())
     content = json.loads(results.to_json())
     jsonschema.validate(content, build_schema("results"))
@@ -94,9 +94,6 @@ def test_results_follow_their_schema_and_hold_the_numbers(cases: list[Case], wav
     trust = {item["group"]: (item["trust"], item["source"]) for item in first["inputs"]}
     assert trust["case.evaluated_spans"] == ("provisional", source_text("untraced"))
     assert Results.model_validate(content).to_json() == results.to_json()
-
-
-def test_results_are_reproducible_apart_from_times(cases: list[Case], wave: type[Wave]) -> None:
     first, second = (re.sub(rb'"started": "[^"]*"', b"", run_cases(cases, wave()).to_json()) for _ in "ab")
     assert first == second
 
@@ -124,13 +121,17 @@ def test_provisional_limit_counts_only_on_request(case_250: Case, wave: type[Wav
     assert run_cases([limited(case_250, ("std_force_N", 40.0, 50.0))], wave(), trust="primary").verdict == "info"
 
 
-def test_exception_in_one_case_leaves_the_other_cases(cases: list[Case], wave: type[Wave]) -> None:
+def test_exception_in_one_case_leaves_the_others(cases: list[Case], wave: type[Wave], case_250: Case) -> None:
     good = Delivered(wave().record(cases[1]))
     results = run_cases(cases, Scripted({cases[0].id: ZeroDivisionError("no mass\n at all"), cases[1].id: good}))
     assert [case.verdict for case in results.cases] == ["error", "fail"]
     assert results.cases[0].reason == "ZeroDivisionError: no mass at all"
     assert results.verdict == "error"
     jsonschema.validate(json.loads(results.to_json()), build_schema("results"))
+    for length in (0, 299, 300, 301, 5000):
+        (result,) = run_cases([case_250], Scripted({case_250.id: ValueError("x" * length)})).cases
+        text = "x" * min(length, 300)
+        assert (result.verdict, result.reason) == ("error", f"ValueError: {text}" if text else "ValueError")
 
 
 def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave]) -> None:
@@ -142,11 +143,7 @@ def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave
         (Delivered(wave().record(cases[1])), "error", "made at 300 km/h, the case runs at 250 km/h"),
         (Delivered(replace(wave().record(case), evaluated=(180.0, 300.0))), "error", "evaluates 180 m to 300 m"),
         (Delivered(wave().record(case), {"beauty": 1.0}), "error", "unknown quantity 'beauty'"),
-        (
-            Delivered(wave().record(case), {"max_uplift_at_support_mm": 52.0}),
-            "error",
-            "this quantity is computed from the record",
-        ),
+        (Delivered(wave().record(case), {"max_uplift_at_support_mm": 52.0}), "error", "is computed from the record"),
     ):
         (result,) = run_cases([case], Scripted({case.id: outcome})).cases
         assert result.verdict == verdict
@@ -155,14 +152,13 @@ def test_skipped_errored_and_foreign_outcomes(cases: list[Case], wave: type[Wave
 
 def cut_record(record: Record, n: int) -> Record:
     """First samples of a record, without its contact height."""
-    assert record.support_uplift is not None
     return replace(
         record, time=record.time[:n], position=record.position[:, :n], force=record.force[:, :n],
         contact_height=None, support_uplift=record.support_uplift[:, :n],
     )  # fmt: skip
 
 
-def test_truncated_record_never_passes(case_250: Case, wave: type[Wave]) -> None:
+def test_record_that_is_cut_short_gives_an_error_or_a_warning(case_250: Case, wave: type[Wave]) -> None:
     cut = cut_record(wave().record(case_250), int(250 / case_250.speed * 1000))
     (result,) = run_cases([case_250], Scripted({case_250.id: Delivered(cut)})).cases
     assert result.verdict == "error"
@@ -172,9 +168,6 @@ def test_truncated_record_never_passes(case_250: Case, wave: type[Wave]) -> None
         "the record of pantograph 1 is cut short: the record covers 60 m to 309.931 m, "
         "but the analysis section extends from 240 m to 360 m"
     )
-
-
-def test_short_run_out_gives_a_warning(case_250: Case, wave: type[Wave]) -> None:
     record = wave().record(case_250)
     cut = cut_record(record, int(np.searchsorted(record.position[0], 362.0)))
     (result,) = run_cases([case_250], Scripted({case_250.id: Delivered(cut)})).cases
@@ -183,10 +176,8 @@ def test_short_run_out_gives_a_warning(case_250: Case, wave: type[Wave]) -> None
 
 
 def test_value_closer_to_a_limit_than_its_uncertainty_is_marked(case_250: Case, wave: type[Wave]) -> None:
-    """The standard deviation is 28 N and changes by 0.28 N on a second mesh: half-width 0.84 N, three times as much.
-
-    The shifted sections contain whole periods of the wave and add nothing. The remark is in one place only.
-    """
+    """The standard deviation is 28 N and changes by 0.28 N on a second mesh: half-width 0.84 N, three times as much."""
+    # The shifted sections contain whole periods of the wave and add nothing. The remark is in one place only.
     for upper, marked in ((28.8, True), (28.9, False)):
         (result,) = run_cases([limited(case_250, ("std_force_N", None, upper))], wave()).cases
         assert result.verdict == "pass"
@@ -246,10 +237,8 @@ def test_interrupted_run_keeps_the_finished_cases(cases: list[Case], wave: type[
     results = caught.value.results
     assert seen == [cases[0].id]
     assert len(results.cases[0].criteria) == 8
-    assert (results.cases[1].verdict, results.cases[1].reason) == (
-        "skip",
-        "the run was interrupted before this case was finished",
-    )
+    reason = "the run was interrupted before this case was finished"
+    assert (results.cases[1].verdict, results.cases[1].reason) == ("skip", reason)
     jsonschema.validate(json.loads(results.to_json()), build_schema("results"))
 
 
@@ -261,16 +250,13 @@ def recorded(cases: list[Case], wave: type[Wave], tmp_path: Path) -> RecordFolde
     return open_record_folder(tmp_path)
 
 
-def test_parallel_run_gives_the_same_results(cases: list[Case], recorded: RecordFolder) -> None:
+def test_parallel_run_gives_the_same_results_and_skips_circles(cases: list[Case], recorded: RecordFolder) -> None:
     after = replace(cases[0], file=cases[0].file.model_copy(update={"id": "after", "requires": (cases[1].id,)}))
     ordered = [after, *cases]
     sequential, parallel = run_cases(ordered, recorded), run_cases(ordered, recorded, jobs=2)
     assert parallel.model_copy(update={"started": None}) == sequential.model_copy(update={"started": None})
     assert sequential.cases[0].reason == f"requires {cases[1].id}, whose verdict is fail"
     assert sequential.system.name == "w"
-
-
-def test_cases_that_require_each_other_are_skipped(cases: list[Case], recorded: RecordFolder) -> None:
     loop = [
         replace(case, file=case.file.model_copy(update={"requires": (other.id,)}))
         for case, other in zip(cases, cases[::-1], strict=True)
@@ -282,10 +268,8 @@ def test_cases_that_require_each_other_are_skipped(cases: list[Case], recorded: 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 @pytest.mark.parametrize("deaf", [False, True])
 def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path: Path, deaf: bool) -> None:
-    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s.
-
-    Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
-    """
+    """A worker ends its case after a signal; one that ignores the signal is killed after the grace of 2 s."""
+    # Both waiting cases would run for a minute. A start of three interpreters and the end of the pool take seconds.
     waiting = [replace(cases[1], file=cases[1].file.model_copy(update={"id": f"own/{name}"})) for name in "ab"]
     system = Waiting(tmp_path, cases[0].id, len(waiting), deaf)
     interrupted = []
@@ -299,10 +283,8 @@ def test_interrupted_parallel_run_ends_every_worker(cases: list[Case], tmp_path:
     assert time.monotonic() - interrupted[0] < 30
     assert multiprocessing.active_children() == []
     assert len(list(tmp_path.glob("ended-*"))) == (0 if deaf else 2)
-    assert [case.reason for case in caught.value.results.cases] == [
-        "all have begun",
-        *["the run was interrupted before this case was finished"] * 2,
-    ]
+    reason = "the run was interrupted before this case was finished"
+    assert [case.reason for case in caught.value.results.cases] == ["all have begun", reason, reason]
 
 
 LOST = ("error", "the process of this case, or of a parallel case, ended unexpectedly")
@@ -335,13 +317,6 @@ def test_death_of_a_process_before_the_next_case_starts(case_250: Case, tmp_path
     cases = [named(case_250, name) for name in ("quick", "fatal", "last")]
     results = run_cases(cases, system, jobs=2, progress=end_process).cases
     assert [(case.verdict, case.reason) for case in results] == [("skip", "finished"), LOST, ("skip", "finished")]
-
-
-def test_reason_of_an_exception_is_its_name_with_300_characters_of_its_text(case_250: Case) -> None:
-    for length in (0, 299, 300, 301, 5000):
-        (result,) = run_cases([case_250], Scripted({case_250.id: ValueError("x" * length)})).cases
-        text = "x" * min(length, 300)
-        assert (result.verdict, result.reason) == ("error", f"ValueError: {text}" if text else "ValueError")
 
 
 def test_requirements_of_requirements_come_first(cases: list[Case], wave: type[Wave]) -> None:

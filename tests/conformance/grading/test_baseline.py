@@ -2,17 +2,22 @@
 
 import json
 import math
+import re
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from pydantic import ValidationError
-from typer.testing import CliRunner, Result
+from rich.console import Console
 
+from helpers.command_line import pantocheck
+from helpers.shown_page import shown_certificate
 from helpers.toml_edit import change_keys, write_toml
-from pantocheck.conformance.app.commands.command_list import app
+from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -23,6 +28,9 @@ from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.pages.certificate_page import build_summary
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.quantity_tables import render_quantity_list
+from pantocheck.conformance.pages.two_verdicts import summarise_verdict
+from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
@@ -38,10 +46,6 @@ def results() -> Results:
     system = choose_system(PASSING)
     accepted = Participation(accepted_unverified=(system.name,))
     return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
-
-
-def pantocheck(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 def build_command(cases: str, out: Path, accepted: str, formats: str = "json") -> list[str | Path]:
@@ -65,11 +69,14 @@ def changed(results: Results, name: str, value: float | list[float]) -> Results:
     )
 
 
-def test_same_values_do_not_drift(results: Results) -> None:
+def test_same_values_do_not_drift_and_results_round_trip(results: Results, tmp_path: Path) -> None:
     compared = compare_with_baseline(results, results, 0.1, "b.json")
     assert compared.verdict == "pass"
     assert [len(case.criteria) for case in compared.cases] == [8, 8]
     assert compared.cases[0].notes[-1].startswith("Compared with baseline b.json: 8 values, of which 0 drifted")
+    (tmp_path / "r.json").write_bytes(results.to_json())
+    assert read_results(tmp_path / "r.json") == results
+    assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
 
 
 @pytest.mark.parametrize(("was", "drifts"), [(0.230, False), (0.236, True)])
@@ -131,10 +138,7 @@ def test_drift_is_a_verdict_of_its_own(results: Results, drifted: Results) -> No
     assert case.baseline == BaselineComparison(verdict="fail", name="b.json", drift_pct=1.0, values=8, drifted=1)
     assert (case.criteria[-1].trust, case.criteria[-1].source) == (None, "baseline b.json, allowed drift 1 %")
     assert drifted.scope == results.scope
-
-
-def test_criterion_without_trust_is_a_drift(results: Results) -> None:
-    """Otherwise a limit without any source would count."""
+    # Otherwise a limit without any source would count.
     content = results.to_dict()
     content["cases"][0]["criteria"][0]["trust"] = None
     with pytest.raises(ValidationError, match="a criterion without trust must compare with a baseline"):
@@ -168,13 +172,10 @@ def test_hidden_drift_is_found(drifted: Results, forgery: str) -> None:
     assert find_discrepancies(Results.model_validate(compared))
 
 
-def test_hidden_verdict_of_the_run_by_the_baseline_is_found(drifted: Results) -> None:
+def test_hidden_verdict_or_comparison_of_the_run_is_found(drifted: Results) -> None:
     for verdict in ("pass", None):
         found = find_discrepancies(drifted.model_copy(update={"baseline_verdict": verdict}))
         assert any(text.startswith("baseline: ") for text in found)
-
-
-def test_drift_without_its_comparison_is_a_contradiction(drifted: Results) -> None:
     compared = drifted.to_dict()
     del compared["baseline_verdict"], compared["cases"][0]["baseline"], compared["cases"][1]["baseline"]
     found = find_discrepancies(Results.model_validate(compared))
@@ -188,12 +189,23 @@ def test_value_near_zero_drifts_by_its_unit(results: Results) -> None:
     assert compare_with_baseline(results, lossy, 3.0, "b").verdict == "pass"
 
 
-def test_missing_value_is_skipped(results: Results) -> None:
+def test_value_or_case_that_one_side_lacks_is_skipped(results: Results) -> None:
     compared = compare_with_baseline(results, changed(results, "rms_20_50_N", 20.0), 1.0, "b.json")
     (finding,) = (row for row in compared.cases[0].criteria if row.verdict == "skip")
     assert finding.reason == "the baseline has 20 N; now: the summary does not state this quantity"
     assert compared.verdict == "skip"
     assert find_discrepancies(compared) == []
+    other = results.model_copy(update={"cases": results.cases[:1]})
+    compared = compare_with_baseline(results, other, 1.0, "b.json")
+    assert compared.cases[0].verdict == "unverified"
+    lacking = compared.cases[1]
+    assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
+    assert compared.verdict == "skip"
+    assert find_discrepancies(compared) == []
+    case = replace(select_cases(["en50318-2002/250"])[0], limits=())
+    unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
+    skipped = run_cases([unknown], choose_system(PASSING))
+    assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
 
 
 @pytest.mark.parametrize(
@@ -258,23 +270,6 @@ def test_limits_of_the_user_are_not_those_of_the_baseline(results: Results, tmp_
     assert "has other limits" in result.output
 
 
-def test_case_that_the_baseline_lacks_is_skipped(results: Results) -> None:
-    other = results.model_copy(update={"cases": results.cases[:1]})
-    compared = compare_with_baseline(results, other, 1.0, "b.json")
-    assert compared.cases[0].verdict == "unverified"
-    lacking = compared.cases[1]
-    assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
-    assert compared.verdict == "skip"
-    assert find_discrepancies(compared) == []
-
-
-def test_ungraded_case_keeps_its_verdict(results: Results) -> None:
-    case = replace(select_cases(["en50318-2002/250"])[0], limits=())
-    unknown = replace(case, file=case.file.model_copy(update={"id": "none"}))
-    skipped = run_cases([unknown], choose_system(PASSING))
-    assert compare_with_baseline(skipped, results, 1.0, "b").verdict == "skip"
-
-
 def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: Path) -> None:
     base = tmp_path / "baseline.json"
     base.write_bytes(changed(results, "std_force_N", 27.0).to_json())
@@ -286,17 +281,8 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
     assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
     plan = tmp_path / "plan.toml"
-    write_toml(
-        plan,
-        {
-            "system": PASSING,
-            "verdicts": "criteria",
-            "cases": ["en50318-2002/*"],
-            "baseline": "baseline.json",
-            "formats": ["json"],
-            "accept_unverified": [results.system.name],
-        },
-    )
+    options = {"verdicts": "criteria", "formats": ["json"], "accept_unverified": [results.system.name]}
+    write_toml(plan, options | {"system": PASSING, "cases": ["en50318-2002/*"], "baseline": "baseline.json"})
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0
 
@@ -341,16 +327,8 @@ def test_baseline_is_read_before_anything_is_computed(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_results_round_trip(results: Results, tmp_path: Path) -> None:
-    (tmp_path / "r.json").write_bytes(results.to_json())
-    assert read_results(tmp_path / "r.json") == results
-    assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
-
-
 @pytest.mark.parametrize("value", [1e15, -1e13, [1.0] * 200_000])
-def test_baseline_of_extreme_values_is_refused_before_the_run(
-    results: Results, tmp_path: Path, value: float | list[float]
-) -> None:
+def test_extreme_values_are_refused_before_a_run(results: Results, tmp_path: Path, value: float | list[float]) -> None:
     """A limit above 1e15 is no valid result, and 200 000 criteria take minutes."""
     path, out = tmp_path / "b.json", tmp_path / "out"
     path.write_bytes(changed(results, "std_force_N", value).to_json())
@@ -360,9 +338,7 @@ def test_baseline_of_extreme_values_is_refused_before_the_run(
     assert not out.exists()
 
 
-def test_results_are_kept_if_the_comparison_fails(
-    results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_results_outlive_the_comparison(results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "b.json").write_bytes(results.to_json())
 
     def fail(*_: object) -> Results:
@@ -388,14 +364,102 @@ def test_impossible_value_of_a_baseline_is_refused(results: Results, tmp_path: P
 
 
 @pytest.mark.parametrize(("number", "accepted"), [(9_992, True), (9_994, False)])
-def test_number_of_values_of_a_baseline_is_bounded(
-    results: Results, tmp_path: Path, number: int, accepted: bool
-) -> None:
+def test_number_of_values_is_bounded(results: Results, tmp_path: Path, number: int, accepted: bool) -> None:
     """The case has eight quantities; one of them gets a list of values."""
     path = tmp_path / "b.json"
     path.write_bytes(changed(results, "std_force_N", [1.0] * number).to_json())
-    if accepted:
+    with nullcontext() if accepted else pytest.raises(InputError, match="10001 values; at most 10000 can be compared"):
         assert read_baseline(path).cases
-    else:
-        with pytest.raises(InputError, match="10001 values; at most 10000 can be compared"):
-            read_baseline(path)
+
+
+# Drift from a baseline on the pages: a verdict of its own, and no criterion of EN 50318.
+
+
+SHOWN = "std_force_N"
+
+
+@pytest.fixture
+def shown_drift(passing: dict[str, Any]) -> Results:
+    """Every criterion passes; the standard deviation of pantograph 1 was half as large in the baseline."""
+    now = Participation().decide_run(Results.model_validate(passing))
+    case = now.cases[0]
+    quantities = case.quantities | {"1": case.quantities["1"] | {SHOWN: 0.5 * float(str(case.quantities["1"][SHOWN]))}}
+    before = now.model_copy(update={"cases": [case.model_copy(update={"quantities": quantities})]})
+    return compare_with_baseline(now, before, 1.0, "earlier.json")
+
+
+def test_criteria_pass_and_the_headline_states_the_drift_apart(shown_drift: Results) -> None:
+    assert (shown_drift.verdict, shown_drift.criteria_verdict, shown_drift.baseline_verdict) == ("fail", "pass", "fail")
+    assert find_discrepancies(shown_drift) == []
+    text = build_headline(shown_drift)
+    drift = f"1 value drifted from the baseline, most {SHOWN} of {shown_drift.cases[0].id} by +100 %"
+    assert f"1 fails (0 of 16 counted criteria outside their limits, {drift})" in text
+    rows = [row for row in shown_drift.cases[0].criteria if row.baseline is not None]
+    uncounted = shown_drift.model_copy(update={"cases": [shown_drift.cases[0].model_copy(update={"criteria": rows})]})
+    assert f"1 fails ({drift})" in build_headline(uncounted)
+    assert "EN 50318 criteria: PASS; Drift from the baseline: FAIL." in text
+
+
+def test_summary_has_a_row_and_a_table_of_the_drift(shown_drift: Results) -> None:
+    text = render_markdown(build_summary(shown_drift))
+    assert "## Two verdicts" in text
+    assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes. 16 of 16 counted criteria" in text
+    assert re.search(
+        r"\| Drift from the baseline \| FAIL \| decides \| 0 of 1 case passes. 1 of \d+ values drifted", text
+    )
+    assert "## Drift from the baseline" in text
+    table = text.split("Drift from the baseline: FAIL")[-1]
+    [row] = [line for line in table.splitlines() if "drift from the baseline" in line]
+    assert row.endswith("| FAIL | – |")  # earlier values have no trust
+
+
+def test_certificate_shows_the_drift_below_a_heading_of_its_own(shown_drift: Results) -> None:
+    html = shown_certificate(shown_drift.to_dict())
+    headings = re.findall(r"<h[23][^>]*>(.*?)</h[23]>", html, re.DOTALL)
+    assert [heading for heading in headings if "Drift from the baseline" in heading]
+    assert "Two verdicts" in html
+    assert "16 criteria: 16 " in html
+    text = re.sub(r"<[^>]*>|\s|&nbsp;|\u200b|&#8203;", "", html)
+    assert re.search(r"1of\d+valuesdriftedbymorethan1%fromearlier\.json,oraremissing", text)
+
+
+def test_terminal_junit_badge_and_csv_show_the_drift_apart(shown_drift: Results, passing: dict[str, Any]) -> None:
+    console = Console(width=140)
+    with console.capture() as capture:
+        for part in build_results_output(shown_drift, (), 1).details:
+            console.print(part)
+    criteria, drift = capture.get().split("Drift from the baseline: ")
+    assert "FAIL" not in criteria.split("\n", 4)[-1]
+    assert drift.startswith("FAIL")
+    assert "drifted by +100 % from the baseline" in drift
+    root = ElementTree.fromstring(render_junit(shown_drift))
+    failed = [test for test in root.iter("testcase") if test.find("failure") is not None]
+    assert [test.get("name") for test in failed] == [f"drift of {SHOWN} of pantograph 1"]
+    failure = failed[0].find("failure")
+    assert "bounds of the baseline" in "".join(failure.itertext()) + str(failure.attrib)
+    assert summarise_verdict(shown_drift) == "fail 16/16, baseline fail"
+    # The bounds of a drift do not replace the limits of the standard.
+    assert render_quantity_list(shown_drift) == render_quantity_list(Results.model_validate(passing))
+
+
+def test_baseline_without_drift_is_shown_and_passes(passing: dict[str, Any]) -> None:
+    now = Participation().decide_run(Results.model_validate(passing))
+    same = compare_with_baseline(now, now, 1.0, "earlier.json")
+    assert (same.verdict, same.baseline_verdict) == ("pass", "pass")
+    assert "Drift from the baseline: PASS." in build_headline(same)
+    assert summarise_verdict(same) == "pass 16/16"
+    assert find_discrepancies(same) == []
+
+
+def test_baseline_that_cannot_be_compared_decides_in_junit(passing: dict[str, Any]) -> None:
+    """Its skipped criterion counts whichever verdict is requested."""
+    passing["cases"][0]["criteria_verdict"] = "pass"
+    now = Participation(requested=("verification",)).decide_run(Results.model_validate(passing))
+    empty = now.model_copy(update={"cases": []})
+    compared = compare_with_baseline(now, empty, 1.0, "earlier.json")
+    assert compared.baseline_verdict == "skip"
+    assert find_discrepancies(compared) == []
+    tests = ElementTree.fromstring(render_junit(compared)).iter("testcase")
+    [test] = [test for test in tests if test.get("name") == "baseline of line"]
+    skipped = test.find("skipped")
+    assert "for information" not in str(skipped.attrib)

@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 from helpers.case_fixtures import EditedCase
-from pantocheck.conformance.app.commands.command_list import app
+from helpers.command_line import pantocheck
+from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import list_library, load_case, overlay_limits
+from pantocheck.conformance.cases.library import list_library, load_case, overlay_limits, select_cases
 from pantocheck.conformance.cases.limits import Limit, LimitOverride
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_identity import (
@@ -22,7 +22,7 @@ from pantocheck.conformance.grading.case_identity import (
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.results.results_reading import read_results
-from pantocheck.conformance.runs.system import Skipped
+from pantocheck.conformance.runs.system import Delivered, Skipped
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
 LIBRARY = list_library(library_folder())
@@ -31,10 +31,6 @@ LIBRARY = list_library(library_folder())
 @pytest.mark.parametrize("name", LIBRARY)
 def test_every_library_case_is_identical_to_itself(name: str) -> None:
     assert compare_with_library(load_case(LIBRARY[name])) == "identical"
-
-
-def test_copy_with_the_same_content_is_identical(edited_case: EditedCase) -> None:
-    assert compare_with_library(load_case(edited_case("250.toml", {}))) == "identical"
 
 
 @pytest.mark.parametrize(
@@ -57,22 +53,14 @@ def test_copy_with_other_content_is_modified(edited_case: EditedCase, file: str,
     assert compare_with_library(load_case(edited_case(file, changes))) == "modified"
 
 
-def test_second_pantograph_makes_a_modified_copy(two_pantograph_case: Case) -> None:
+def test_copies_are_told_apart(two_pantograph_case: Case, edited_case: EditedCase, case_250: Case) -> None:
     assert compare_with_library(two_pantograph_case) == "modified"
-
-
-def test_other_id_is_an_own_case(edited_case: EditedCase) -> None:
+    assert compare_with_library(load_case(edited_case("250.toml", {}))) == "identical"
     assert compare_with_library(load_case(edited_case("250.toml", {"id": "en50318-2002/250-copy"}))) == "own"
-
-
-def test_options_of_the_run_do_not_modify_a_case(case_250: Case) -> None:
     wide = LimitOverride(quantity="std_force_N", upper=900.0, trust="secondary", source="own")
     assert compare_with_library(overlay_limits([case_250], [wide])[0]) == "identical"
     assert compare_with_library(add_damping_study(case_250)) == "identical"
-
-
-def test_edition_leaves_the_input_digest_unchanged(case_250: Case) -> None:
-    """An edition is provenance."""
+    # An edition is provenance.
     file = case_250.file.model_copy(update={"edition": None, "superseded_by": None})
     assert replace(case_250, file=file).digest == case_250.digest
     assert (case_250.file.edition, case_250.file.superseded_by) == ("EN 50318:2002", "EN 50318:2018")
@@ -88,7 +76,7 @@ def test_digest_of_limits_notices_bounds_trust_and_source(change: dict[str, Any]
     assert limits_digest((limits[0].model_copy(update=change), limits[1])) != limits_digest(limits)
 
 
-def test_result_states_identity_and_both_digests_of_the_limits(case_250: Case) -> None:
+def test_result_states_identity_digests_and_removed_limits(case_250: Case) -> None:
     own = LimitOverride(quantity="std_force_N", upper=900.0, trust="secondary", source="own")
     plain, wide = (
         grade_case(case, Skipped("not run"), "secondary") for case in (case_250, *overlay_limits([case_250], [own]))
@@ -97,6 +85,8 @@ def test_result_states_identity_and_both_digests_of_the_limits(case_250: Case) -
     assert plain.limits_digest == plain.stated_limits_digest == wide.stated_limits_digest != wide.limits_digest
     assert not plain.limit_changes
     assert wide.limit_changes == ["std_force_N of pantograph 1: the limit 26 to 31 is widened to <= 900"]
+    changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
+    assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
 
 
 STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, trust="secondary", source="wang2016")
@@ -105,6 +95,9 @@ STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, tru
 @pytest.mark.parametrize(
     ("change", "text"),
     [
+        ({}, None),
+        ({"upper": 30.0}, None),
+        ({"lower": 27.0, "source": "own", "note": "stricter"}, None),
         ({"trust": "provisional"}, "the trust of the limit is lowered from secondary to provisional"),
         ({"trust": "primary"}, "the trust of the limit is raised from secondary to primary"),
         ({"upper": 32.0}, "the limit 26 to 31 is widened to 26 to 32"),
@@ -114,8 +107,9 @@ STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, tru
          "is lowered from secondary to provisional"),
     ],
 )  # fmt: skip
-def test_weaker_limit_is_described(change: dict[str, Any], text: str) -> None:
-    assert describe_limit_change(STATED, STATED.model_copy(update=change)) == f"std_force_N of pantograph 2: {text}"
+def test_weaker_limit_is_described(change: dict[str, Any], text: str | None) -> None:
+    expected = text and f"std_force_N of pantograph 2: {text}"
+    assert describe_limit_change(STATED, STATED.model_copy(update=change)) == expected
 
 
 @pytest.mark.parametrize(
@@ -130,18 +124,7 @@ def test_weaker_limit_is_described(change: dict[str, Any], text: str) -> None:
 )
 def test_raised_trust_alone_weakens_nothing(change: dict[str, Any], raised: bool) -> None:
     text = describe_limit_change(STATED, STATED.model_copy(update=change))
-    assert text is not None
     assert raises_trust_only(text) == raised
-
-
-@pytest.mark.parametrize("change", [{}, {"upper": 30.0}, {"lower": 27.0, "source": "own", "note": "stricter"}])
-def test_stricter_limit_is_not_reported(change: dict[str, Any]) -> None:
-    assert describe_limit_change(STATED, STATED.model_copy(update=change)) is None
-
-
-def test_removed_limit_is_reported(case_250: Case) -> None:
-    changes = list_limit_changes(replace(case_250, limits=case_250.limits[1:]))
-    assert changes == ["mean_force_N of pantograph 1: the limit 110 to 120 is removed"]
 
 
 def test_command_names_a_case_file_that_borrows_the_id_of_the_library(edited_case: EditedCase, tmp_path: Path) -> None:
@@ -149,8 +132,8 @@ def test_command_names_a_case_file_that_borrows_the_id_of_the_library(edited_cas
     path = edited_case("250.toml", {"limit.6.upper": 255.0})
     system = "record:en50318-2002/known-passing-code"
     out = tmp_path / "out"
-    arguments = ["run", str(path), "--system", system, "--formats", "json,junit,md", "--out", str(out)]
-    output = " ".join(CliRunner().invoke(app, arguments).output.split())
+    done = pantocheck("run", path, "--system", system, "--formats", "json,junit,md", "--out", out)
+    output = " ".join(done.output.split())
     assert "Modified copies of the library: 1." in output
     assert "modified copy of en50318-2002/250" in output
     [case] = read_results(out / "results.json").cases
@@ -158,3 +141,39 @@ def test_command_names_a_case_file_that_borrows_the_id_of_the_library(edited_cas
     assert case.input_digest == load_case(LIBRARY["en50318-2002/250"]).digest
     for name in ("junit.xml", "summary.md"):
         assert "modified copy of en50318-2002/250" in (out / name).read_text(encoding="utf-8")
+
+
+# Grading of a case: its steps of the procedure, and deliveries that do not belong to it.
+
+
+@pytest.mark.parametrize("name", list_library(library_folder()))
+def test_steps_of_a_library_case(name: str) -> None:
+    """Passages of an edition are reference models, static cases static checks; mass drops and studies are no step."""
+    case = load_case(list_library(library_folder())[name])
+    steps = grade_case(case, Skipped("not run"), "secondary").steps
+    if case.file.mass_drop is not None or case.file.study is not None:
+        assert steps == []
+    elif case.file.speed_km_h is None:
+        assert steps == (["static_check"] if case.file.apparent_mass is None else ["pantograph_model", "static_check"])
+    else:
+        assert steps == ([] if case.file.edition is None else ["reference_models"])
+
+
+def test_study_of_a_passage_keeps_its_step(case_250: Case, edited_case: EditedCase) -> None:
+    own = load_case(edited_case("250.toml", {"id": "own/250"}))
+    steps = [grade_case(case, Skipped("not run"), "secondary").steps for case in (add_damping_study(case_250), own)]
+    assert steps == [["reference_models"], []]
+    (case,) = select_cases(["en50318-2018/ac-simple/static"])
+    result = grade_case(case, Delivered(static={"wave_speed_m_s": 120.0}), "secondary")
+    assert result.quantities == {"0": {"wave_speed_m_s": 120.0}}
+    assert result.run.evaluated_m is None
+    assert result.record is None
+
+
+@pytest.mark.parametrize("name", ["unknown_m", "max_uplift_at_support_mm", "zzz_m"])
+def test_every_static_quantity_must_be_one_of_the_line_at_rest(two_pantograph_case: Case, name: str) -> None:
+    """The wrong name stands before or after correct ones in the order of the alphabet."""
+    static = {"dropper_length_m": (1.0,), "presag_mm": (0.0,), "wave_speed_m_s": 120.0, name: 1.0}
+    result = grade_case(two_pantograph_case, Delivered(Wave().record(two_pantograph_case), static), "secondary")
+    assert result.verdict == "error"
+    assert name in (result.reason or "")

@@ -7,17 +7,19 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from typer.testing import CliRunner
 
+from helpers.command_line import pantocheck
+from helpers.converged_fixtures import StateConverged
 from helpers.example_results import example, passing_case
-from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import CaseVerification
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.documents.verification import find_gaps
-from pantocheck.conformance.execution.plan import Plan, prepare_plan
+from pantocheck.conformance.execution.plan import Plan, PreparedPlan, prepare_plan
 from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
 from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
@@ -52,9 +54,7 @@ def record(state: RecordState, demanded: bool = True) -> RecordFacts:
         (["fail", "skip"], "unverified", "fail"),
     ],
 )
-def test_case_is_as_good_as_its_worst_counted_criterion(
-    criteria: list[Verdict], state: RecordState, verdict: Verdict
-) -> None:
+def test_case_is_as_good_as_its_worst_row(criteria: list[Verdict], state: RecordState, verdict: Verdict) -> None:
     assert judge_case(criteria, record(state)) == verdict
 
 
@@ -64,24 +64,18 @@ def test_pass_needs_a_counted_criterion_and_a_verified_record(criteria: list[Ver
     assert passes == ("pass" in criteria and set(criteria) <= {"pass", "info"} and state == "verified")
 
 
-def test_profile_that_shows_the_state_does_not_lower_the_verdict() -> None:
-    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
-    assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
-
-
-def test_worst_case_that_takes_part_decides() -> None:
+def test_only_pass_ends_with_exit_code_0_and_the_worst_case_decides() -> None:
+    assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
+        "pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2
+    }  # fmt: skip
     cases: list[tuple[str, Verdict]] = [("a", "pass"), ("b", "unverified"), ("c", "fail")]
     assert Participation().judge_run(cases, "mine") == "fail"
     assert Participation(information=("c",)).judge_run(cases, "mine") == "unverified"
     assert Participation(("c",), ("mine",)).judge_run(cases, "mine") == "pass"
     assert Participation(("c",), ("other",)).judge_run(cases, "mine") == "unverified"
     assert Participation(("a", "b", "c")).judge_run(cases, "mine") == "info"
-
-
-def test_only_pass_ends_with_exit_code_0() -> None:
-    assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
-        "pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2
-    }  # fmt: skip
+    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
+    assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
 
 
 def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250: Case) -> None:
@@ -94,7 +88,7 @@ def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250
 
 def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: Path) -> None:
     def exit_code(*arguments: str) -> int:
-        return CliRunner().invoke(app, [*PUBLISHED, "--out", str(tmp_path), *arguments]).exit_code
+        return pantocheck(*PUBLISHED, "--out", tmp_path, *arguments).exit_code
 
     def junit() -> ElementTree.Element:
         return ElementTree.parse(tmp_path / "junit.xml").getroot()
@@ -110,8 +104,8 @@ def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: P
 
 def test_published_statistics_do_not_meet_the_converged_solution(tmp_path: Path) -> None:
     """Verification is requested by default of another system; its result is shown as it comes out."""
-    arguments = [*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", str(tmp_path)]
-    assert CliRunner().invoke(app, arguments).exit_code == 1
+    arguments = (*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", tmp_path)
+    assert pantocheck(*arguments).exit_code == 1
     results = read_results(tmp_path / "results.json")
     assert (results.verdict, results.criteria_verdict, results.verification_verdict) == ("fail", "pass", "fail")
 
@@ -133,18 +127,14 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
     assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")
 
 
-def test_junit_never_passes_what_does_not_count(results: dict[str, Any]) -> None:
+def test_junit_passes_only_what_counts_in_the_default_run(results: dict[str, Any]) -> None:
     """A limit that does not count is skipped; so is a failure in a case for information."""
     root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     assert "provisional limit does not count" in "".join(e.get("message", "") for e in root.iter("skipped"))
-    shown = ElementTree.fromstring(
-        render_junit(Results.model_validate(results | {"information": ["en50318-2002/300"]}))
-    )
+    informative = Results.model_validate(results | {"information": ["en50318-2002/300"]})
+    shown = ElementTree.fromstring(render_junit(informative))
     assert (root.get("failures"), shown.get("failures")) == ("1", "0")
     assert any(e.get("message", "").startswith("for information: failure: ") for e in shown.iter("skipped"))
-
-
-def test_default_run_takes_the_cases_whose_limits_count() -> None:
     secondary, provisional = (prepare_plan(Plan(trust=trust)) for trust in ("secondary", "provisional"))
     ids = {case.id for case in secondary.cases}
     assert {"en50318-2002/250", "en50318-2018/ac-simple/static"} <= ids
@@ -153,6 +143,7 @@ def test_default_run_takes_the_cases_whose_limits_count() -> None:
     assert secondary.participation.information == ()
 
 
+CASE, RESULTS = CaseResult.model_validate(passing_case()), Results.model_validate(example())
 VERDICTS = st.sampled_from(WORST_FIRST)
 REQUESTS = st.sampled_from([("criteria",), ("verification",), ("criteria", "verification")])
 
@@ -166,14 +157,13 @@ def case_result(
         other = CaseVerification(
             verdict=verification, reason=None, confirmed_by="another code", digest="", omitted=[], criteria=[]
         )
-    template = CaseResult.model_validate(passing_case())
-    row = template.criteria[0].model_copy(update={"verdict": drift, "baseline": 1.0})
+    row = CASE.criteria[0].model_copy(update={"verdict": drift, "baseline": 1.0})
     changes = {"id": case_id, "verdict": criteria, "criteria_verdict": criteria, "verification": other}
-    return template.model_copy(update=changes | {"criteria": [] if drift is None else [row]})
+    return CASE.model_copy(update=changes | {"criteria": [] if drift is None else [row]})
 
 
 def decide(participation: Participation, *cases: CaseResult) -> Results:
-    return participation.decide_run(Results.model_validate(example()).model_copy(update={"cases": list(cases)}))
+    return participation.decide_run(RESULTS.model_copy(update={"cases": list(cases)}))
 
 
 def rank(verdict: Verdict | None) -> int:
@@ -216,14 +206,11 @@ def test_decision_is_stable(pairs: list[tuple[Verdict, Verdict | None]], request
     assert read_participation(results).decide_run(results) == results
 
 
-def test_requested_verdict_without_a_case_is_informative() -> None:
+def test_case_without_a_limit_or_verdict_that_counts_is_informative() -> None:
     alone = decide(Participation(requested=("verification",)), case_result("a", "pass", None))
     assert (alone.verdict, alone.verification_verdict, alone.criteria_verdict) == ("info", None, "pass")
     both = decide(Participation(requested=("criteria", "verification")), case_result("a", "pass", None))
     assert (both.verdict, both.cases[0].verdict) == ("info", "pass")
-
-
-def test_case_without_a_limit_that_counts_is_judged_by_its_verification() -> None:
     cases = case_result("a", "pass", "pass"), case_result("b", "info", "pass")
     both = ("criteria", "verification")
     assert decide(Participation(requested=both), *cases).verdict == "info"
@@ -233,23 +220,23 @@ def test_case_without_a_limit_that_counts_is_judged_by_its_verification() -> Non
     assert (shown.verdict, shown.criteria_verdict, shown.verification_verdict) == ("pass", "pass", "pass")
 
 
-def test_drift_from_a_baseline_counts_whichever_verdict_is_requested() -> None:
+def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     drifted = case_result("a", "fail", "pass", drift="fail")
     assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
     failed = case_result("a", "fail", "pass")
     assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
+    both, name = ("criteria", "verification"), RESULTS.system.name
+    case = case_result("a", "unverified", "unverified")
+    assert decide(Participation(requested=both), case).verdict == "unverified"
+    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"
 
 
 @given(VERDICTS, st.none() | VERDICTS, VERDICTS, REQUESTS, st.booleans())
 def test_baseline_never_improves_a_verdict(
-    criteria: Verdict,
-    verification: Verdict | None,
-    drift: Verdict,
-    requested: tuple[VerdictName, ...],
-    listed: bool,
+    criteria: Verdict, verification: Verdict | None, drift: Verdict, requested: tuple[VerdictName, ...], listed: bool
 ) -> None:
     """Whether its criteria are listed or only its verdict is stated; the other verdicts do not depend on it."""
-    participation = Participation(requested=requested, accepted_unverified=(example()["system"]["name"],))
+    participation = Participation(requested=requested, accepted_unverified=(RESULTS.system.name,))
     plain = case_result("a", criteria, verification)
     comparison = BaselineComparison(verdict=drift, name="b.json", drift_pct=1.0, values=8, drifted=1)
     row = case_result("a", criteria, verification, drift).criteria
@@ -258,15 +245,70 @@ def test_baseline_never_improves_a_verdict(
     assert rank(results.verdict) <= rank(without.verdict)
     assert rank(results.cases[0].verdict) <= rank(without.cases[0].verdict)
     assert rank(results.cases[0].verdict) <= rank(drift)
-    assert (results.criteria_verdict, results.verification_verdict) == (
-        without.criteria_verdict,
-        without.verification_verdict,
-    )
+    assert results.criteria_verdict == without.criteria_verdict
+    assert results.verification_verdict == without.verification_verdict
     assert read_participation(results).decide_run(results) == results
 
 
-def test_accepted_unverified_record_passes_both_verdicts() -> None:
-    both, name = ("criteria", "verification"), example()["system"]["name"]
-    case = case_result("a", "unverified", "unverified")
-    assert decide(Participation(requested=both), case).verdict == "unverified"
-    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"
+# Selection: requested verdicts by system, and the cases of a run without a list of cases.
+
+
+TWIN, PUBLISHED = "en50318-2018/ac-simple/320-twin", "en50318-2002/250"
+BOTH = ("criteria", "verification")
+
+
+@pytest.fixture
+def verifiable(state_converged: StateConverged, case_250: Case) -> None:
+    """Converged values for a case with published limits and for one without any."""
+    for name in (PUBLISHED, TWIN):
+        renamed = case_250.file.model_copy(update={"id": name})
+        state_converged(Case(renamed, case_250.line, case_250.pantographs, ()), {})
+
+
+@pytest.mark.parametrize(
+    ("choice", "system", "cases", "expected"),
+    [
+        (None, "builtin", [PUBLISHED], ("criteria",)),
+        (None, "record:folder", [PUBLISHED], BOTH),
+        (None, "command:program", ["own", PUBLISHED], BOTH),
+        (None, "record:folder", ["own"], ("criteria",)),
+        ("both", "builtin", ["own"], BOTH),
+        ("verification", "builtin", [PUBLISHED], ("verification",)),
+        ("criteria", "record:folder", [PUBLISHED], ("criteria",)),
+    ],
+)
+@pytest.mark.usefixtures("verifiable")
+def test_requested_verdicts_by_system(
+    choice: VerdictChoice | None, system: str, cases: list[str], expected: tuple[str, ...]
+) -> None:
+    assert choose_verdicts(choice, system, cases) == expected
+
+
+def ids(prepared: PreparedPlan) -> set[str]:
+    return {case.id for case in prepared.cases}
+
+
+@pytest.mark.usefixtures("verifiable")
+def test_default_run_of_another_system_takes_the_cases_with_converged_values() -> None:
+    builtin, foreign = (prepare_plan(Plan(system=system)) for system in ("builtin", "record:folder"))
+    assert ids(foreign) - ids(builtin) == {TWIN}
+    assert builtin.participation.requested == ("criteria",)
+    assert builtin.participation.verification_only == ()
+    assert foreign.participation.requested == BOTH
+    assert foreign.participation.verification_only == (TWIN,)
+    assert foreign.participation.information == builtin.participation.information
+
+
+@pytest.mark.usefixtures("verifiable")
+def test_verification_takes_no_other_case_than_required_or_named_ones() -> None:
+    """The static check that the twin requires has no converged values here: it is shown for information."""
+    prepared = prepare_plan(Plan(verdicts="verification"))
+    assert ids(prepared) == {PUBLISHED, TWIN, "en50318-2018/ac-simple/static"}
+    assert prepared.participation.information == ("en50318-2018/ac-simple/static",)
+    # A case that the user names has no limit that counts: the criteria stay informative.
+    assert prepare_plan(Plan(cases=(TWIN,), verdicts="both")).participation.verification_only == ()
+
+
+def test_default_run_without_converged_values_needs_a_limit(state_converged: StateConverged) -> None:
+    with pytest.raises(InputError, match="no limit counts"):
+        prepare_plan(Plan(verdicts="verification"))

@@ -34,7 +34,7 @@ def twin(two_pantograph_case: Case) -> Case:
 
 @pytest.fixture
 def record(twin: Case) -> Record:
-    return Wave(rate=400.0).record(twin)
+    return Wave(rate=250.0).record(twin)
 
 
 @pytest.fixture
@@ -82,12 +82,15 @@ def test_tolerance_by_hand(quantity: str, value: float, mean: float | None, expe
     assert tolerance(quantity, value, mean) == pytest.approx(expected, rel=1e-12)
 
 
-def test_tolerance_of_an_extreme_needs_the_mean() -> None:
+def test_tolerance_of_an_extreme_needs_the_mean_and_computed_limits_their_trust() -> None:
     with pytest.raises(ValueError, match="max_force_N needs a mean"):
         tolerance("max_force_N", 180.0, None)
+    assert "computed" not in LEVELS
+    assert not any(limit_counts("computed", level) or limit_counts(level, "computed") for level in LEVELS)
+    assert limit_counts("computed", "computed")
 
 
-def test_limits_are_the_interval_widened_by_the_tolerance(twin: Case) -> None:
+def test_values_at_rest_or_of_the_passage_limit_their_own_cases_only(twin: Case) -> None:
     converged = build_converged(twin, {1: {"mean_force_N": 120.0, "min_force_N": 50.0}, 2: {"rms_20_50_N": 10.0}})
     limits = {(entry.pantograph, entry.quantity): entry for entry in build_requirements(converged, is_static=False)}
     mean, low, band = limits[1, "mean_force_N"], limits[1, "min_force_N"], limits[2, "rms_20_50_N"]
@@ -96,31 +99,27 @@ def test_limits_are_the_interval_widened_by_the_tolerance(twin: Case) -> None:
     assert (band.lower, band.upper) == (pytest.approx(10 - 0.01 - 1), pytest.approx(10 + 0.01 + 1))
     assert {entry.trust for entry in limits.values()} == {"computed"}
     assert "finite differences" in mean.source
-
-
-def test_quantities_at_rest_limit_a_static_case_only(twin: Case) -> None:
-    """A record of a passage has no quantities of the line at rest: they would be skipped in every record."""
+    # A record of a passage has no quantities of the line at rest: they would be skipped in every record.
     converged = build_converged(twin, {0: {"elasticity_mm_N": 0.5, "max_uplift_at_support_mm": 50.0}})
     assert [entry.quantity for entry in build_requirements(converged, is_static=True)] == ["elasticity_mm_N"]
     assert [entry.quantity for entry in build_requirements(converged, is_static=False)] == ["max_uplift_at_support_mm"]
 
 
-def test_computed_limits_count_in_the_verification_only() -> None:
-    assert "computed" not in LEVELS
-    assert not any(limit_counts("computed", level) or limit_counts(level, "computed") for level in LEVELS)
-    assert limit_counts("computed", "computed")
-
-
-def test_case_without_converged_values_has_no_verification(
-    state_converged: StateConverged, twin: Case, record: Record
-) -> None:
+def test_missing_values(state_converged: StateConverged, twin: Case, record: Record, values: Values) -> None:
     assert grade(twin, record).verification is None
     assert grade_case(twin, Errored("reason"), "secondary").verification is None
+    state_converged(twin, values, case_digest="sha256:0")
+    result = grade(twin, record)
+    assert (verdict(result), result.verification.criteria) == ("info", [])
+    assert result.verification.reason == "the converged values belong to another version of this case"
+    omitted = [{"quantity": "rms_20_50_N", "pantograph": 1, "reason": "the formulations differ by 2 %"}]
+    state_converged(twin, {}, omitted=omitted)
+    result = grade(twin, record)
+    assert verdict(result) == "info"
+    assert result.verification.omitted == ["rms_20_50_N of pantograph 1: the formulations differ by 2 %"]
 
 
-def test_record_at_the_converged_values_passes_and_the_criteria_stay_informative(
-    state_converged: StateConverged, twin: Case, record: Record, values: Values
-) -> None:
+def test_verified_record_passes(state_converged: StateConverged, twin: Case, record: Record, values: Values) -> None:
     state_converged(twin, values)
     result = grade(twin, record)
     assert verdict(result) == "pass", result.verification
@@ -129,6 +128,17 @@ def test_record_at_the_converged_values_passes_and_the_criteria_stay_informative
         (owner, name) for owner, quantities in values.items() for name in quantities
     }
     assert result.verification.confirmed_by == "finite differences"
+    state_converged(twin, values)
+    assert verdict(grade(twin, replace(record, contact_height=None))) == "unverified"
+    contradicted = grade(twin, replace(record, contact_height=2 * record.contact_height))
+    assert (contradicted.criteria_verdict, verdict(contradicted)) == ("error", "error")
+    assert contradicted.verification.criteria == []
+    # The converged solution has the same section, so that another section says nothing about the difference.
+    state_converged(twin, values)
+    sections = replace(twin, file=twin.file.model_copy(update={"compared_spans": (3, 8)}))
+    state_converged(sections, values)
+    rows = grade(sections, replace(record, evaluated=sections.analysis_section)).verification.criteria
+    assert {row.spread for row in rows} == {None}
 
 
 @pytest.mark.parametrize(
@@ -146,16 +156,6 @@ def test_every_verified_quantity_of_every_pantograph_can_fail(
     ]
 
 
-def test_unverified_and_contradicted_records_do_not_pass(
-    state_converged: StateConverged, twin: Case, record: Record, values: Values
-) -> None:
-    state_converged(twin, values)
-    assert verdict(grade(twin, replace(record, contact_height=None))) == "unverified"
-    contradicted = grade(twin, replace(record, contact_height=2 * record.contact_height))
-    assert (contradicted.criteria_verdict, verdict(contradicted)) == ("error", "error")
-    assert contradicted.verification.criteria == []
-
-
 @pytest.mark.parametrize(("outcome", "expected"), [(Skipped("not supported"), "skip"), (Errored("crash"), "error")])
 def test_case_without_a_result_is_not_verified(
     state_converged: StateConverged, twin: Case, values: Values, outcome: Skipped | Errored, expected: str
@@ -163,36 +163,6 @@ def test_case_without_a_result_is_not_verified(
     state_converged(twin, values)
     result = grade_case(twin, outcome, "secondary")
     assert (verdict(result), result.verification.reason) == (expected, outcome.reason)
-
-
-def test_values_of_another_version_of_the_case_do_not_count(
-    state_converged: StateConverged, twin: Case, record: Record, values: Values
-) -> None:
-    state_converged(twin, values, case_digest="sha256:0")
-    result = grade(twin, record)
-    assert (verdict(result), result.verification.criteria) == ("info", [])
-    assert result.verification.reason == "the converged values belong to another version of this case"
-
-
-def test_file_without_confirmed_values_gives_no_verdict(
-    state_converged: StateConverged, twin: Case, record: Record
-) -> None:
-    omitted = [{"quantity": "rms_20_50_N", "pantograph": 1, "reason": "the formulations differ by 2 %"}]
-    state_converged(twin, {}, omitted=omitted)
-    result = grade(twin, record)
-    assert verdict(result) == "info"
-    assert result.verification.omitted == ["rms_20_50_N of pantograph 1: the formulations differ by 2 %"]
-
-
-def test_spread_over_sections_does_not_make_a_verified_value_close(
-    state_converged: StateConverged, twin: Case, record: Record, values: Values
-) -> None:
-    """The converged solution has the same section, so that another section says nothing about the difference."""
-    state_converged(twin, values)
-    sections = replace(twin, file=twin.file.model_copy(update={"compared_spans": (3, 8)}))
-    state_converged(sections, values)
-    rows = grade(sections, replace(record, evaluated=sections.analysis_section)).verification.criteria
-    assert {row.spread for row in rows} == {None}
 
 
 def remove(record: Record, parts: tuple[str, ...]) -> Record:
@@ -204,8 +174,8 @@ def remove(record: Record, parts: tuple[str, ...]) -> Record:
             case "uplift":
                 record = replace(record, support_position=None, support_uplift=None)
             case "support":
-                kept = record.support_position != 300.0 if record.support_position is not None else None
-                if kept is not None:
+                if record.support_position is not None:
+                    kept = record.support_position != 300.0
                     position, uplift = record.support_position[kept], record.support_uplift[kept]
                     record = replace(record, support_position=position, support_uplift=uplift)
             case "samples":
@@ -258,19 +228,13 @@ def test_start_widens_a_limit_by_its_half_width_and_no_more(twin: Case) -> None:
     converged = converged.model_copy(update={"value": value})
     for limit in build_requirements(converged, is_static=False):
         other = include_start(limit, converged)
-        assert limit.lower is not None
-        assert limit.upper is not None
         width = widths[limit.quantity] or 0.0
         assert (other.lower, other.upper) == (limit.lower - width, limit.upper + width)
 
 
-def test_start_widens_the_limits_if_it_differs(
-    twin: Case, record: Record, values: Values, state_converged: StateConverged
-) -> None:
-    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then.
-
-    The certificate names the statement beside every widened limit, and where a criterion needs it.
-    """
+def test_other_start_widens_limits(twin: Case, record: Record, values: Values, state_converged: StateConverged) -> None:
+    """A force beyond 10 % in 20-50 Hz passes with another start whose half-width reaches it, and only then."""
+    # The certificate names the statement beside every widened limit, and where a criterion needs it.
     true = values[2]["rms_20_50_N"]
     converged = state_converged(twin, change(values, EXTENDED, true / 1.2))
     known = converged.model_copy(
@@ -284,7 +248,6 @@ def test_start_widens_the_limits_if_it_differs(
         for start in (None, expected, other):
             delivered = Delivered(record, case_digest=twin.digest, start=start)
             result = grade_case(twin, delivered, "secondary")
-            assert result.verification is not None
             verdicts[name, start], rows = result.verification.verdict, result.verification.criteria
             named[name, start] = {row.quantity for row in rows if "which is not checked" in (row.reason or "")}
             widened[name, start] = {row.quantity for row in rows if "widened for the start" in row.source}
@@ -292,11 +255,5 @@ def test_start_widens_the_limits_if_it_differs(
     assert {key: names for key, names in named.items() if names} == {("known", other): {EXTENDED[1]}}
     assert {key for key, names in widened.items() if names} == {("known", other)}
     assert widened["known", other] == set(VERIFIED_QUANTITIES) - {"elasticity_mm_N", "elasticity_non_uniformity_pct"}
-    assert verdicts == {
-        ("unknown", None): "fail",
-        ("unknown", expected): "fail",
-        ("unknown", other): "fail",
-        ("known", None): "fail",
-        ("known", expected): "fail",
-        ("known", other): "pass",
-    }
+    assert [key for key, value in verdicts.items() if value == "pass"] == [("known", other)]
+    assert set(verdicts.values()) == {"pass", "fail"}

@@ -16,7 +16,7 @@ def values(order: float, error: float) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.7, 2.0])
 @pytest.mark.parametrize("error", [0.3, -0.3])
-def test_half_width_of_an_observed_order_is_the_error_times_the_safety_factor(order: float, error: float) -> None:
+def test_observed_order_gives_the_error_times_the_safety_factor(order: float, error: float) -> None:
     """The extrapolation is exact for a pure power."""
     assert observed_order(*values(order, error)) == pytest.approx(order, rel=1e-9)
     assert discretisation_half_width(*values(order, error)) == pytest.approx(1.25 * 0.3, rel=1e-9)
@@ -43,27 +43,20 @@ def test_order_above_two_is_taken_as_two(order: float) -> None:
         (51.2, 50.0, 50.0, 0.9),  # no change on the finer mesh alone is no proof of convergence
     ],
 )
-def test_difference_without_an_observed_order_has_the_large_factor(
-    coarse: float, value: float, fine: float, half_width: float
-) -> None:
+def test_difference_without_an_order_counts_more(coarse: float, value: float, fine: float, half_width: float) -> None:
     assert discretisation_half_width(coarse, value, fine) == pytest.approx(half_width, rel=1e-9)
     assert discretisation_half_width(-coarse, -value, -fine) == pytest.approx(half_width, rel=1e-9)
 
 
-def test_two_meshes_have_the_large_factor() -> None:
+def test_two_meshes_have_the_large_factor_and_equal_values_no_uncertainty() -> None:
     assert discretisation_half_width(None, 50.0, 49.9) == pytest.approx(0.3, rel=1e-9)
-
-
-def test_equal_values_have_no_uncertainty() -> None:
     assert discretisation_half_width(0.0, 0.0, 0.0) == 0.0
     assert discretisation_half_width(None, 0.0, 0.0) == 0.0
 
 
 def test_interval_contains_the_limit_in_95_percent_of_noisy_sequences() -> None:
-    """Second order with a noise of 5 % of the error on every mesh, and a third-order part of up to half of it.
-
-    4000 sequences give the share within 0.7 % (two standard deviations).
-    """
+    """Second order with a noise of 5 % of the error on every mesh, and a third-order part of up to half of it."""
+    # 4000 sequences give the share within 0.7 % (two standard deviations).
     random = np.random.default_rng(3)
     contained = []
     for _ in range(4000):

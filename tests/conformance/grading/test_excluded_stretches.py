@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers.record_keys import record_keys
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import ExclusionRule, Profile, load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
@@ -36,25 +37,11 @@ def sidecar(tmp_path: Path) -> Path:
     columns = [TIME, POSITION, *forces, overlap]
     write_csv_table(tmp_path / "a.csv", ["t", "x", "F1", "F2", "overlap"], np.column_stack(columns), 9)
     (tmp_path / "a.toml").write_text("")
-    return edit_toml(
-        tmp_path / "a.toml",
-        {
-            "schema": "pantocheck.record/1",
-            "file": "a.csv",
-            "speed_km_h": 252.0,
-            "pantographs": 2,
-            "filter_applied_Hz": "none",
-            "spacing_m": [100.0],
-            "evaluated_m": [300.0, 2500.0],
-            "line": {"span_m": 61.0, "wave_speed_m_s": 120.0},
-            "columns": {
-                "time_s": {"column": "t", "unit": "s"},
-                "position_1_m": {"column": "x", "unit": "m"},
-                "force_1_N": {"column": "F1", "unit": "N"},
-                "force_2_N": {"column": "F2", "unit": "N"},
-            },
-        },
-    )
+    units = {"time_s": ("t", "s"), "position_1_m": ("x", "m"), "force_1_N": ("F1", "N"), "force_2_N": ("F2", "N")}
+    described = {key: {"column": name, "unit": unit} for key, (name, unit) in units.items()}
+    keys = record_keys(speed_km_h=252.0, pantographs=2, spacing_m=[100.0], evaluated_m=[300.0, 2500.0])
+    line = {"span_m": 61.0, "wave_speed_m_s": 120.0}
+    return edit_toml(tmp_path / "a.toml", keys | {"line": line, "columns": described})
 
 
 OVERLAP = {"kind": "overlap", "name": "U7", "from_m": 1140.0, "to_m": 1260.0, "exclude": "line test excludes overlaps"}
@@ -87,7 +74,6 @@ def test_permitted_exclusion_leaves_the_overlap_out_and_is_stated(sidecar: Path,
         assert "uninterrupted" in case.skipped[owner]["rms_5_20_N"]
     assert case.verdict == "pass"
     assert whole.verdict == "fail"
-    assert case.events is not None
     (fact,) = case.events
     assert (fact.kind, fact.excluded, fact.remark) == ("overlap", True, "line test excludes overlaps")
     assert fact.start_m == pytest.approx(1140, abs=0.2)
@@ -118,20 +104,17 @@ def test_library_profile_permits_no_exclusion(sidecar: Path) -> None:
         (("overlap",), 10.0, {"to_m": 1900.0}),
     ],
 )
-def test_exclusion_beyond_the_rule_is_not_applied(
-    sidecar: Path, kinds: tuple[str, ...], share: float, event: dict[str, Any]
-) -> None:
+def test_exclusion_beyond_the_rule(sidecar: Path, kinds: tuple[str, ...], share: float, event: dict[str, Any]) -> None:
     """Another kind, a larger share, no reason: the whole section is evaluated."""
     stated = {key: value for key, value in {**OVERLAP, **event}.items() if value is not None}
     edit_toml(sidecar, {"event": [stated]})
     case = assess(sidecar, own_profile(kinds, share))[1]
     assert float(case.quantities["1"]["std_force_N"]) > 30
     assert case.verdict == "fail"
-    assert case.events is not None
     assert not case.events[0].excluded
 
 
-def test_every_event_is_decided_by_itself() -> None:
+def test_every_event_is_decided_by_itself_and_overlapping_ones_count_once() -> None:
     """Two permitted stretches of 5 m in 100 m, one of another kind: 10 % are left out if the rule permits it."""
     stretches: list[tuple[EventKind, float]] = [("overlap", 10.0), ("tunnel", 20.0), ("overlap", 30.0)]
     events = [RecordEvent(kind, "", start, start + 5.0, "reason") for kind, start in stretches]
@@ -141,6 +124,7 @@ def test_every_event_is_decided_by_itself() -> None:
         assert found == excluded
         assert [fact.excluded for fact in facts] == [bool(excluded), False, bool(excluded)]
         assert any("the profile permits no exclusion of tunnel" in text for text in warnings)
+    assert covered_share([(0, 10), (5, 15), (90, 200)], (0.0, 100.0)) == pytest.approx(0.25)
 
 
 def test_kilometres_of_events_follow_the_direction(sidecar: Path) -> None:
@@ -153,7 +137,6 @@ def test_kilometres_of_events_follow_the_direction(sidecar: Path) -> None:
     lines = [",".join([row[0], f"{50000 - float(row[1]):.3f}", *row[2:]]) for row in rows]
     (sidecar.parent / "a.csv").write_text("\n".join([table[0], *lines]))
     case = assess(sidecar, load_profile("acceptance-ac"))[1]
-    assert case.events is not None
     places = [(event.kind, event.start_m, event.end_m) for event in case.events]
     assert places == [("switch", 1000.0, 1000.0), ("tunnel", pytest.approx(1100), pytest.approx(2000))]
 
@@ -172,7 +155,3 @@ def test_wrong_events_are_refused(sidecar: Path, event: dict[str, Any], message:
     edit_toml(sidecar, {"event": [event]})
     with pytest.raises(InputError, match=message):
         load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
-
-
-def test_overlapping_stretches_count_once() -> None:
-    assert covered_share([(0, 10), (5, 15), (90, 200)], (0.0, 100.0)) == pytest.approx(0.25)

@@ -26,14 +26,8 @@ QUANTITIES = ("damping_gain_fading_pct", "dropper_locked_force_pct", "damping_ri
 
 def build_limit(quantity: str, role: Role, trust: Any = "primary") -> Limit:
     """Limit of at most 10 that grades a finding."""
-    finding = PublishedFinding(
-        section="5.1",
-        sentence=f"Sentence on {quantity}.",
-        role=role,
-        printed="10 %",
-        tolerance="by choice",
-        sensitivity="it depends on the speed",
-    )
+    texts = {"section": "5.1", "printed": "10 %", "tolerance": "by choice", "sensitivity": "it depends on the speed"}
+    finding = PublishedFinding(sentence=f"Sentence on {quantity}.", role=role, **texts)
     return Limit(quantity=quantity, upper=10.0, trust=trust, source="vovan2015", finding=finding)
 
 
@@ -75,24 +69,18 @@ def results() -> dict[str, Any]:
     return build_results([case], SYSTEM, "primary", "2026-01-01T00:00:00Z").to_dict()
 
 
-def test_findings_are_counted_by_outcome(results: dict[str, Any]) -> None:
+def test_findings_are_counted_and_listed_with_the_reason_of_a_contradiction(results: dict[str, Any]) -> None:
     assert results["findings"] == {"imposed": 1, "reproduced": 1, "not_reproduced": 1, "not_evaluated": 1}
     sentence = "Findings: 1 imposed, 1 reproduced, 1 not reproduced, 1 not evaluated."
     assert sentence in build_headline(Results.model_validate(results))
     assert find_discrepancies(Results.model_validate(results)) == []
-
-
-def test_pages_list_every_finding_with_the_reason_of_a_contradiction(results: dict[str, Any]) -> None:
-    """The sensitivity explains a contradicted finding only."""
+    # The sensitivity explains a contradicted finding only.
     pages = (shown_certificate(results), render_markdown(build_summary(Results.model_validate(results))))
     for page in pages:
         assert page.count("it depends on the speed") == 1
         assert page.count("not reproduced") >= 2  # in the headline and in the table
     for name in QUANTITIES:
         assert f"Sentence on {name}." in pages[0]
-
-
-def test_contradicted_imposed_finding_keeps_its_role_on_the_page(results: dict[str, Any]) -> None:
     results["cases"][0]["criteria"][0]["finding"]["outcome"] = "not_reproduced"
     assert "imposed, not reproduced" in shown_certificate(results)
 
@@ -111,7 +99,7 @@ def test_falsified_finding_is_found(results: dict[str, Any], change: Any, found:
     assert any(found in text for text in find_discrepancies(Results.model_validate(results)))
 
 
-def test_limit_without_a_finding_keeps_its_digest() -> None:
+def test_digest_and_change_of_a_limit_follow_the_role_of_its_finding() -> None:
     """The digest of limits is stored with results; texts of a finding do not change it, its role does."""
     imposed, held_out = (build_limit(QUANTITIES[0], role) for role in ("imposed", "held_out"))
     bare = imposed.model_copy(update={"finding": None})
@@ -119,9 +107,6 @@ def test_limit_without_a_finding_keeps_its_digest() -> None:
     reworded = imposed.model_copy(update={"finding": imposed.finding.model_copy(update={"sentence": "Another."})})
     assert limits_digest([reworded]) == limits_digest([imposed])
     assert len({limits_digest([limit]) for limit in (imposed, held_out, bare)}) == 3
-
-
-def test_user_who_counts_an_imposed_finding_is_named() -> None:
     imposed, held_out = (build_limit(QUANTITIES[0], role) for role in ("imposed", "held_out"))
     assert "an imposed finding counts" in (describe_limit_change(imposed, held_out) or "")
     assert describe_limit_change(held_out, imposed) is None

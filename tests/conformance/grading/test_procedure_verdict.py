@@ -49,9 +49,7 @@ SPEEDS = claim("speed", claimed=(160.0, 200.0))
         ([], None),
     ],
 )
-def test_speeds_between_the_passed_runs_are_verified(
-    evidence: list[Evidence], verified: tuple[float, float] | None
-) -> None:
+def test_speeds_between_passed_runs(evidence: list[Evidence], verified: tuple[float, float] | None) -> None:
     judged = judge_claim(SPEEDS, [SPEEDS], evidence)
     assert judged.verdict == ("skip" if verified is None else "pass")
     assert (judged.reason is None) == (verified is not None)
@@ -69,13 +67,10 @@ def test_every_claimed_line_and_pantograph_needs_the_speeds() -> None:
     assert judge_claim(SPEEDS, both, [*evidence, run(4, 200, "B")]).verdict == "skip"
 
 
-def test_runs_on_other_lines_do_not_verify_a_line() -> None:
+def test_claims_on_lines_spacing_and_inputs_need_runs_that_have_them() -> None:
     line = claim("line", "A")
     assert judge_claim(line, [line], [run(1, 160, "B")]).verdict == "skip"
     assert judge_claim(line, [line], [run(1, 160, "A")]).evidence == ["pair/1"]
-
-
-def test_spacing_and_changed_inputs_need_runs_that_have_them() -> None:
     spacing = claim("spacing", claimed=(85.0, 200.0))
     single = [run(1, 160)]
     assert judge_claim(spacing, [spacing], single).verdict == "skip"
@@ -104,12 +99,18 @@ def build_procedure(**states: str) -> Procedure:
     return Procedure(title="Test", digest="sha256:0", steps=steps)
 
 
-def test_a_required_step_that_is_missing_prevents_a_pass() -> None:
+def test_missing_steps_prevent_a_pass_and_informative_ones_decide_nothing() -> None:
     """A step without criteria is `info`, one that was not done `skip`; `error` if its data could not be used."""
     for state, verdict in (("done", "info"), ("not done", "skip"), ("error", "error")):
         decided = decide_procedure(build_procedure(static_check=state), [], accepted=False)
         assert decided.steps[1].verdict == verdict
         assert judge_procedure(decided.steps) == verdict
+    steps = [
+        ProcedureStep(step="line_test", required=False, state="error", verdict="error"),
+        ProcedureStep(step="static_check", required=True, state="done", verdict="pass"),
+    ]
+    assert judge_procedure(steps) == "pass"
+    assert judge_procedure(steps[:1]) == "info"
 
 
 def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClaim:
@@ -141,15 +142,6 @@ def test_a_removed_step_never_improves_a_claim(first: Verdict, second: Verdict) 
     for name in STEP_NAMES[:-1]:
         after = judge_line({name: "not done"}, verdicts | {name: "skip"}).verdict
         assert WORST_FIRST.index(after) <= WORST_FIRST.index(before)
-
-
-def test_a_step_for_information_decides_nothing() -> None:
-    steps = [
-        ProcedureStep(step="line_test", required=False, state="error", verdict="error"),
-        ProcedureStep(step="static_check", required=True, state="done", verdict="pass"),
-    ]
-    assert judge_procedure(steps) == "pass"
-    assert judge_procedure(steps[:1]) == "info"
 
 
 def test_an_exact_value_on_its_limit_has_no_margin() -> None:

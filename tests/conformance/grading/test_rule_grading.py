@@ -22,15 +22,8 @@ REAR = {"mean_force_N": 122.0, "std_force_N": 36.0}
 
 def summary(path: Path, *pantographs: dict[str, float], **keys: Any) -> AssessedRecord:
     """Summary of a train at 250 km/h."""
-    content = {
-        "schema": "pantocheck.summary/1",
-        "speed_km_h": 250.0,
-        "filter_cutoff_Hz": 20.0,
-        "trust": "primary",
-        "source": f"report {path.stem}",
-        "pantograph": list(pantographs),
-    }
-    write_toml(path, content | keys)
+    content = {"schema": "pantocheck.summary/1", "speed_km_h": 250.0, "filter_cutoff_Hz": 20.0, "trust": "primary"}
+    write_toml(path, content | {"source": f"report {path.stem}", "pantograph": list(pantographs)} | keys)
     return load_assessed_record(path, load_profile("line-test"), LineTable())
 
 
@@ -53,16 +46,12 @@ def measured(tmp_path: Path) -> AssessedRecord:
     )
 
 
-def test_profile_without_a_comparison_refuses_a_measured_record(
-    train: AssessedRecord, measured: AssessedRecord
-) -> None:
+def test_profile_without_a_comparison(train: AssessedRecord, measured: AssessedRecord) -> None:
     with pytest.raises(InputError, match="does not compare with a measured record"):
         assess_record(train, load_profile("acceptance-ac"), "secondary", measured)
 
 
-def test_each_rule_applies_to_each_pantograph(
-    train: AssessedRecord, measured: AssessedRecord, profile: Profile
-) -> None:
+def test_each_rule_for_each_pantograph(train: AssessedRecord, measured: AssessedRecord, profile: Profile) -> None:
     """Tolerances of 2.5 N around 120 N, and of 20 % around 28 N of the front and 36 N of the rear."""
     case = assess_record(train, profile, "provisional", measured).cases[0]
     found = [(row.quantity, row.pantograph, row.lower, row.upper, row.verdict) for row in case.criteria]
@@ -75,11 +64,6 @@ def test_each_rule_applies_to_each_pantograph(
     assert [row.limit_uncertainty for row in case.criteria] == [0.0] * 4, "summaries have no uncertainty"
     assert case.criteria[1].source.endswith("tolerance 2.5 N around the measured value 120 of measured")
     assert case.criteria[3].source.endswith("tolerance 20 % around the measured value 36 of measured")
-
-
-def test_inputs_and_notes_of_both_records_are_stated(
-    train: AssessedRecord, measured: AssessedRecord, profile: Profile
-) -> None:
     case = assess_record(train, profile, "provisional", measured).cases[0]
     assert [(group.group, group.trust, group.source) for group in case.inputs] == [
         ("record train", "primary", "report train"),
@@ -89,19 +73,12 @@ def test_inputs_and_notes_of_both_records_are_stated(
         "train: train is a summary record: its values are graded as given.",
         "measured: measured is a summary record: its values are graded as given.",
     ]
-
-
-def test_note_of_the_profile_follows_those_of_the_records(
-    train: AssessedRecord, measured: AssessedRecord, profile: Profile
-) -> None:
     for note, stated in (("\nThe tolerances are provisional.\n", ["The tolerances are provisional."]), ("", [])):
         noted = profile.model_copy(update={"note": note})
         assert assess_record(train, noted, "provisional", measured).cases[0].notes[2:] == stated
 
 
-def test_limit_of_the_user_replaces_the_rule_of_its_pantograph(
-    train: AssessedRecord, measured: AssessedRecord, profile: Profile
-) -> None:
+def test_limit_of_the_user_replaces_its_rule(train: AssessedRecord, measured: AssessedRecord, profile: Profile) -> None:
     limit = Limit(quantity="std_force_N", pantograph=2, upper=50.0, trust="primary", source="own")
     case = assess_record(train, profile, "provisional", measured, [limit]).cases[0]
     found = [(row.quantity, row.pantograph, row.upper) for row in case.criteria]
@@ -116,9 +93,7 @@ def test_limit_of_the_user_replaces_the_rule_of_its_pantograph(
 
 
 @pytest.mark.parametrize("missing", [1, 2])
-def test_quantity_that_one_measured_pantograph_lacks_is_skipped(
-    train: AssessedRecord, tmp_path: Path, profile: Profile, missing: int
-) -> None:
+def test_missing_quantity_is_skipped(train: AssessedRecord, tmp_path: Path, profile: Profile, missing: int) -> None:
     pantographs = [dict(FRONT), dict(REAR)]
     pantographs[missing - 1] = {"mean_force_N": 120.0}
     other = summary(tmp_path / "other.toml", *(values | {"mean_force_N": 120.0} for values in pantographs))

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from helpers.converged_fixtures import StateConverged
+from helpers.short_cases import change_case
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.documents.recomputation import find_discrepancies
@@ -27,9 +28,7 @@ START: dict[str, Any] = {"place_m": 60.0, "ramp_m": 0.0, "state": "equilibrium_u
 
 
 def delivered(case: Case, start: StartTable | None) -> Delivered:
-    outcome = Wave().run(case)
-    assert isinstance(outcome, Delivered)
-    return replace(outcome, start=start)
+    return replace(Wave().run(case), start=start)
 
 
 @pytest.mark.parametrize(
@@ -46,13 +45,10 @@ def test_every_difference_is_named(case_250: Case, changes: dict[str, Any], text
     assert agreement.text == f"The start of the record differs: {text}."
 
 
-def test_same_start_within_a_decimetre(case_250: Case) -> None:
+def test_start_within_a_decimetre_is_that_of_the_last_pantograph(case_250: Case, two_pantograph_case: Case) -> None:
     """0.05 m lie inside the tolerance of 0.1 m."""
     agreement = compare_starts(case_250, StartTable(**(START | {"place_m": 60.05, "ramp_m": 0.05})))
     assert agreement.state == "as in the case"
-
-
-def test_start_of_a_train_is_that_of_its_last_pantograph(two_pantograph_case: Case) -> None:
     assert compare_starts(two_pantograph_case, StartTable(**START)).state == "as in the case"
     first = StartTable(**(START | {"place_m": two_pantograph_case.start_positions[0]}))
     assert "starts at 210 m, that of the case at 60 m" in compare_starts(two_pantograph_case, first).text
@@ -67,7 +63,6 @@ def test_stated_difference_can_make_a_verified_value_close(
     other = Delivered(Wave(mean=123.0).record(case_250))
     state_converged(case_250, {1: {"mean_force_N": 119.0}})
     result = grade_case(case_250, replace(run, starts=(other,)), "secondary")
-    assert result.verification is not None
     (row,) = result.verification.criteria
     assert (bool(row.close), "start" in row.components, row.verdict) == (close, close, "pass")
     assert_allclose((row.lower, row.upper), (119.0 - 1.309, 119.0 + 1.309), rtol=1e-12)
@@ -85,7 +80,6 @@ def test_stated_difference_can_make_a_verified_value_close(
 def test_result_shows_the_start(case_250: Case, start: StartTable | None, state: str, place: str | None) -> None:
     """A difference is a warning, silence is a note, and the verdict depends on neither."""
     result = grade_case(case_250, delivered(case_250, start), "secondary")
-    assert result.record is not None
     assert result.record.start == state
     shown = {name for name in ("warnings", "notes") if result.record.start_text in getattr(result, name)}
     assert shown == ({place} if place else set())
@@ -93,8 +87,7 @@ def test_result_shows_the_start(case_250: Case, start: StartTable | None, state:
 
 
 def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertainty(case_250: Case) -> None:
-    mesh = case_250.file.discretisation.model_copy(update={"element_m": 5.0, "time_step_s": 0.005})
-    coarse = replace(case_250, file=case_250.file.model_copy(update={"discretisation": mesh}))
+    coarse = change_case(case_250, mesh=(5.0, 0.005))
     run = ReferenceSimulator().run_unrefined(coarse)
     assert run.start == StartTable(**START)
     (effect,) = grade_case(coarse, run, "secondary").model_uncertainty
@@ -104,10 +97,8 @@ def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertai
 @pytest.mark.parametrize("start", [START, START | {"state": "other", "ramp_m": 12.5}, None])
 def test_start_of_a_sidecar_reaches_the_system(case_250: Case, tmp_path: Path, start: dict[str, Any] | None) -> None:
     record = delivered(case_250, None).record
-    assert record is not None
     write_record(tmp_path / "250.csv", record, case=case_250.id, further={"start": start})
     expected = None if start is None else StartTable(**start)
     assert read_record(tmp_path / "250.csv")[1].start == expected
     outcome = open_record_folder(tmp_path).run(case_250)
-    assert isinstance(outcome, Delivered)
     assert outcome.start == expected

@@ -1,5 +1,7 @@
 """Bands partition the variance: Parseval holds, sines fall into their band, unknown bands are rejected."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -46,17 +48,6 @@ def test_sine_falls_into_its_band_with_its_rms(frequency: float, band: int) -> N
     assert_allclose(values, expected, atol=1e-10)
 
 
-def test_bands_differ_from_the_filtered_deviation_by_its_roll_off_only() -> None:
-    """White noise through |H|^2 = 1/(1 + W^6)^2-like skirts: within 5 %, and equal without content near the cut-off."""
-    force = noise(5, 20_000)
-    brick = band_rms(force, RATE, 0, 20)
-    assert_allclose(Filter()(force, RATE).std(), brick, rtol=0.05)
-    time = np.arange(20_000) / RATE
-    slow = 120 + 20 * np.sin(2 * np.pi * 1.0 * time) + 10 * np.sin(2 * np.pi * 7.0 * time)
-    # Gain at 7 Hz is 1 - 0.5 (7/20)^6 (sqrt(2) - 1) ~ 0.999.
-    assert_allclose(Filter()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)
-
-
 @settings(max_examples=20)
 @given(seed=st.integers(0, 1000), scale=st.floats(0.01, 100), shift=st.floats(-1000, 1000))
 def test_band_scales_with_the_force_and_ignores_its_mean(seed: int, scale: float, shift: float) -> None:
@@ -64,73 +55,51 @@ def test_band_scales_with_the_force_and_ignores_its_mean(seed: int, scale: float
     assert_allclose(band_rms(scale * force + shift, RATE, 5, 20), scale * band_rms(force, RATE, 5, 20), rtol=1e-6)
 
 
-def test_band_needs_a_sufficient_rate() -> None:
-    with pytest.raises(
-        BandNotObservable, match="record has 100 samples per second; a band up to 50 Hz needs at least 125"
-    ):
-        band_rms(noise(1), 100.0, 20, 50)
+@pytest.mark.parametrize(
+    ("rate", "samples", "band", "applied", "message"),
+    [
+        (125.0, 2000, (20, 50), None, None),  # 50 Hz is 0.4 of 125 samples per second
+        (124.0, 2000, (20, 50), None, "record has 124 samples per second; a band up to 50 Hz needs at least 125"),
+        (RATE, 400, (0, 5), None, None),  # 5 Hz times 0.8 s: four spectral lines
+        (RATE, 399, (0, 5), None, "a band of 5 Hz needs at least"),
+        (RATE, 300, (0, 5), None, r"the analysis section lasts 0\.6 s; a band of 5 Hz needs at least 0\.8 s"),
+        (RATE, 2000, (5, 20), 20.0, None),
+        (RATE, 2000, (5, 20), (1 - CUTOFF_TOLERANCE) * 20, None),  # a thousandth for printed numbers
+        (RATE, 2000, (5, 20), 19.97, "which removed the band 5-20 Hz"),
+        (RATE, 2000, (20, 50), 20.0, "filtered at 20 Hz before delivery, which removed the band 20-50 Hz"),
+    ],
+)
+def test_band_needs_its_rate_its_length_and_no_filter_inside(
+    rate: float, samples: int, band: tuple[float, float], applied: float | None, message: str | None
+) -> None:
+    force = noise(1, samples)
+    error = AlreadyFiltered if applied else BandNotObservable
+    with nullcontext() if message is None else pytest.raises(error, match=message):
+        assert band_rms(force, rate, *band, applied) == band_rms(force, rate, *band) > 0
 
 
-def test_band_needs_a_sufficient_section() -> None:
-    with pytest.raises(
-        BandNotObservable, match=r"the analysis section lasts 0\.6 s; a band of 5 Hz needs at least 0\.8 s"
-    ):
-        band_rms(noise(1, 300), RATE, 0, 5)
-
-
-def test_band_above_a_filter_is_not_available() -> None:
-    with pytest.raises(AlreadyFiltered, match=r"filtered at 20 Hz before delivery, which removed the band 20-50 Hz"):
-        band_rms(noise(1), RATE, 20, 50, filter_applied_Hz=20.0)
-    assert band_rms(noise(1), RATE, 5, 20, filter_applied_Hz=20.0) > 0
-
-
-def test_spectrum_gives_the_amplitude_of_a_sine() -> None:
+def test_spectrum_has_every_line_with_the_amplitude_of_its_sine() -> None:
     time = np.arange(2000) / RATE
     frequency, amplitude = amplitude_spectrum(120 + 10 * np.sin(2 * np.pi * 12.5 * time), RATE, 50.0)
     assert frequency[0] > 0
     assert frequency[-1] <= 50.0
     assert_allclose(amplitude[np.argmax(amplitude)], 10.0, rtol=1e-12)
     assert frequency[np.argmax(amplitude)] == 12.5
-
-
-def test_bands_of_the_contract_have_no_gap() -> None:
-    """]0, 5], ]5, 20] and ]20, 50] Hz (Vo Van et al. 2015, Table 1); the names of the quantities state them."""
-    assert [tuple(band) for band in BANDS] == [(0, 5, "rms_0_5_N"), (5, 20, "rms_5_20_N"), (20, 50, "rms_20_50_N")]
-
-
-@pytest.mark.parametrize(("rate", "known"), [(125.0, True), (124.0, False)])
-def test_band_is_known_up_to_two_fifths_of_the_rate(rate: float, known: bool) -> None:
-    """50 Hz is 0.4 of 125 samples per second."""
-    if known:
-        assert band_rms(noise(1), rate, 20, 50) > 0
-    else:
-        with pytest.raises(BandNotObservable):
-            band_rms(noise(1), rate, 20, 50)
-
-
-@pytest.mark.parametrize(("samples", "known"), [(400, True), (399, False)])
-def test_band_needs_four_spectral_lines(samples: int, known: bool) -> None:
-    """5 Hz times 0.8 s."""
-    if known:
-        assert band_rms(noise(1, samples), RATE, 0, 5) > 0
-    else:
-        with pytest.raises(BandNotObservable):
-            band_rms(noise(1, samples), RATE, 0, 5)
-
-
-@pytest.mark.parametrize(("applied", "known"), [(19.97, False), ((1 - CUTOFF_TOLERANCE) * 20, True), (20.0, True)])
-def test_filter_at_the_edge_leaves_the_band(applied: float, known: bool) -> None:
-    """A thousandth for printed numbers."""
-    if known:
-        assert band_rms(noise(1), RATE, 5, 20, applied) == band_rms(noise(1), RATE, 5, 20)
-    else:
-        with pytest.raises(AlreadyFiltered):
-            band_rms(noise(1), RATE, 5, 20, applied)
-
-
-def test_spectrum_holds_every_line_up_to_its_end() -> None:
-    """4 s give lines every 0.25 Hz; the end itself belongs to the spectrum, the mean does not."""
+    # 4 s give lines every 0.25 Hz; the end itself belongs to the spectrum, the mean does not.
     frequency, amplitude = amplitude_spectrum(noise(1), RATE, 50.0)
     assert_allclose(frequency, 0.25 * np.arange(1, 201), rtol=1e-12)
     inside = np.sqrt(np.sum(amplitude**2) / 2)
     assert_allclose(inside, band_rms(noise(1), RATE, 0, 50), rtol=1e-12)
+
+
+def test_bands_of_the_contract_have_no_gap_and_no_roll_off() -> None:
+    """]0, 5], ]5, 20] and ]20, 50] Hz (Vo Van et al. 2015, Table 1); the names of the quantities state them."""
+    assert [tuple(band) for band in BANDS] == [(0, 5, "rms_0_5_N"), (5, 20, "rms_5_20_N"), (20, 50, "rms_20_50_N")]
+    # White noise through |H|^2 = 1/(1 + W^6)^2-like skirts: within 5 %, and equal without content near the cut-off.
+    force = noise(5, 20_000)
+    brick = band_rms(force, RATE, 0, 20)
+    assert_allclose(Filter()(force, RATE).std(), brick, rtol=0.05)
+    time = np.arange(20_000) / RATE
+    slow = 120 + 20 * np.sin(2 * np.pi * 1.0 * time) + 10 * np.sin(2 * np.pi * 7.0 * time)
+    # Gain at 7 Hz is 1 - 0.5 (7/20)^6 (sqrt(2) - 1) ~ 0.999.
+    assert_allclose(Filter()(slow, RATE)[5000:15_000].std(), band_rms(slow, RATE, 0, 20), rtol=1e-3)

@@ -30,9 +30,7 @@ numbers = st.floats(-1e6, 1e6)
         (None, 1.0165, "<= 1.0165", "≤ 1.0165"),
     ],
 )
-def test_bounds_have_one_text_with_ascii_or_typographic_signs(
-    lower: float | None, upper: float | None, text: str, page: str
-) -> None:
+def test_bounds_have_one_text(lower: float | None, upper: float | None, text: str, page: str) -> None:
     assert format_bounds(lower, upper) == text
     assert format_beside_limits(None, lower, upper) == ("–", page)
 
@@ -79,11 +77,8 @@ def test_margin_is_never_rounded_to_zero(margin: float, shown: str) -> None:
     assert format_margin(margin) == shown
 
 
-def test_rounded_number_has_no_final_point() -> None:
+def test_rounded_number_has_no_final_point_and_an_item_stands_in_brackets() -> None:
     assert (format_rounded(1234.5), format_rounded(119.71234, 2)) == ("1234", "1.2e+02")
-
-
-def test_item_of_a_quantity_stands_in_brackets() -> None:
     assert name_value("std_force_N", None) == "std_force_N"
     assert name_value("damping_ratio", 2) == "damping_ratio[2]"
 
@@ -99,8 +94,6 @@ def test_item_of_a_quantity_stands_in_brackets() -> None:
         (None, None, None, "-"),
     ],
 )
-def test_margin_beside_a_limit_of_zero_has_its_unit(
-    margin: float | None, lower: float | None, upper: float | None, shown: str
-) -> None:
+def test_margin_at_zero_has_a_unit(margin: float | None, lower: float | None, upper: float | None, shown: str) -> None:
     """A limit of zero alone gives no scale: the margin is the distance, as in `grading.verdicts.margin`."""
     assert format_criterion_margin(margin, lower, upper, "N") == shown

@@ -44,11 +44,13 @@ def test_section_without_an_overlap_has_no_such_quantities(overlaps: list[tuple[
     assert evaluate_outside_overlaps(signals(), overlaps) == ({1: {}}, {1: {}})
 
 
-def test_section_inside_an_overlap_is_skipped_with_the_reason() -> None:
+def test_section_without_an_overlap_or_inside_one_has_no_values() -> None:
     values, skipped = evaluate_outside_overlaps(signals((200.0, 250.0)), [(150.0, 300.0)])
     assert values == {1: {}}
     assert set(skipped[1].values()) == {"the whole analysis section lies inside overlaps or excluded stretches"}
     assert len(skipped[1]) == len(OVERLAP_QUANTITIES)
+    assert name_outside_overlaps("contact_loss_pct") == "contact_loss_outside_overlaps_pct"
+    assert {QUANTITIES[quantity.name].unit for quantity in OVERLAP_QUANTITIES} == {"N", "%"}
 
 
 def test_record_has_them_beside_the_quantities_of_the_whole_section() -> None:
@@ -62,8 +64,3 @@ def test_record_has_them_beside_the_quantities_of_the_whole_section() -> None:
     shifted = stretched.evaluate_section((150.0, 500.0)).values[1]
     expected, _ = evaluate_outside_overlaps(signals((150.0, 500.0)), [(195.0, 265.0)])
     assert {name: shifted[name] for name in expected[1]} == expected[1]
-
-
-def test_names_keep_the_unit_at_the_end() -> None:
-    assert name_outside_overlaps("contact_loss_pct") == "contact_loss_outside_overlaps_pct"
-    assert {QUANTITIES[quantity.name].unit for quantity in OVERLAP_QUANTITIES} == {"N", "%"}

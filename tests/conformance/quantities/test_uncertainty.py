@@ -16,7 +16,7 @@ BOTH = Uncertainty(
 )
 
 
-def test_components_combine_by_the_root_of_the_sum_of_squares() -> None:
+def test_components_combine_and_an_unknown_one_has_no_number() -> None:
     """3-4-5; each item of a quantity with several values on its own; a half-width that is not finite is unknown."""
     combined = BOTH.combined
     assert combined[2] == {"std_force_N": pytest.approx(0.5, rel=1e-12), "mean_force_N": 1.5}
@@ -24,9 +24,6 @@ def test_components_combine_by_the_root_of_the_sum_of_squares() -> None:
     assert combined[1] == {}
     assert BOTH.list_components(2, "std_force_N") == {"discretisation": 0.3, "length": 0.4}
     assert BOTH.list_components(3, "std_force_N") == {}
-
-
-def test_unknown_component_is_named_and_has_no_number() -> None:
     assert BOTH.basis["start"] == "not known: one start"
     parts = list_components(BOTH)
     assert parts["2"]["std_force_N"] == {"discretisation": 0.3, "length": 0.4}
@@ -35,13 +32,10 @@ def test_unknown_component_is_named_and_has_no_number() -> None:
     assert not BOTH.combined[1]
 
 
-def test_one_more_component_never_narrows_the_interval() -> None:
+def test_items_are_combined_one_by_one_and_never_narrow_the_interval() -> None:
     assert combine_half_widths({"start": 2.0, "length": 0.0}) == 2.0
     assert combine_half_widths({"start": (2.0, 1.0), "length": (0.0, 1.0)}) == (2.0, math.sqrt(2))
     assert combine_half_widths({}) == 0.0
-
-
-def test_items_are_combined_one_by_one_and_must_agree_in_number() -> None:
     assert map_items(lambda a, b: a - b, (3.0, 5.0), (1.0, 2.0)) == (2.0, 3.0)
     assert map_items(lambda a: -a, 3.0) == -3.0
     with pytest.raises(ValueError, match="zip"):

@@ -8,7 +8,7 @@ import pytest
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
-from pantocheck.conformance.records.force_checks import detect_filtered, find_outliers
+from pantocheck.conformance.records.force_checks import detect_filtered, find_clipping, find_outliers
 
 
 def place_outlier(force: RealArray, index: int, distance: float) -> RealArray:
@@ -21,8 +21,7 @@ def place_outlier(force: RealArray, index: int, distance: float) -> RealArray:
 
 @pytest.mark.parametrize(("factor", "count"), [(11.9, 0), (12.1, 1)])
 def test_outlier_is_twelve_standard_deviations_from_the_running_median(factor: float, count: int) -> None:
-    """The standard deviation of the distance is estimated by 1.4826 times its median, here 12 N: one sample of 2000
-    changes this median by less than a thousandth."""
+    """Deviation of the distance: 1.4826 times its median, which one of 2000 samples changes by a thousandth."""
     force = np.random.default_rng(1).normal(120, 15, 2000)
     windows = np.lib.stride_tricks.sliding_window_view(force, 7)
     deviation = 1.4826 * np.median(np.abs(force[3:-3] - np.median(windows, axis=1)))
@@ -39,7 +38,7 @@ def test_outlier_of_a_smooth_force_is_at_least_fifty_newtons_away(distance: floa
 
 
 @pytest.mark.parametrize(("index", "found"), [(2, False), (3, True), (6, True), (7, False)])
-def test_outlier_has_three_neighbours_on_both_sides(index: int, found: bool) -> None:
+def test_outlier_has_neighbours(index: int, found: bool) -> None:
     """Ten samples: the running median is not known at the first and the last three."""
     force = np.full(10, 120.0)
     force[index] = 900.0
@@ -85,9 +84,7 @@ def signals(*tones: tuple[float, float], rate: float = 500.0, seconds: float = 2
         ([(10, 0)], False),
     ],
 )
-def test_force_without_content_above_30_Hz_is_taken_as_filtered(
-    tones: list[tuple[float, float]], detected: bool
-) -> None:
+def test_force_without_content_above_30_Hz_is_filtered(tones: list[tuple[float, float]], detected: bool) -> None:
     original = signals(*tones)
     changed, warnings = detect_filtered(original, "pantograph 2")
     assert changed.filter_applied_Hz == (20.0 if detected else None)
@@ -97,25 +94,55 @@ def test_force_without_content_above_30_Hz_is_taken_as_filtered(
     assert (changed is original) is not detected
 
 
-def test_warning_states_both_values() -> None:
-    """A tone of amplitude a has an RMS of a / sqrt(2): 14.1 N and 0.71 N."""
-    _, (warning,) = detect_filtered(signals((10, 20), (40, 1)), "pantograph 1")
-    assert "(0.71 N, but 14.1 N at 5-20 Hz): it counts as low-pass filtered at 20 Hz" in warning
-
-
 @pytest.mark.parametrize(("rate", "detected"), [(124.0, False), (125.0, True)])
 def test_band_up_to_50_Hz_needs_125_samples_per_second(rate: float, detected: bool) -> None:
     changed, _ = detect_filtered(signals((10, 20), rate=rate), "pantograph 1")
     assert (changed.filter_applied_Hz is not None) is detected
 
 
-def test_stated_filter_is_kept() -> None:
+def test_stated_filter_is_kept_and_a_short_section_is_one_window() -> None:
     original = signals((10, 20))
     stated = replace(original, force=replace(original.force, filter_applied_Hz=40.0))
     assert detect_filtered(stated, "pantograph 1") == (stated, [])
-
-
-def test_section_shorter_than_the_window_is_one_window() -> None:
-    """1.5 s are three quarters of a window of 2 s."""
+    # 1.5 s are three quarters of a window of 2 s.
     changed, _ = detect_filtered(signals((10, 20), seconds=1.5), "pantograph 1")
     assert changed.filter_applied_Hz == 20.0
+    # A tone of amplitude a has an RMS of a / sqrt(2): 14.1 N and 0.71 N.
+    _, (warning,) = detect_filtered(signals((10, 20), (40, 1)), "pantograph 1")
+    assert "(0.71 N, but 14.1 N at 5-20 Hz): it counts as low-pass filtered at 20 Hz" in warning
+
+
+# Clipping: flat tops of at least four equal samples, far from the median.
+
+
+@pytest.mark.parametrize(
+    ("places", "found"),
+    [
+        ([(10, 13)], []),
+        ([(10, 14)], [(10, 14)]),
+        ([(0, 4), (96, 100)], [(0, 4), (96, 100)]),
+        ([(40, 45), (20, 23), (60, 70)], [(40, 45), (60, 70)]),
+    ],
+)
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_flat_top_has_four_samples(places: list[tuple[int, int]], found: list[tuple[int, int]], sign: int) -> None:
+    """A ramp between -1 and 1 whose samples are all different, with plateaus at its largest or smallest value."""
+    signal = np.random.default_rng(4).permutation(np.linspace(-1, 1, 100))
+    for start, end in places:
+        signal[start:end] = 2 * sign
+    assert find_clipping(signal) == found
+
+
+def test_tops_and_bottoms_follow_each_other_in_time() -> None:
+    signal = np.random.default_rng(4).permutation(np.linspace(-1, 1, 100))
+    signal[20:26], signal[10:15], signal[50:54] = 2.0, -2.0, 2.0
+    assert find_clipping(signal) == [(10, 15), (20, 26), (50, 54)]
+
+
+@pytest.mark.parametrize(("floor", "clipped"), [(-0.9, False), (-1.1, True)])
+def test_flat_bottom_near_the_median_is_the_noise_floor(floor: float, clipped: bool) -> None:
+    """The median is 0. A fifth of the range is 0.98 for values of -0.9 to 4, and 1.02 for values of -1.1 to 4."""
+    signal = np.concatenate([np.full(6, floor), np.linspace(-0.8, -1e-3, 44), np.linspace(1e-3, 4, 51)])
+    signal[50] = 0.0
+    assert np.median(signal) == 0.0
+    assert find_clipping(signal) == ([(0, 6)] if clipped else [])

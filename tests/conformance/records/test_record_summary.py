@@ -21,14 +21,8 @@ from pantocheck.conformance.runs.system_choice import choose_system
 PASSING = library_folder() / "en50318-2002" / "known-passing-code"
 SPEEDS = ("250", "300")
 QUANTITIES = (
-    "mean_force_N",
-    "std_force_N",
-    "statistical_max_N",
-    "statistical_min_N",
-    "max_force_N",
-    "min_force_N",
-    "max_uplift_at_support_mm",
-    "contact_loss_pct",
+    *("mean_force_N", "std_force_N", "statistical_max_N", "statistical_min_N", "max_force_N", "min_force_N"),
+    *("max_uplift_at_support_mm", "contact_loss_pct"),
 )
 
 
@@ -70,35 +64,12 @@ def test_value_just_outside_its_limit_fails_only_that_criterion(speed: str, quan
         assert sum(item.verdict == "pass" for item in result.criteria) == 7
 
 
-def test_missing_quantity_is_skipped(tmp_path: Path) -> None:
-    change_summary(tmp_path, {"pantograph.0.max_force_N": None})
-    result = grade(tmp_path)
-    assert result.verdict == "skip"
-    (skipped,) = (item for item in result.criteria if item.verdict == "skip")
-    assert (skipped.quantity, skipped.reason) == ("max_force_N", "the summary does not state this quantity")
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"speed_km_h": 300.0}, "was made at 300 km/h, the case runs at 250 km/h"),
-        ({"filter_cutoff_Hz": 50.0}, "has a filter of 50 Hz, the case requires 20 Hz"),
-        ({"pantograph": [{"mean_force_N": 118.0}, {"mean_force_N": 1.0}]}, "has 2 pantographs, the case has 1"),
-        ({"evaluated_m": [0.0, 60.0]}, "evaluates 0 m to 60 m, the case 240 m to 360 m"),
-    ],
-)
-def test_summary_of_another_case_is_an_error(changes: dict[str, Any], message: str, tmp_path: Path) -> None:
-    change_summary(tmp_path, changes)
-    result = grade(tmp_path)
-    assert result.verdict == "error"
-    assert message in (result.reason or "")
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"pantograph.0.std_force_kN": 0.0276}, r"pantograph\[1\].std_force_kN: not a quantity of this table"),
         ({"pantograph.0.std_force_N": -27.6}, "-27.6 is negative"),
+        ({"pantograph.0.std_force_50_N": -1.0}, "-1 is negative"),
         ({"pantograph.0.std_force_N": math.nan}, "not a finite number"),
         ({"pantograph.0.std_force_N": "27.6"}, "found '27.6', expected a number"),
         ({"pantograph.0.contact_loss_pct": 101.0}, "101 % is above 100 %"),
@@ -106,6 +77,7 @@ def test_summary_of_another_case_is_an_error(changes: dict[str, Any], message: s
         ({"quantities": {"mean_force_N": 52.2}}, r"quantities.mean_force_N: not a quantity of this table"),
         ({"pantograph": None, "pantographs": []}, "key pantographs: unknown key.\n  Did you mean pantograph"),
         ({"source": None}, "key source: missing, although the trust is"),
+        ({"evaluated_m": [360.0, 360.0]}, "the end is not greater than the start"),
     ],
 )
 def test_impossible_summary_is_refused_with_its_key(changes: dict[str, Any], message: str, tmp_path: Path) -> None:
@@ -117,7 +89,6 @@ def test_impossible_summary_is_refused_with_its_key(changes: dict[str, Any], mes
 @pytest.mark.parametrize(("speed", "mean", "std"), [("250", 118.2, 27.6), ("300", 118.7, 32.8)])
 def test_shipped_numbers_are_the_published_ones(speed: str, mean: float, std: float) -> None:
     summary = open_record(PASSING / f"{speed}.toml")
-    assert isinstance(summary, RecordSummary)
     assert (summary.pantograph[0]["mean_force_N"], summary.pantograph[0]["std_force_N"]) == (mean, std)
 
 
@@ -135,38 +106,37 @@ def test_statistic_beyond_the_rounding_of_print_is_a_contradiction(
     for factor, contradicts in ((0.99, False), (1.01, True)):
         tables[number - 1][quantity] = expected + sign * factor * tolerance
         summary = open_record(change_summary(tmp_path, {"pantograph": tables}))
-        assert isinstance(summary, RecordSummary)
         assert len(summary.contradictions) == contradicts
         assert all(text.startswith(f"{quantity} of pantograph {number} is ") for text in summary.contradictions)
 
 
-@pytest.mark.parametrize("missing", ["mean_force_N", "std_force_N"])
-def test_statistics_need_mean_and_deviation_for_a_comparison(missing: str, tmp_path: Path) -> None:
-    table = {"mean_force_N": 118.0, "std_force_N": 30.0, "statistical_max_N": 300.0}
-    del table[missing]
-    summary = open_record(change_summary(tmp_path, {"pantograph": [table]}))
-    assert isinstance(summary, RecordSummary)
-    assert summary.contradictions == ()
+@pytest.mark.parametrize(
+    "table",
+    [
+        {"std_force_N": 30.0, "statistical_max_N": 300.0},
+        {"mean_force_N": 118.0, "statistical_max_N": 300.0},
+        {"mean_force_N": 0.0, "std_force_N": 30.0, "cov_20": 9.0},
+        {"mean_force_N": -5.0, "std_force_N": 30.0, "cov_20": 9.0},
+    ],
+)
+def test_comparison_needs_a_deviation_and_a_positive_mean(table: dict[str, float], tmp_path: Path) -> None:
+    assert open_record(change_summary(tmp_path, {"pantograph": [table]})).contradictions == ()
 
 
-@pytest.mark.parametrize("mean", [0.0, -5.0])
-def test_variation_about_no_mean_force_is_not_compared(mean: float, tmp_path: Path) -> None:
-    table = {"mean_force_N": mean, "std_force_N": 30.0, "cov_20": 9.0}
-    summary = open_record(change_summary(tmp_path, {"pantograph": [table]}))
-    assert isinstance(summary, RecordSummary)
-    assert summary.contradictions == ()
-
-
-def test_quantities_of_each_pantograph_and_of_the_line_stay_apart(tmp_path: Path) -> None:
+def test_statistics_of_each_pantograph_stay_apart_and_a_missing_one_is_skipped(tmp_path: Path) -> None:
     tables = [{"mean_force_N": 118.0}, {"std_force_N": 30.0}]
     changes = {"pantograph": tables, "quantities": {"max_uplift_at_support_mm": 52.0, "wave_speed_m_s": 120.0}}
     summary = open_record(change_summary(tmp_path, changes))
-    assert isinstance(summary, RecordSummary)
     evaluation = summary.evaluation
     assert evaluation.values == {0: changes["quantities"], 1: tables[0], 2: tables[1]}
     assert "max_uplift_at_support_mm" not in evaluation.skipped[0]
     assert "mean_force_N" not in evaluation.skipped[1]
     assert evaluation.skipped[2]["mean_force_N"] == "the summary does not state this quantity"
+    change_summary(tmp_path, {"pantograph.0.max_force_N": None})
+    result = grade(tmp_path)
+    assert result.verdict == "skip"
+    (skipped,) = (item for item in result.criteria if item.verdict == "skip")
+    assert (skipped.quantity, skipped.reason) == ("max_force_N", "the summary does not state this quantity")
 
 
 @pytest.mark.parametrize(
@@ -181,11 +151,6 @@ def test_quantities_of_each_pantograph_and_of_the_line_stay_apart(tmp_path: Path
 )
 def test_values_at_a_bound_are_possible(changes: dict[str, Any], tmp_path: Path) -> None:
     assert isinstance(open_record(change_summary(tmp_path, changes)), RecordSummary)
-
-
-def test_empty_section_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="the end is not greater than the start"):
-        open_record(change_summary(tmp_path, {"evaluated_m": [360.0, 360.0]}))
 
 
 @pytest.mark.parametrize(("schema", "found"), [(None, "missing"), (3, "found '3'"), ("x" * 70, f"found '{'x' * 60}'")])

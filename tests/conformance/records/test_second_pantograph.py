@@ -52,8 +52,16 @@ def contradictions(case: Case, record: Record) -> dict[str, str]:
     return {name: finding.text for name, finding in findings.items() if finding.kind == "contradiction"}
 
 
-def test_record_without_fault_has_no_finding(two_pantograph_case: Case, record: Record) -> None:
+def test_doubt_of_the_first_hides_no_contradiction(two_pantograph_case: Case, record: Record) -> None:
     assert check_record(two_pantograph_case, RecordSignals(record, two_pantograph_case.file.filter)) == {}
+    # Noise of the first at which the roll-off is doubted, five times this noise in the second.
+    weak = 0.75 / 4.3  # At full noise, the implied content is 4.3 times that below the cut-off; 0.5 to 1 is a doubt.
+    stated = replace(record, filter_applied_Hz=20.0)
+    doubted = change(stated, "force", 0, lambda force: force + weak * NOISE[: force.size])
+    low_pass = two_pantograph_case.file.filter
+    assert check_record(two_pantograph_case, RecordSignals(doubted, low_pass))["roll-off"].kind == "doubt"
+    both = change(doubted, "force", 1, lambda force: force + 5 * weak * NOISE[: force.size])
+    assert "pantograph 2" in contradictions(two_pantograph_case, both)["roll-off"]
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -63,16 +71,3 @@ def test_fault_of_one_pantograph_is_found(two_pantograph_case: Case, record: Rec
     ((name, text),) = contradictions(two_pantograph_case, damage(record, row)).items()
     assert name == check
     assert f"pantograph {row + 1}" in text
-
-
-def test_doubt_of_the_first_pantograph_does_not_hide_a_contradiction_of_the_second(
-    two_pantograph_case: Case, record: Record
-) -> None:
-    """Noise of the first at which the roll-off is doubted, five times this noise in the second."""
-    weak = 0.75 / 4.3  # At full noise, the implied content is 4.3 times that below the cut-off; 0.5 to 1 is a doubt.
-    stated = replace(record, filter_applied_Hz=20.0)
-    doubted = change(stated, "force", 0, lambda force: force + weak * NOISE[: force.size])
-    low_pass = two_pantograph_case.file.filter
-    assert check_record(two_pantograph_case, RecordSignals(doubted, low_pass))["roll-off"].kind == "doubt"
-    both = change(doubted, "force", 1, lambda force: force + 5 * weak * NOISE[: force.size])
-    assert "pantograph 2" in contradictions(two_pantograph_case, both)["roll-off"]

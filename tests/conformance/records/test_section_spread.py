@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.wave_system import Wave
+from helpers.wave_system import Wave, cut_bare
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
@@ -24,41 +24,26 @@ def growing(case_250: Case, wave: type[Wave]) -> tuple[Case, Record]:
     return case, replace(record, force=record.force + record.position / case.line.geometry.span_m)
 
 
-def test_sections_are_shifted_span_by_span(growing: tuple[Case, Record]) -> None:
+def test_spread_is_the_largest_difference_over_shifted_sections(growing: tuple[Case, Record]) -> None:
     case, _ = growing
     assert case.analysis_section == (240.0, 360.0)
     assert case.shifted_sections == tuple((60.0 * n, 60.0 * (n + 2)) for n in (2, 3, 4, 5, 6))
     assert case.recorded_section == (120.0, 480.0)
     assert case.end >= 480.0
-
-
-def test_spread_is_the_largest_difference(growing: tuple[Case, Record]) -> None:
-    """Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N."""
+    # Spans 3-4 to 7-8 about 5-6: two spans, 2 N, either way; a sample of 0.07 m more or less gives 1e-3 N.
     case, record = growing
     spread = section_spread(RecordSignals(record, case.file.filter), case.shifted_sections)
     assert spread[1]["mean_force_N"] == pytest.approx(2.0, abs=5e-3)
     assert spread[1]["contact_loss_pct"] == 0.0
-
-
-def test_record_that_covers_too_few_sections_has_no_spread(growing: tuple[Case, Record]) -> None:
     case, record = growing
     inside = (record.position[0] >= 200) & (record.position[0] < 400)
-    short = replace(
-        record,
-        time=record.time[inside],
-        position=record.position[:, inside],
-        force=record.force[:, inside],
-        contact_height=None,
-        support_position=None,
-        support_uplift=None,
-    )
+    short = cut_bare(record, inside)
     assert section_spread(RecordSignals(short, case.file.filter), case.shifted_sections) == {}
 
 
-def test_value_closer_to_a_limit_than_the_change_between_sections_is_marked(growing: tuple[Case, Record]) -> None:
+def test_value_closer_to_a_limit_than_the_spread_is_marked(growing: tuple[Case, Record]) -> None:
     case, record = growing
     value = evaluate_record(record, case.file.filter).values[1]["mean_force_N"]
-    assert isinstance(value, float)
     limit = Limit(quantity="mean_force_N", lower=value - 1.0, upper=value + 50, trust="secondary", source="test")
     result = grade_case(replace(case, limits=(limit,)), Delivered(record), "secondary")
     (row,) = result.criteria
@@ -67,7 +52,6 @@ def test_value_closer_to_a_limit_than_the_change_between_sections_is_marked(grow
     assert row.components == pytest.approx({"start": 2.0, "section": 1.25 * 0.75}, abs=5e-3)
     assert any("less than its uncertainty of 2.2 N (mostly start)" in remark for remark in row.close)
     remark = remark_shift(row)
-    assert remark is not None
     assert remark.startswith("changes by up to 2.0 N when the analysis section")
 
 

@@ -18,40 +18,31 @@ def signals(**changes: Any) -> RecordSignals:
     """100 s with a sine of 10 N at 12.38 Hz, one spectral line of thousands."""
     time = np.arange(20_000) / RATE
     force = 120 + 10 * np.sin(2 * np.pi * 12.38 * time)
-    channels = {
-        "time": time,
-        "speed": SPEED,
-        "position": SPEED * time[None],
-        "force": force[None],
-        "evaluated": (0.0, 5000.0),
-    }
-    return RecordSignals(Record(**(channels | changes)), Filter())
+    channels = {"time": time, "position": SPEED * time[None], "force": force[None], "evaluated": (0.0, 5000.0)}
+    return RecordSignals(Record(**{"speed": SPEED, **channels, **changes}), Filter())
 
 
-def test_thinned_spectrum_keeps_its_peak() -> None:
+def test_thinned_series_and_spectrum_keep_the_peak() -> None:
     traces = build_pantograph_traces(signals().pantographs, [0.0, 50.0])["1"]
     spectrum = traces.spectrum
     assert len(spectrum.frequency_Hz) <= MAX_POINTS
     assert_allclose(max(spectrum.amplitude_N), 10.0, rtol=1e-5)
     assert spectrum.frequency_Hz[int(np.argmax(spectrum.amplitude_N))] == 12.38
     assert len(traces.position_m) == len(traces.force_N) <= MAX_POINTS
-    assert traces.histogram is not None
     assert_allclose(sum(traces.histogram.share_pct), 100, rtol=1e-4)  # six digits each
-
-
-def test_spectrum_ends_where_the_force_was_filtered() -> None:
-    traces = build_pantograph_traces(signals(filter_applied_Hz=20.0).pantographs, [])["1"]
-    assert max(traces.spectrum.frequency_Hz) <= 20
-
-
-def test_section_that_is_not_covered_has_no_traces() -> None:
-    assert build_pantograph_traces(signals(evaluated=(0.0, 9000.0)).pantographs, []) == {}
-    assert build_uplift_traces(signals()) == []
-
-
-def test_series_are_rounded_and_thinned() -> None:
     assert thin_series(np.array([1 / 3])) == [0.333333]
     assert thin_series(np.arange(3001.0)) == list(range(0, 3001, 3))
+    # 15 000 samples: every tenth one.
+    item = signals(evaluated=(0.0, 3750.0))
+    trace = build_pantograph_traces(item.pantographs, [])["1"]
+    assert_allclose(trace.position_m, SPEED * np.arange(0, 15_000, 10) / RATE, rtol=1e-5)
+
+
+def test_filtered_force_or_uncovered_section_has_less_to_draw() -> None:
+    traces = build_pantograph_traces(signals(filter_applied_Hz=20.0).pantographs, [])["1"]
+    assert max(traces.spectrum.frequency_Hz) <= 20
+    assert build_pantograph_traces(signals(evaluated=(0.0, 9000.0)).pantographs, []) == {}
+    assert build_uplift_traces(signals()) == []
 
 
 def test_uplift_is_drawn_in_millimetres_at_each_support() -> None:
@@ -70,9 +61,7 @@ def test_uplift_is_drawn_in_millimetres_at_each_support() -> None:
     ("rate", "filter_applied_Hz", "highest"),
     [(200.0, None, 50.0), (100.0, None, 40.0), (200.0, 30.0, 30.0), (60.0, 30.0, 24.0)],
 )
-def test_spectrum_ends_at_the_highest_known_frequency(
-    rate: float, filter_applied_Hz: float | None, highest: float
-) -> None:
+def test_spectrum_ends_at_the_known_frequency(rate: float, filter_applied_Hz: float | None, highest: float) -> None:
     """50 Hz, 0.4 of the rate or the cut-off of the delivered force, whichever is lowest; 10 s give lines of 0.1 Hz."""
     time = np.arange(int(10 * rate)) / rate
     force = 120 + np.random.default_rng(4).normal(0, 10, time.size)
@@ -113,10 +102,3 @@ def test_long_force_is_drawn_with_its_extremes(sample: int, peak: float) -> None
     assert np.all(np.diff(trace.position_m) > 0)
     blocks = force.reshape(-1, 80)
     assert_allclose(sorted(drawn), sorted([*blocks.min(axis=1), *blocks.max(axis=1)]), rtol=1e-5)
-
-
-def test_force_up_to_ten_samples_per_point_is_drawn_evenly() -> None:
-    """15 000 samples: every tenth one."""
-    item = signals(evaluated=(0.0, 3750.0))
-    trace = build_pantograph_traces(item.pantographs, [])["1"]
-    assert_allclose(trace.position_m, SPEED * np.arange(0, 15_000, 10) / RATE, rtol=1e-5)

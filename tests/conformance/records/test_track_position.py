@@ -1,5 +1,6 @@
 """Positions from distance pulses, pulse trains and kilometre marks, in both running directions."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.record_keys import record_keys
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.csv_table import write_csv_table
@@ -39,7 +41,7 @@ def test_counter_gives_the_distance_within_one_sample(direction: int) -> None:
     assert (np.diff(distance[known]) > 0).all()
 
 
-def test_pulse_train_gives_the_distance_within_a_part_of_a_sample() -> None:
+def test_pulses_and_marks_give_the_distance_between_them() -> None:
     """A sensor of 5 V with noise of 0.2 V, and a wave of 1 m: edges are interpolated, so that 2 cm are left."""
     noise = 0.2 * np.random.default_rng(2).standard_normal(TIME.size)
     signal = 2.5 + 2.5 * np.tanh(2 * np.sin(2 * np.pi * DISTANCE)) + noise
@@ -47,10 +49,7 @@ def test_pulse_train_gives_the_distance_within_a_part_of_a_sample() -> None:
     known = np.isfinite(distance)
     assert known.mean() > 0.998
     assert np.ptp((distance - DISTANCE)[known]) < 0.1
-
-
-def test_marks_are_interpolated_and_nothing_is_extrapolated() -> None:
-    """Marks of 100 m at a nearly constant speed: monotone cubics leave 1 cm of 1.2 km."""
+    # Marks of 100 m at a nearly constant speed: monotone cubics leave 1 cm of 1.2 km.
     places = np.arange(100.0, 1200.0, 100.0)
     passing = np.interp(places, DISTANCE, TIME)
     position = interpolate_marks(TIME, passing, places)
@@ -61,29 +60,19 @@ def test_marks_are_interpolated_and_nothing_is_extrapolated() -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "message"),
+    ("read", "signal", "message"),
     [
-        (np.r_[np.arange(50.0), 48.0, np.arange(50.0, 90)], "runs backwards at sample 51"),
-        (np.zeros(100), "0 pulses are counted"),
-        (np.r_[0.0, np.nan, 1, 2], "sample 2 of the counter is missing"),
+        (count_distance, np.r_[np.arange(50.0), 48.0, np.arange(50.0, 90)], "runs backwards at sample 51"),
+        (count_distance, np.zeros(100), "0 pulses are counted"),
+        (count_distance, np.r_[0.0, np.nan, 1, 2], "sample 2 of the counter is missing"),
+        (pulse_distance, np.ones(100), "is constant"),
+        (pulse_distance, np.r_[np.zeros(50), np.ones(50)], "has 1 rising edges"),
+        (pulse_distance, np.tile([0.0, 1.0], 50), "about one edge in two samples"),
     ],
 )
-def test_unusable_counters_are_refused(count: np.ndarray, message: str) -> None:
+def test_unusable_counters_and_pulse_trains_are_refused(read: Any, signal: np.ndarray, message: str) -> None:
     with pytest.raises(PulsesUnusable, match=message):
-        count_distance(count, 0.5)
-
-
-@pytest.mark.parametrize(
-    ("signal", "message"),
-    [
-        (np.ones(100), "is constant"),
-        (np.r_[np.zeros(50), np.ones(50)], "has 1 rising edges"),
-        (np.tile([0.0, 1.0], 50), "about one edge in two samples"),
-    ],
-)
-def test_unusable_pulse_trains_are_refused(signal: np.ndarray, message: str) -> None:
-    with pytest.raises(PulsesUnusable, match=message):
-        pulse_distance(signal, 0.5)
+        read(signal, 0.5)
 
 
 COLUMNS: dict[str, Any] = {
@@ -92,15 +81,7 @@ COLUMNS: dict[str, Any] = {
     "force_2_N": {"column": "F2", "unit": "N"},
 }
 ZERO_KM = 120.5
-SIDECAR: dict[str, Any] = {
-    "schema": "pantocheck.record/1",
-    "file": "a.csv",
-    "speed_km_h": 216.7,
-    "pantographs": 2,
-    "filter_applied_Hz": "none",
-    "spacing_m": [100.0],
-    "evaluated_m": [300.0, 900.0],
-}
+SIDECAR = record_keys(speed_km_h=216.7, pantographs=2, spacing_m=[100.0], evaluated_m=[300.0, 900.0])
 
 
 def write_logger_file(folder: Path, kilometres: str, sidecar: dict[str, Any]) -> Path:
@@ -128,10 +109,8 @@ SOURCES = ("column", "counter", "marks", "speed")
 @pytest.mark.parametrize("kilometres", ["increasing", "decreasing"])
 @pytest.mark.parametrize("source", SOURCES)
 def test_both_directions_and_every_source_give_the_same_places(source: str, kilometres: str, tmp_path: Path) -> None:
-    """The place of the train in running direction, and the statistics over the analysis section.
-
-    Tolerances: a quarter of a metre per pulse; ten digits of kilometres; marks as above; a speed by trapezoids.
-    """
+    """The place of the train in running direction, and the statistics over the analysis section."""
+    # Tolerances: a quarter of a metre per pulse; ten digits of kilometres; marks as above; a speed by trapezoids.
     track = {"track": {"zero_km": ZERO_KM, "kilometres": kilometres}}
     variants: dict[str, dict[str, Any]] = {
         "column": {"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}},
@@ -144,12 +123,10 @@ def test_both_directions_and_every_source_give_the_same_places(source: str, kilo
     }
     sidecar = write_logger_file(tmp_path, kilometres, {**variants[source], **track})
     assessed = load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
-    assert assessed.prepared is not None
     for number, behind in ((1, 0.0), (2, 100.0)):
         signals = assessed.prepared.pantographs[number]
-        expected = np.interp(
-            signals.position, 50 + DISTANCE - behind, 120 + 20 * np.sin(2 * np.pi * (50 + DISTANCE - behind) / 60)
-        )
+        place = 50 + DISTANCE - behind
+        expected = np.interp(signals.position, place, 120 + 20 * np.sin(2 * np.pi * place / 60))
         # 20 N over 60 m: 2 N per metre; 0.35 m is a pulse and a sample.
         assert np.abs(signals.force.delivered - expected).max() < 2.1 * 0.35
         # 600 m are ten spans of 60 m: mean 120 N, sigma 20/sqrt(2) N.
@@ -157,32 +134,23 @@ def test_both_directions_and_every_source_give_the_same_places(source: str, kilo
         assert assessed.values.values[number]["std_force_N"] == pytest.approx(20 / np.sqrt(2), abs=0.05)
 
 
+PULSES = {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 0.0}
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"track": None}, "key track: missing beside kilometre marks"),
         ({"track": {"zero_km": ZERO_KM, "kilometres": "decreasing"}}, "the kilometres are not decreasing"),
-        (
-            {"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}},
-            "the position stands in columns, too",
-        ),
-        ({"position": {"kind": "counter", "column": "x", "metres_per_pulse": 1.0, "start_m": 0.0}}, "no column 'x'"),
-        (
-            {"position": {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 0.0}, "track": None},
-            None,
-        ),
-        (
-            {"position": {"kind": "pulses", "column": "v", "metres_per_pulse": 1.0, "start_m": 0.0}, "track": None},
-            "has 1 rising edges",
-        ),
+        ({"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}}, "position stands in columns, too"),
+        ({"position": PULSES | {"column": "x"}}, "no column 'x'"),
+        ({"position": PULSES, "track": None}, None),
+        ({"position": PULSES | {"kind": "pulses"}, "track": None}, "has 1 rising edges"),
     ],
 )
 def test_wrong_positions_name_their_key(change: dict[str, Any], message: str | None, tmp_path: Path) -> None:
     base = {**marks("increasing"), "track": {"zero_km": ZERO_KM, "kilometres": "increasing"}}
     content = {key: value for key, value in {**base, **change}.items() if value is not None}
     sidecar = write_logger_file(tmp_path, "increasing", content)
-    if message is None:
+    with nullcontext() if message is None else pytest.raises(InputError, match=message):
         assert read_record(sidecar)[0].position[0, -1] == pytest.approx(0.4, abs=0.01)
-    else:
-        with pytest.raises(InputError, match=message):
-            read_record(sidecar)

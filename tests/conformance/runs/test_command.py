@@ -1,6 +1,7 @@
 """Program as a system under test: messages, deliveries and failures."""
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -31,10 +32,20 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runs.program import split_arguments
-from pantocheck.conformance.runs.protocol_messages import AnswerRefused, parse_message
+from pantocheck.conformance.runs.protocol_messages import (
+    AnswerRefused,
+    DeliveredAnswer,
+    ErroredAnswer,
+    SkippedAnswer,
+    Started,
+    encode_message,
+    parse_message,
+)
 from pantocheck.conformance.runs.system import Delivered, Errored, Skipped, System
 from pantocheck.conformance.runs.system_choice import choose_system
 
+Start = Callable[..., System]
+"""Function that starts the program with a fault."""
 # Program with one fault, which its first argument names.
 PROGRAM = """
 import hashlib, json, os, shutil, subprocess, sys, time
@@ -144,7 +155,7 @@ def cases() -> list[Case]:
 
 
 @pytest.fixture
-def program(case_250: Case, wave: type[Wave], tmp_path: Path) -> Callable[..., System]:
+def program(case_250: Case, wave: type[Wave], tmp_path: Path) -> Start:
     """Function that starts the program with a fault and a time limit."""
     write_record(tmp_path / "record.csv", wave().record(case_250), case_250.id)
     script = tmp_path / "a program.py"
@@ -157,11 +168,10 @@ def program(case_250: Case, wave: type[Wave], tmp_path: Path) -> Callable[..., S
     return system
 
 
-def test_delivered_record_is_read(program: Callable[..., System], case_250: Case, wave: type[Wave]) -> None:
+def test_delivered_record_is_read(program: Start, case_250: Case, wave: type[Wave]) -> None:
     system = program("well")
     assert (system.name, system.version, system.kind) == ("p", "1", "command")
     outcome = system.run(case_250)
-    assert isinstance(outcome, Delivered)
     assert_allclose(outcome.record.force, wave().record(case_250).force, rtol=1e-11)  # twelve digits in the file
     assert outcome.static == {"wave_speed_m_s": 121.7}
     assert outcome.notes[0] == "as asked"
@@ -169,14 +179,13 @@ def test_delivered_record_is_read(program: Callable[..., System], case_250: Case
     assert outcome.warnings == ()
 
 
-def test_message_contains_the_whole_case_without_limits(
-    program: Callable[..., System], case_250: Case, tmp_path: Path
-) -> None:
+def test_message_has_the_whole_case(program: Start, case_250: Case, tmp_path: Path) -> None:
     program("well").run(case_250)
     messages = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines()][2:]
     assert [message["message"] for message in messages] == ["start", "run", "stop"]
+    requests = jsonschema.Draft202012Validator(build_schema("command-request"))
     for message in messages:
-        jsonschema.validate(message, build_schema("command-request"))
+        requests.validate(message)
     given = messages[1]["case"]
     text = json.dumps(given)
     for withheld in ("limit", "trust", "source", "note", "provisional"):
@@ -196,8 +205,8 @@ def test_message_contains_the_whole_case_without_limits(
         ({"stitch_wire": {"length_m": 12.0, "tension_N": 2e3, "mass_kg_m": 0.3}}, "stitch_wire"),
     ],
 )
-def test_program_does_not_get_a_line_that_it_does_not_simulate(
-    program: Callable[..., System], case_250: Case, tmp_path: Path, tables: dict[str, Any], feature: str
+def test_program_gets_no_line_that_it_does_not_simulate(
+    program: Start, case_250: Case, tmp_path: Path, tables: dict[str, Any], feature: str
 ) -> None:
     """It would compute another line from the values that it knows."""
     line = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
@@ -208,27 +217,11 @@ def test_program_does_not_get_a_line_that_it_does_not_simulate(
     assert messages == ["start", "stop"] * 2
 
 
-def test_program_without_features_does_not_get_any_case(
-    program: Callable[..., System], case_250: Case, tmp_path: Path
-) -> None:
+def test_program_without_features_gets_none(program: Start, case_250: Case, tmp_path: Path) -> None:
     outcome = program("no features").run(case_250)
-    assert isinstance(outcome, Skipped)
     assert "the system does not list the features that it simulates" in outcome.reason
     messages = [json.loads(line)["message"] for line in (tmp_path / "log").read_text().splitlines()]
     assert messages == ["start", "stop"] * 2
-
-
-def test_answers_follow_their_schema() -> None:
-    digest = {"file": "a.toml", "sha256": "0" * 64}
-    for message in (
-        {"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": "", "features": ["chain"]},
-        {"message": "delivered", "id": 1, "record": {"sidecar": digest, "table": digest}},
-        {"message": "delivered", "id": 1, "static": {"dropper_length_m": [1.0, 0.9]}},
-        {"message": "skipped", "id": 1, "reason": "why"},
-        {"message": "errored", "id": 1, "reason": "why"},
-    ):
-        jsonschema.validate(message, build_schema("command-answer"))
-        assert parse_message(json.dumps(message).encode()).message == message["message"]
 
 
 @pytest.mark.parametrize(
@@ -255,9 +248,7 @@ def test_answers_follow_their_schema() -> None:
         ("other table", "error", "p: the sidecar names the table 'record.csv', the answer 'b.csv'"),
     ],
 )
-def test_fault_of_the_program_is_the_verdict_of_its_case(
-    program: Callable[..., System], case_250: Case, how: str, verdict: str, reason: str
-) -> None:
+def test_fault_is_the_verdict_of_its_case(program: Start, case_250: Case, how: str, verdict: str, reason: str) -> None:
     try:
         (result,) = run_cases([case_250], program(how)).cases
     finally:
@@ -267,16 +258,11 @@ def test_fault_of_the_program_is_the_verdict_of_its_case(
     assert "\n" not in result.reason
 
 
-def test_crash_does_not_stop_other_cases_and_record_of_another_case_is_refused(
-    program: Callable[..., System], cases: list[Case]
-) -> None:
+def test_record_must_name_its_case(program: Start, case_250: Case, tmp_path: Path, cases: list[Case]) -> None:
+    """A record without a case may be of any run, although the program answers for this one."""
     first, second = run_cases(cases, program("crash")).cases
     assert first.reason == "p: ended with exit code 1 before it answered; end of its standard error: no licence left"
     assert second.reason == "p: the record is of case 'en50318-2002/250'; expected 'en50318-2002/300'"
-
-
-def test_record_that_names_no_case_is_refused(program: Callable[..., System], case_250: Case, tmp_path: Path) -> None:
-    """A record without a case may be of any run, although the program answers for this one."""
     system = program("well")
     edit_toml(tmp_path / "record.toml", {"case": None})
     assert system.run(case_250) == Errored("p: the record is of case None; expected 'en50318-2002/250'")
@@ -294,7 +280,7 @@ def running_processes(text: bytes) -> list[str]:
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are counted in /proc")
-def test_time_limit_ends_the_program_and_all_its_children(program: Callable[..., System], case_250: Case) -> None:
+def test_time_limit_ends_the_program_and_all_its_children(program: Start, case_250: Case) -> None:
     """One child stays in the process group of the program, the other starts a new session."""
     outcome = program("child", timeout=1.0).run(case_250)
     assert outcome == Errored("p: gave no answer within 1 s")
@@ -303,9 +289,7 @@ def test_time_limit_ends_the_program_and_all_its_children(program: Callable[...,
 
 @pytest.mark.skipif(sys.platform != "linux", reason="orphans are adopted on Linux")
 @pytest.mark.parametrize("how", ["daemon", "hang with daemon"])
-def test_descendant_without_mark_in_a_session_of_its_own_is_ended(
-    program: Callable[..., System], case_250: Case, how: str
-) -> None:
+def test_descendant_in_a_session_of_its_own_is_ended(program: Start, case_250: Case, how: str) -> None:
     outcome = program(how, timeout=3.0).run(case_250)
     assert isinstance(outcome, Delivered if how == "daemon" else Errored)
     assert not running_processes(b"time.sleep(1001)")
@@ -320,7 +304,6 @@ def test_killed_process_ends_its_program(tmp_path: Path) -> None:
         "pathlib.Path(sys.argv[1])); print(program.read_line(20.0), flush=True); import time; time.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE) as process:
-        assert process.stdout is not None
         assert process.stdout.readline() == b"b'1'\n"
         process.kill()
     wait_for_end(b"time.sleep(1002)")
@@ -335,8 +318,7 @@ def wait_for_end(text: bytes) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 @pytest.mark.parametrize(
-    ("number", "jobs", "exit_code"),
-    [(signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 129), (signal.SIGINT, 2, 130)],
+    ("number", "jobs", "exit_code"), [(signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 129), (signal.SIGINT, 2, 130)]
 )
 def test_signal_to_the_main_process_keeps_results_and_ends_programs(
     case_250: Case, wave: type[Wave], tmp_path: Path, number: int, jobs: int, exit_code: int
@@ -374,12 +356,9 @@ def test_signal_to_the_main_process_keeps_results_and_ends_programs(
     assert verdicts["en50318-2002/300"] == "skip"
 
 
-def test_program_that_does_not_stop_is_ended_with_a_warning(
-    program: Callable[..., System], case_250: Case, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_deaf_program_is_ended_with_a_warning(program: Start, case_250: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pantocheck.conformance.runs.program.END_LIMIT", 0.2)
     outcome = program("deaf").run(case_250)
-    assert outcome.record is not None
     assert outcome.warnings == ("p did not end after the message 'stop'; Pantocheck ended it",)
 
 
@@ -390,9 +369,7 @@ def test_program_that_does_not_stop_is_ended_with_a_warning(
         ("old", "it uses the protocol 'pantocheck.command/0'; expected 'pantocheck.command/1'"),
     ],
 )
-def test_program_that_does_not_start_is_the_error_of_every_case(
-    program: Callable[..., System], cases: list[Case], how: str, reason: str
-) -> None:
+def test_program_that_does_not_start_is_an_error(program: Start, cases: list[Case], how: str, reason: str) -> None:
     results = run_cases(cases, program(how, timeout=1.0))
     assert [case.verdict for case in results.cases] == ["error", "error"]
     assert all(reason in case.reason for case in results.cases)
@@ -413,14 +390,11 @@ def test_invalid_command_is_refused(text: str, found: str, tmp_path: Path) -> No
         split_arguments(text, tmp_path)
 
 
-def test_no_shell_interprets_a_command(tmp_path: Path) -> None:
+def test_command_is_split_without_a_shell_and_relative_to_its_plan(tmp_path: Path) -> None:
     (tmp_path / "a b.py").touch()
     arguments = split_arguments("sh 'a b.py' $HOME ;rm -rf * | cat '' # x", tmp_path)
     assert arguments[1:] == (str(tmp_path / "a b.py"), "$HOME", ";rm", "-rf", "*", "|", "cat", "", "#", "x")
     assert os.path.isabs(arguments[0])
-
-
-def test_plan_names_a_command_relative_to_itself(tmp_path: Path) -> None:
     (tmp_path / "ad apter.py").touch()
     (tmp_path / "plan.toml").write_text("system = \"command:sh 'ad apter.py'\"\n")
     system = read_plan(tmp_path / "plan.toml").system
@@ -428,12 +402,103 @@ def test_plan_names_a_command_relative_to_itself(tmp_path: Path) -> None:
     assert system.endswith(f"'{tmp_path}/ad apter.py'")
 
 
+# Messages of a program: the key or the beginning of the line that is refused.
+
+
+DIGEST = "0f" * 32
+FILES = {"sidecar": {"file": "a.toml", "sha256": DIGEST}, "table": {"file": "a.csv", "sha256": DIGEST}}
+
+
+def encode(**message: Any) -> bytes:
+    return json.dumps(message).encode()
+
+
 @pytest.mark.parametrize(
-    "line",
-    [b"", b"{}", b"[]", b"1", b"[" * 100_000, b'{"message": "x"}', b"9" * 5000, b'{"message": "skipped", "id": 1}',
-     b'{"message": "skipped", "id": 1, "reason": "\\ud800"}', b'{"message": "skipped", "id": 1.5, "reason": "x"}',
-     b'{"message": "skipped", "id": 1, "reason": "x", "more": 1}', b"\xff\xfe"],
-)  # fmt: skip
-def test_invalid_message_is_refused(line: bytes) -> None:
-    with pytest.raises(AnswerRefused):
-        parse_message(line)
+    ("message", "kind"),
+    [
+        ({"message": "started", "protocol": "pantocheck.command/1", "name": "p", "version": ""}, Started),
+        ({"message": "delivered", "id": 3, "record": FILES, "notes": ["a"]}, DeliveredAnswer),
+        ({"message": "delivered", "id": 3, "static": {"presag_mm": [1.0], "wave_speed_m_s": 1}}, DeliveredAnswer),
+        ({"message": "skipped", "id": 3, "reason": "x" * 2000}, SkippedAnswer),
+        ({"message": "errored", "id": 3, "reason": "x"}, ErroredAnswer),
+    ],
+)
+def test_answer_is_parsed_by_its_kind(message: dict[str, Any], kind: type) -> None:
+    jsonschema.validate(message, build_schema("command-answer"))
+    assert isinstance(parse_message(encode(**message)), kind)
+
+
+def test_answer_has_defaults_and_a_message_is_one_line_of_finite_numbers() -> None:
+    answer = parse_message(encode(message="delivered", id=1))
+    assert (answer.record, answer.static, answer.notes) == (None, {}, ())
+    assert json.loads(encode_message("run", id=1, folder="a\nb")) == {"message": "run", "id": 1, "folder": "a\nb"}
+    assert b"\n" not in encode_message("run", folder="a\nb")
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        encode_message("run", time_limit_s=math.inf)
+
+
+@pytest.mark.parametrize(
+    ("message", "place"),
+    [
+        ({"message": "finished", "id": 3}, "message of pantocheck.command: Input tag 'finished'"),
+        ({"id": 3}, "Unable to extract tag"),
+        ({"message": "skipped", "id": 3, "reason": ""}, ": skipped.reason: "),
+        ({"message": "skipped", "id": 3, "reason": "x" * 2001}, ": skipped.reason: "),
+        ({"message": "skipped", "id": "3", "reason": "x"}, ": skipped.id: "),
+        ({"message": "skipped", "id": 1.5, "reason": "x"}, ": skipped.id: "),
+        ({"message": "skipped", "id": 3}, ": skipped.reason: "),
+        ({"message": "skipped", "id": 3, "reason": "\ud800"}, ""),
+        ({}, "Unable to extract tag"),
+        ({"message": "errored", "id": 3, "reason": "x", "more": 1}, ": errored.more: "),
+        ({"message": "delivered", "id": 3, "record": {"sidecar": FILES["sidecar"]}}, ": delivered.record.table: "),
+        ({"message": "delivered", "id": 3, "notes": ["a", ""]}, ": delivered.notes.1: "),
+    ],
+)
+def test_wrong_answer_is_refused_with_its_key(message: dict[str, Any], place: str) -> None:
+    with pytest.raises(AnswerRefused) as caught:
+        parse_message(encode(**message))
+    assert place in str(caught.value)
+
+
+def test_sizes_of_an_answer_have_bounds() -> None:
+    """A size at its bound is accepted, one more is refused."""
+
+    def start(**keys: Any) -> bytes:
+        return encode(**{"message": "started", "protocol": "p", "name": "p", "version": ""} | keys)
+
+    def deliver(**keys: Any) -> bytes:
+        return encode(message="delivered", id=1, **keys)
+
+    sizes: list[tuple[int, Callable[[int], bytes]]] = [
+        (100, lambda size: start(protocol="x" * size)),
+        (200, lambda size: start(name="x" * size)),
+        (200, lambda size: start(version="x" * size)),
+        (500, lambda size: deliver(record=FILES | {"table": {"file": "x" * size, "sha256": DIGEST}})),
+        (100, lambda size: deliver(static={f"key_{k}": 1.0 for k in range(size)})),
+        (1000, lambda size: deliver(static={"key": [1.0] * size})),
+        (20, lambda size: deliver(notes=["x"] * size)),
+        (2000, lambda size: deliver(notes=["x" * size])),
+    ]
+    for largest, message in sizes:
+        parse_message(message(largest))
+        with pytest.raises(AnswerRefused):
+            parse_message(message(largest + 1))
+    for empty in (start(name=""), deliver(record=FILES | {"table": {"file": "", "sha256": DIGEST}})):
+        with pytest.raises(AnswerRefused):
+            parse_message(empty)
+
+
+def test_line_that_is_no_json_object_is_refused() -> None:
+    for line in (b"[" * 100_000, b"\xff" * 10, b"9" * 5000, b"", b"\xff\xfe"):
+        with pytest.raises(AnswerRefused, match="not JSON"):
+            parse_message(line)
+    for line in (b"[]", b"1"):
+        with pytest.raises(AnswerRefused):
+            parse_message(line)
+
+
+@pytest.mark.parametrize(("length", "shown"), [(79, 79), (80, 80), (81, 80), (500, 80)])
+def test_first_eighty_bytes_of_a_line_are_shown(length: int, shown: int) -> None:
+    with pytest.raises(AnswerRefused) as caught:
+        parse_message(b"x" * length)
+    assert f"'{'x' * shown}'" in str(caught.value)

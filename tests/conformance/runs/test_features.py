@@ -54,14 +54,10 @@ def new_case() -> Case:
 
 
 @pytest.fixture(params=["python", "cpp", "octave", "external"])
-def command(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+def command(request: pytest.FixtureRequest) -> str:
     """Command of the adapter of each kit."""
     if request.param == "cpp":
-        if shutil.which("g++") is None:
-            pytest.skip("g++ is not installed")
-        source = EXAMPLES / "cpp_catenary" / "adapter.cpp"
-        subprocess.run(["g++", "-std=c++17", "-o", str(tmp_path / "adapter"), str(source)], check=True)
-        return f"'{tmp_path / 'adapter'}'"
+        return f"'{request.getfixturevalue('compiled')}'"
     if request.param == "octave":
         if shutil.which("octave-cli") is None:
             pytest.skip("octave-cli is not installed")
@@ -71,14 +67,11 @@ def command(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     return f"'{sys.executable}' '{EXAMPLES / folder / 'adapter.py'}' {program}"
 
 
-def test_new_element_is_skipped_by_every_kit(command: str, new_case: Case) -> None:
-    """The element states no feature, so that its key is the feature; the suite does not send the case."""
+def test_every_kit_refuses_a_new_element_itself(command: str, new_case: Case, tmp_path: Path) -> None:
+    """The element states no feature, so that its key is the feature: the suite does not send the case."""
     outcome = choose_system(f"command:{command}", 60.0).run(new_case)
     assert outcome == Skipped("the system does not simulate balloon")
-
-
-def test_every_kit_refuses_a_new_element_itself(command: str, new_case: Case, tmp_path: Path) -> None:
-    """Second barrier: an adapter answers `skipped` even if a suite sent the case."""
+    # Second barrier: an adapter answers `skipped` even if a suite sent the case.
     message = {"message": "run", "id": 1, "folder": str(tmp_path), "time_limit_s": 9.0}
     content = build_case_message(build_short_case()) | {"features": list_case_features(new_case)}
     lines = [{"message": "start"}, message | {"case": content}, {"message": "stop"}]
@@ -108,7 +101,7 @@ def test_object_of_a_test_receives_only_the_features_that_it_lists() -> None:
     assert not hasattr(ReferenceSimulator(), "features")
 
 
-def test_features_of_a_case_are_those_of_its_keys_in_use() -> None:
+def test_features_are_declared_documented_and_those_of_the_keys_in_use() -> None:
     [case] = select_cases(["en50318-2018/ac-stitched/320"])[-1:]
     features = list_case_features(case)
     assert {"chain", "stagger", "stitch_wire", "dropper_mass"} <= set(features)
@@ -116,6 +109,11 @@ def test_features_of_a_case_are_those_of_its_keys_in_use() -> None:
     mass = PointMassTable(x_m=150.0, wire="contact_wire", mass_kg=5.0, name="section insulator")
     added = replace(case, line=case.line.model_copy(update={"point_mass": (mass,)}))
     assert set(list_case_features(added)) - set(features) == {"point_masses"}
+    keys = [*list_optional_keys(LineFile, "line"), *list_optional_keys(PantographFile, "pantograph")]
+    assert [path for path, field in keys if find_declaration(field) is None] == []
+    names = {feature.name for _, field in keys if (feature := find_declaration(field)) and feature.name}
+    page = (EXAMPLES.parent / "docs" / "systems.md").read_text(encoding="utf-8")
+    assert [name for name in sorted(names | RUN_FEATURES.keys()) if f"| `{name}` |" not in page] == []
 
 
 def test_case_of_several_sections_reaches_a_program_that_simulates_them(case_250: Case) -> None:
@@ -151,11 +149,3 @@ def find_models(annotation: Any) -> Iterator[type[BaseModel]]:
     elif get_origin(annotation) in (Union, UnionType, Annotated, tuple, dict):
         for argument in get_args(annotation):
             yield from find_models(argument)
-
-
-def test_every_optional_key_declares_its_feature_and_every_feature_is_documented() -> None:
-    keys = [*list_optional_keys(LineFile, "line"), *list_optional_keys(PantographFile, "pantograph")]
-    assert [path for path, field in keys if find_declaration(field) is None] == []
-    names = {feature.name for _, field in keys if (feature := find_declaration(field)) and feature.name}
-    page = (EXAMPLES.parent / "docs" / "systems.md").read_text(encoding="utf-8")
-    assert [name for name in sorted(names | RUN_FEATURES.keys()) if f"| `{name}` |" not in page] == []

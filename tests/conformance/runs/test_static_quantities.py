@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from helpers.listed_spans import list_spans
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.core.toml_file import read_model, read_toml
@@ -27,9 +28,8 @@ from pantocheck.model import discretise
 def shortened(name: str, spans: int = 8) -> Case:
     """Case of the library on a shorter line; its ends hardly affect the middle span."""
     case = next(case for case in select_cases([name]) if case.id == name)
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(spans)})
     sections = {} if case.is_static else {"evaluated_spans": (3, 4), "compared_spans": None}
-    return replace(case, line=line, file=case.file.model_copy(update=sections))
+    return change_case(case, spans, **sections)
 
 
 @pytest.fixture(scope="module")
@@ -38,9 +38,7 @@ def simple() -> tuple[Case, dict[str, Any]]:
     return case, compute_static_quantities(case, discretise(build_catenary(case.line), 0.5))
 
 
-def test_string_statics_give_published_lengths_and_bending_and_stagger_add_to_them(
-    simple: tuple[Case, dict[str, Any]],
-) -> None:
+def test_bending_and_stagger_add_to_the_published_lengths(simple: tuple[Case, dict[str, Any]]) -> None:
     """Strings to 1 mm; bending 4 to 5 mm more; the slant of the outer droppers 11 mm on top."""
     case, found = simple
     string, bending, stagger = (
@@ -53,7 +51,7 @@ def test_string_statics_give_published_lengths_and_bending_and_stagger_add_to_th
     assert 10.0 < stagger[0] - bending[0] < 1e3 * (np.hypot(1.0216, 0.1673) - 1.0216)
 
 
-def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple: tuple[Case, dict[str, Any]]) -> None:
+def test_elasticity_is_symmetrical_and_larger_when_droppers_are_slack(simple: tuple[Case, dict[str, Any]]) -> None:
     _, found = simple
     small, large = (np.array(found[f"elasticity{name}_along_span_mm_N"]) for name in ("", "_200_N"))
     assert small.size == large.size == 24
@@ -66,18 +64,15 @@ def test_elasticity_is_symmetrical_and_larger_when_droppers_slacken(simple: tupl
         assert found[f"{name}_mm_N"] == highest
         assert found[f"{name}_non_uniformity_pct"] == pytest.approx(100 * (highest - lowest) / (highest + lowest))
     assert 0.1 < small.min() < small.max() < 1.0  # [mm/N], the order of every main line
-
-
-def test_samples_of_a_span_end_before_the_next_support() -> None:
-    """Every 2.5 m of 60 m."""
-    assert sample_span(120.0, 180.0) == pytest.approx(np.arange(120.0, 180.0, 2.5))
-
-
-def test_presag_is_that_of_the_droppers_of_one_span(simple: tuple[Case, dict[str, Any]]) -> None:
     case, found = simple
     sag = np.array(found["presag_mm"])
     assert sag.size == len(case.line.droppers.length_m) == len(found["dropper_length_m"])
     assert sag == pytest.approx(sag[::-1], abs=1e-6)
+    case, found = simple
+    assert len(found["apparent_mass_kg"]) == len(case.file.apparent_mass.frequency_Hz)
+    assert found["apparent_mass_kg"][-1] == pytest.approx(7.5, rel=0.1)  # at 20 Hz the head is nearly alone
+    # Every 2.5 m of 60 m.
+    assert sample_span(120.0, 180.0) == pytest.approx(np.arange(120.0, 180.0, 2.5))
 
 
 def test_modes_are_those_of_ten_spans() -> None:
@@ -85,9 +80,7 @@ def test_modes_are_those_of_ten_spans() -> None:
     case = shortened("en50318-2018/ac-simple/static", 12)
     modes = first_modes(case.line, 5.0)
     assert modes.frequency.size == 10
-    mesh = discretise(
-        build_catenary(case.line.model_copy(update={"geometry": case.line.geometry.shorten(10)})), 5.0
-    ).mesh
+    mesh = discretise(build_catenary(change_case(case, 10).line), 5.0).mesh
     assert modes.shape.shape == (10, mesh.rows, mesh.position.size, 2)
     lateral = [row for row in range(mesh.rows) if mesh.row_field[row] == "y"]
     size = (modes.shape[..., 0] ** 2).sum(axis=2)
@@ -112,28 +105,17 @@ def test_waves_and_modes(simple: tuple[Case, dict[str, Any]]) -> None:
     assert frequencies[0] == pytest.approx(np.sqrt(38e3 / 2.43) / (2 * case.line.geometry.span_m), rel=0.25)
 
 
-def test_stitched_line_fits_its_figure() -> None:
+def test_stitched_line_fits_its_figure_and_a_failed_check_skips_its_cases() -> None:
     """Seven lengths measured to 0.01 m."""
     case = shortened("en50318-2018/ac-stitched/static")
     found = compute_static_quantities(case, discretise(build_catenary(case.line), 1.0))
     assert found["dropper_length_m"] == pytest.approx(case.line.droppers.length_m, abs=0.0101)
-
-
-def test_failed_static_case_skips_cases_that_require_it() -> None:
     static, running = (shortened(f"en50318-2018/ac-simple/{name}") for name in ("static", "275"))
     wrong = static.limits[0].model_copy(update={"lower": 2.0, "upper": 3.0})
-    coarse = static.file.discretisation.model_copy(update={"element_m": 4.0})
-    static = replace(static, file=static.file.model_copy(update={"discretisation": coarse}), limits=(wrong,))
+    static = replace(change_case(static, mesh=(4.0, 1e-3)), limits=(wrong,))
     results = run_cases([static, running], ReferenceSimulator())
     assert [case.verdict for case in results.cases] == ["fail", "skip"]
     assert results.cases[1].reason == f"requires {static.id}, whose verdict is fail"
-
-
-def test_apparent_mass_is_a_static_check(simple: tuple[Case, dict[str, Any]]) -> None:
-    case, found = simple
-    assert case.file.apparent_mass is not None
-    assert len(found["apparent_mass_kg"]) == len(case.file.apparent_mass.frequency_Hz)
-    assert found["apparent_mass_kg"][-1] == pytest.approx(7.5, rel=0.1)  # at 20 Hz the head is nearly alone
 
 
 # Quantities of every span at rest: against those of the middle span, and against the length of the span.
@@ -152,7 +134,7 @@ def values(listed: Case) -> dict[str, Any]:
     return compute_quantities_along_line(listed.line, discretise(build_catenary(listed.line), 1.0))
 
 
-def test_middle_span_has_the_values_of_the_static_check(listed: Case, values: dict[str, Any]) -> None:
+def test_middle_span_has_the_values_of_the_static_check_and_its_pre_sag(listed: Case, values: dict[str, Any]) -> None:
     """The same positions and droppers of span 3 of 5, to rounding: sums of several threads have another order."""
     middle = compute_static_quantities(listed, discretise(build_catenary(listed.line), 1.0))
     for name in ("elasticity", "elasticity_200_N"):
@@ -163,18 +145,13 @@ def test_middle_span_has_the_values_of_the_static_check(listed: Case, values: di
         assert values[f"{name}_non_uniformity_of_spans_pct"][2] == pytest.approx(non_uniformity, rel=1e-9)
     assert values["presag_along_line_mm"][18:27] == middle["presag_mm"]
     assert values["dropper_length_along_line_m"][18:27] == middle["dropper_length_stagger_m"]
-
-
-def test_pre_sag_counts_from_the_rising_wire(listed: Case, values: dict[str, Any]) -> None:
-    """A gradient does not change the prescribed pre-sag of any span."""
+    # A gradient does not change the prescribed pre-sag of any span.
     assert values["presag_along_line_mm"] == pytest.approx([1e3 * sag for sag in listed.line.droppers.presag_m] * 5)
 
 
 def test_elasticity_grows_with_the_length_of_the_span() -> None:
-    """Drop line with spans of 63, 63, 58.5, 63, 54 and 63 m: l / (k T) with one k for its inner spans, to 4 %.
-
-    At an anchor the elasticity is zero, but for the compliance of a short piece of wire under the force, 1e-3 mm/N.
-    """
+    """Drop line with spans of 63, 63, 58.5, 63, 54 and 63 m: l / (k T) with one k for its inner spans, to 4 %."""
+    # At an anchor the elasticity is zero, but for the compliance of a short piece of wire under the force, 1e-3 mm/N.
     line = read_model(library_folder() / "mass-drop-line" / "line.toml", LineFile, "line")
     values = compute_quantities_along_line(line, discretise(build_catenary(line), 1.0))
     largest = np.array(values["elasticity_of_spans_mm_N"])
@@ -186,9 +163,7 @@ def test_elasticity_grows_with_the_length_of_the_span() -> None:
 
 def test_only_lines_with_listed_spans_have_values_of_every_span(listed: Case) -> None:
     """A static case of the reference simulator delivers them; a line of equal spans has those of its middle span."""
-    coarse = listed.file.discretisation.model_copy(update={"element_m": 5.0})
-    case = replace(listed, file=listed.file.model_copy(update={"discretisation": coarse}))
-    delivered = ReferenceSimulator().run_unrefined(case).static
+    delivered = ReferenceSimulator().run_unrefined(change_case(listed, mesh=(5.0, 1e-3))).static
     assert len(delivered["elasticity_of_spans_mm_N"]) == 5
     equal = load_case(library_folder() / "en50318-2018" / "ac-simple" / "static.toml").line
     few = equal.model_copy(update={"geometry": equal.geometry.shorten(2)})

@@ -47,7 +47,6 @@ def close_case(two_pantograph_case: Case) -> Case:
 def test_kink_of_the_other_pantograph_is_not_a_shift(close_case: Case, forces: tuple[float, float]) -> None:
     """The strong pantograph bends the wire four times as much, above the ratio of 2.5; there is no contact height."""
     record = Wave().record(close_case)
-    assert record.support_position is not None
     distance = record.position - record.support_position[:, None, None]
     # A bump of 50 mm bends the wire like 119 N: the kinks over 1.5 m are 8.6 mm, and F L / T = 8.9 mm.
     uplift = (0.05 * np.array([[force / 119.0] for force in forces]) * bumps(distance, KINK)).sum(axis=1)
@@ -70,7 +69,6 @@ def coinciding(five_supports: Case) -> Record:
     """
     record = Wave().record(five_supports)
     supports = record.support_position
-    assert supports is not None
     largest = 0.04 + 0.003 * (np.arange(supports.size) * 5 % 8)
     front = record.position[0] - supports[:, None]
     rear = record.position[1] - supports[:, None]
@@ -81,18 +79,21 @@ def coinciding(five_supports: Case) -> Record:
     return replace(record, force=force, contact_height=5.3 + near + force / stiffness, support_uplift=uplift)
 
 
-def test_coincidence_alone_confirms_the_positions(five_supports: Case, coinciding: Record) -> None:
+def test_coincidence_alone_confirms_and_unclear_passages_are_named(five_supports: Case, coinciding: Record) -> None:
     assert check(five_supports, coinciding) is None
+    found = check(five_supports, replace(coinciding, contact_height=None))
+    assert found == Finding(
+        "unchecked",
+        "the support passing check was not made: the uplift at the supports shows no clear passage of pantograph 1, 2",
+    )
 
 
 @pytest.mark.parametrize("row", [0, 1])
 def test_without_penetration_heights_do_not_coincide(five_supports: Case, coinciding: Record, row: int) -> None:
     """Heights of the wire of one pantograph, 4 mm of penetration left out: nothing confirms its position."""
-    assert coinciding.contact_height is not None
     height = coinciding.contact_height.copy()
     height[row] -= coinciding.force[row] / five_supports.pantographs[row].contact.stiffness_N_m
     found = check(five_supports, replace(coinciding, contact_height=height))
-    assert found is not None
     assert found.kind == "unchecked"
     assert found.text.endswith(f"shows no clear passage of pantograph {row + 1}")
 
@@ -101,8 +102,6 @@ def test_without_penetration_heights_do_not_coincide(five_supports: Case, coinci
 def test_passage_without_contact_does_not_count(five_supports: Case, coinciding: Record, row: int) -> None:
     """Without force at one support, the head of this pantograph is 0.1 m below the wire there."""
     supports = coinciding.support_position
-    assert supports is not None
-    assert coinciding.contact_height is not None
     second = supports[supports > five_supports.analysis_section[0]][0]
     lost = np.abs(coinciding.position[row] - second) < 8.0
     force, height = coinciding.force.copy(), coinciding.contact_height.copy()
@@ -114,18 +113,14 @@ def test_passage_without_contact_does_not_count(five_supports: Case, coinciding:
 
 @pytest.mark.parametrize(("shift", "side"), [(12.0, "past"), (-12.0, "before"), (30.0, "past")])
 @pytest.mark.parametrize("row", [0, 1])
-def test_shift_is_stated_with_its_direction(
-    two_pantograph_case: Case, wave: type[Wave], row: int, shift: float, side: str
-) -> None:
-    """The position of one pantograph is 12 m too large: the wire bends where it is said to be 12 m past a support.
-
-    Force and height repeat in every span of 60 m, so that they coincide with the uplift at any shift, half a span too.
-    """
+def test_shift_and_direction(two_pantograph_case: Case, wave: type[Wave], row: int, shift: float, side: str) -> None:
+    """The position of one pantograph is 12 m too large: the wire bends where it is said to be 12 m past a support."""
+    # Force and height repeat in every span of 60 m, so that they coincide with the uplift at any shift, half a span
+    # too.
     record = wave().record(two_pantograph_case)
     position = record.position.copy()
     position[row] += shift
     found = check(two_pantograph_case, replace(record, position=position))
-    assert found is not None
     assert found.kind == "contradiction"
     assert found.text.startswith(f"the position of pantograph {row + 1} contradicts the uplift")
     assert found.text.endswith(f"when the position is {abs(shift):g} m {side} it")
@@ -137,14 +132,6 @@ def test_check_needs_a_rate_for_the_filter(two_pantograph_case: Case, rate: floa
     found = check(two_pantograph_case, Wave(rate=rate).record(two_pantograph_case))
     assert (found is None) is made
     assert made or (found is not None and found.text.endswith(f"a rate of {rate:g} Hz is too low"))
-
-
-def test_all_unclear_passages_are_named(five_supports: Case, coinciding: Record) -> None:
-    found = check(five_supports, replace(coinciding, contact_height=None))
-    assert found == Finding(
-        "unchecked",
-        "the support passing check was not made: the uplift at the supports shows no clear passage of pantograph 1, 2",
-    )
 
 
 # Uplift behind the active window: right or missing in the record of a case, and no reason for a skip.
@@ -177,15 +164,12 @@ def test_record_of_a_case_holds_the_uplift_of_the_whole_line_or_none(records: tu
     assert np.abs(windowed.force - whole.force).max() < 1e-8
 
 
-def test_missing_uplift_changes_no_grade_in_memory_or_from_a_file(
-    case: Case, records: tuple[Record, Record], tmp_path: Path
-) -> None:
+def test_missing_uplift_changes_no_grade(case: Case, records: tuple[Record, Record], tmp_path: Path) -> None:
     """The same verdict and uplift from the windowed record, from the whole one and from a written file."""
     windowed, whole = (grade_case(case, Delivered(record), "secondary") for record in records)
     write_record(tmp_path / "run.csv", records[0], case.id, further={"case_digest": case.digest})
     read = run_case(case, open_record_folder(tmp_path), "secondary")
     for result in (windowed, whole, read):
         assert result.verdict == "pass"
-        assert result.record is not None
         assert result.record.state == "verified"
         assert result.quantities["0"][UPLIFT] == pytest.approx(whole.quantities["0"][UPLIFT], abs=1e-6)

@@ -36,10 +36,12 @@ def test_every_model_has_its_column(case_250: Case, wave: type[Wave]) -> None:
     assert len(result.charts) == 1
 
 
-def test_grading_does_not_depend_on_the_study(case_250: Case, wave: type[Wave]) -> None:
+def test_study_changes_no_grade_and_is_for_passages_alone(case_250: Case, wave: type[Wave]) -> None:
     plain, studied = (run_cases([case], wave()).cases[0] for case in (case_250, add_damping_study(case_250)))
     assert studied.criteria == plain.criteria
     assert studied.input_digest == plain.input_digest
+    for case in select_cases(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
+        assert add_damping_study(case) is case
 
 
 def test_warning_names_each_model_that_the_system_cannot_run(case_250: Case, wave: type[Wave]) -> None:
@@ -57,8 +59,3 @@ def test_warning_names_each_model_that_the_system_cannot_run(case_250: Case, wav
         f"damping '{name}': there is no record of this case" for name in MODELS
     ]
     assert result.tables[0].columns == ["Quantity", "Pantograph or line", CASE_DAMPING]
-
-
-def test_static_cases_and_studies_get_no_damping_study() -> None:
-    for case in select_cases(["en50318-2018/ac-simple/static", "vovan2015/contact-force"]):
-        assert add_damping_study(case) is case

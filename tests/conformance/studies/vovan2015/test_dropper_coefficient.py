@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from helpers.computed_modes import grade_findings
 from helpers.lines import simple_line
+from helpers.short_cases import change_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.array_types import RealArray
@@ -32,25 +33,15 @@ def low_pass_curve(corner: float) -> RealArray:
     return 1000 / (1 + (COEFFICIENTS / corner) ** 2)
 
 
-def test_levels_of_a_known_curve() -> None:
-    """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner.
-
-    The coefficients lie 26 % apart.
-    """
+def test_levels_and_changes_of_known_curves() -> None:
+    """The force falls to 90 % at a third of the corner, to half at the corner, to 10 % at three times the corner."""
+    # The coefficients lie 26 % apart.
     findings = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
     assert_allclose(findings["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
     assert_allclose(findings["dropper_transition_middle_s"], 2e-3, rtol=0.01)
     assert_allclose(findings["dropper_transition_end_s"], 6e-3, rtol=0.03)
     assert_allclose(findings["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
-
-
-def test_dropper_that_is_never_slack_has_no_transition() -> None:
-    with np.errstate(all="raise"):
-        assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
-
-
-def test_largest_change_of_a_band_counts_for_any_pantograph() -> None:
-    """By hand: 2 % of the rear in 5-20 Hz, 1 % of the front; other quantities and missing bands do not count."""
+    # By hand: 2 % of the rear in 5-20 Hz, 1 % of the front; other quantities and missing bands do not count.
     chosen = {1: {"rms_0_5_N": 10.1, "mean_force_N": 150.0}, 2: {"rms_5_20_N": 9.8, "rms_20_50_N": 5.0}, 0: {}}
     least = {1: {"rms_0_5_N": 10.0, "mean_force_N": 100.0}, 2: {"rms_5_20_N": 10.0}}
     assert_allclose(compare_bands(chosen, least)["dropper_force_change_pct"], 2.0)
@@ -64,29 +55,25 @@ def grade_force(force: RealArray) -> dict[str, str]:
     return {quantity.removeprefix("dropper_"): row.verdict for (quantity, _), row in rows.items()}
 
 
-def test_wrong_transition_is_detected() -> None:
+def test_wrong_or_missing_transition_is_detected() -> None:
     start, middle, end, locked = "transition_start_s", "transition_middle_s", "transition_end_s", "locked_force_pct"
     assert grade_force(low_pass_curve(2e-3)) == dict.fromkeys((start, middle, end, locked), "pass")
     assert grade_force(low_pass_curve(2e-4))[start] == "fail"
     late = grade_force(low_pass_curve(0.06))
     assert late == {start: "fail", middle: "fail", end: "skip", locked: "fail"}  # the end is not reached
-
-
-def test_dropper_that_never_locks_is_detected() -> None:
-    """The missing transition is skipped, and the remaining force exceeds its limit."""
+    # The missing transition is skipped, and the remaining force exceeds its limit.
     verdicts = grade_force(np.full(COEFFICIENTS.size, 1000.0))
     assert verdicts["transition_middle_s"] == "skip"
     assert verdicts["locked_force_pct"] == "fail"
+    with np.errstate(all="raise"):
+        assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
 
 def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     (case,) = select_cases(["vovan2015/dropper-damping"])
-    coarse = case.file.discretisation.model_copy(update={"element_m": 1.5, "time_step_s": 0.002})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-8, 3e-3, 1e-1), "x_m": 283.5})
-    file = case.file.model_copy(
-        update={"discretisation": coarse, "study": study, "evaluated_spans": (4, 5), "run_out_m": 0.0}
-    )
-    outcome = run_dropper_damping(replace(case, file=file), study)
+    coarse = change_case(case, mesh=(1.5, 0.002), study=study, evaluated_spans=(4, 5), run_out_m=0.0)
+    outcome = run_dropper_damping(coarse, study)
     (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
     # Without damping the laws are the same. A dropper slackens within a time step: 4 % at 2 ms, 2 % at 1 ms.
@@ -94,7 +81,6 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     assert nothing[-1] > nothing[0]
     assert elastic[-1] < 0.1 * elastic[0]
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
-    assert outcome.record is not None
     # The run of the record, one with the smallest coefficient, and one of every coefficient under each law.
     assert outcome.run.simulated_s == pytest.approx((2 + 2 * 3) * outcome.record.time[-1], rel=0.01)
 
@@ -102,17 +88,14 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
 def test_motion_of_a_dropper_far_behind_the_train_is_known_until_the_end() -> None:
     """The last pantograph stops 1.5 spans behind the dropper; without its motion there, no force would be found."""
     (case,) = select_cases(["vovan2015/dropper-damping"])
-    coarse = case.file.discretisation.model_copy(update={"element_m": 2.25, "time_step_s": 0.004})
     study = case.file.study.model_copy(update={"coefficients_s": (1e-6, 1e-1)})
-    outcome = run_dropper_damping(replace(case, file=case.file.model_copy(update={"discretisation": coarse})), study)
+    outcome = run_dropper_damping(change_case(case, mesh=(2.25, 0.004)), study)
     assert outcome.study.findings[LINE]["dropper_locked_force_pct"] < 10
 
 
 def test_both_laws_are_the_same_while_every_dropper_is_taut() -> None:
-    """The laws give two linear systems with the same matrices until one dropper becomes slack.
-
-    The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
-    """
+    """The laws give two linear systems with the same matrices until one dropper becomes slack."""
+    # The measured difference is rounding, 1e-13 of the displacement. A dashpot with an error of 0.1 % would give 2e-5.
     line = simple_line(damping={Kind.DROPPER: Rayleigh(stiffness_coefficient=1e-3)})
     mesh = discretise(line, 2.0)
     kept = keep_viscous_part(mesh)
@@ -194,14 +177,11 @@ def test_oscillation_is_the_extension_above_50_hertz_after_the_release() -> None
 def case() -> Case:
     """Three spans, coarse elements, three coefficients."""
     (case,) = select_cases(["vovan2015/dropper-oscillation"])
-    steps = case.file.discretisation.model_copy(update={"element_m": 2.25, "time_step_s": 1e-3})
     sensors = tuple(sensor.model_copy(update={"x_m": 87.75}) for sensor in case.file.mass_drop.sensor)
     drop = case.file.mass_drop.drop[0].model_copy(update={"x_m": 85.5})
     mass_drop = case.file.mass_drop.model_copy(update={"sensor": sensors, "drop": (drop,), "record_s": 1.7})
     study = case.file.study.model_copy(update={"coefficients_s": (0.0, 1e-5, 1e-3)})
-    file = case.file.model_copy(update={"discretisation": steps, "mass_drop": mass_drop, "study": study})
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(3)})
-    return replace(case, file=file, line=line)
+    return change_case(case, 3, (2.25, 1e-3), mass_drop=mass_drop, study=study)
 
 
 def test_more_damping_shortens_the_oscillation_of_a_drop(case: Case) -> None:

@@ -60,20 +60,15 @@ def run(case: Case, **changes: object) -> Delivered:
     return release_velocity.run_release_velocity(case, case.file.study.model_copy(update=changes))
 
 
-def test_every_window_has_the_velocity_of_its_time(case: Case) -> None:
+def test_every_window_has_its_velocity_and_its_rms(case: Case) -> None:
     study = run(case).study
-    assert study is not None
     assert [chart.series[1].label for chart in study.charts] == ["initial"] * 2
     for chart, (start, end), velocity in zip(study.charts, ((0.0, 1.0), (3.0, 5.0)), (2.0, -5.0), strict=True):
         for series, factor in zip(chart.series, FACTORS.values(), strict=True):
             assert (series.x[0], series.x[-1], len(series.x)) == (start, end - 0.01, 100 * (end - start))
             assert set(series.y) == {factor * velocity}
         assert f"{start:g} s to {end:g} s" in chart.caption
-
-
-def test_table_has_the_rms_of_every_window(case: Case) -> None:
     study = run(case).study
-    assert study is not None
     assert study.tables[0].columns[:2] == ["Damping", "0 s to 1 s"]
     shown = [[row[0], row[1], row[3]] for row in study.tables[0].rows]
     assert shown == [[name, f"{2 * factor:g} mm/s", f"{5 * factor:g} mm/s"] for name, factor in FACTORS.items()]
@@ -102,11 +97,6 @@ def test_velocities_are_compared_in_the_first_and_the_last_window() -> None:
     )
 
 
-def test_drop_in_place_of_the_record_is_one_of_the_models(case: Case) -> None:
-    with pytest.raises(InputError, match=r"key study\.test: no model 'other'"):
-        run(case, test="other")
-
-
 def test_short_drop_beside_itself_with_less_damping() -> None:
     """Three spans, 7 s: without its damping, the model rings longer; the record is that of the mass."""
     (case,) = select_cases(["vovan2015/release-velocity"])
@@ -117,22 +107,20 @@ def test_short_drop_beside_itself_with_less_damping() -> None:
     steps = case.file.discretisation.model_copy(update={"element_m": 2.25})
     file = case.file.model_copy(update={"mass_drop": mass_drop, "study": study, "discretisation": steps})
     line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(3)})
-    undamped = Damping.model_validate(
-        {"trust": "provisional", "source": "test", "contact_wire": {}, "messenger_wire": {}}
-    )
+    table = {"trust": "provisional", "source": "test", "contact_wire": {}, "messenger_wire": {}}
+    undamped = Damping.model_validate(table)
     short = replace(case, file=file, line=line, dampings=case.dampings | {"initial": undamped})
     findings = release_velocity.run_release_velocity(short, study).study.findings[LINE]
     assert findings["reference_residual_velocity_ratio"] > 1.005
 
 
-def test_window_can_end_a_second_before_the_record_but_not_later(case: Case) -> None:
+def test_window_sensor_and_model_of_the_study_must_exist(case: Case) -> None:
     """The filters fade the last second."""
     assert len(run(case, windows_s=((9.0, 10.0),)).study.charts) == 1
     with pytest.raises(InputError, match=r"key study\.windows_s: a window ends at 10\.5 s, the record at 11 s"):
         run(case, windows_s=((9.0, 10.5),))
-
-
-def test_sensor_must_exist(case: Case) -> None:
     assert len(run(case, sensor=3).study.charts) == 2
     with pytest.raises(InputError, match=r"key study\.sensor: there is no sensor 4"):
         run(case, sensor=4)
+    with pytest.raises(InputError, match=r"key study\.test: no model 'other'"):
+        run(case, test="other")

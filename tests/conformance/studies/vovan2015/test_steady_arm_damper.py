@@ -53,31 +53,23 @@ def with_dampers(damper: float) -> LineChange:
     )
 
 
-def test_gains_calculated_by_hand() -> None:
+def test_gains_by_hand_fade_from_the_second_to_the_last_band() -> None:
     findings = damping_gains([0.002, 0.004, 0.003], [0.003, 0.006, 0.003])
     assert_allclose(findings["damping_gain_pct"], [50, 50, 0], atol=1e-9)
     assert_allclose(findings["damping_gain_fading_pct"], 50)
-
-
-def test_gain_fades_from_the_second_to_the_last_band() -> None:
-    """Gains of 60 %, 50 %, 20 % and 10 % by hand: the first band has the largest gain but does not count."""
+    # Gains of 60 %, 50 %, 20 % and 10 % by hand: the first band has the largest gain but does not count.
     findings = damping_gains([0.002] * 4, [0.0032, 0.003, 0.0024, 0.0022])
     assert_allclose(findings["damping_gain_pct"], [60, 50, 20, 10])
     assert_allclose(findings["damping_gain_fading_pct"], 40)
-
-
-def test_gain_does_not_fade_with_two_bands() -> None:
-    """The second band is the last."""
+    # The second band is the last.
     assert set(damping_gains([0.002, 0.002], [0.003, 0.0025])) == {"damping_gain_pct"}
+    findings = damping_gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
+    assert_allclose(findings["damping_gain_pct"], [50])
+    assert "damping_gain_fading_pct" not in findings
 
 
-def test_every_band_has_the_modes_from_its_lower_edge_to_below_its_upper_edge(
-    case: Case, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """One mode on the lower edge and two inside each band: the dampers raise them by 10 % times the number of the band.
-
-    Modes are rounded to six digits: 1e-5 of a gain of 10 %.
-    """
+def test_every_band_has_the_modes_from_its_lower_edge_on(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The dampers raise three modes of each band by 10 % times its number; six digits are 1e-5 of a gain of 10 %."""
     bands = case.file.study.bands_Hz
 
     def build_drops(gain: float) -> SimpleNamespace:
@@ -101,32 +93,17 @@ def test_every_band_has_the_modes_from_its_lower_edge_to_below_its_upper_edge(
     assert_allclose(findings["damping_gain_pct"], 10.0 * np.arange(1, len(bands) + 1), rtol=1e-4)
 
 
-def test_list_of_gains_ends_before_a_band_without_modes() -> None:
-    findings = damping_gains([0.002, np.nan, 0.003], [0.003, 0.006, 0.003])
-    assert_allclose(findings["damping_gain_pct"], [50])
-    assert "damping_gain_fading_pct" not in findings
-
-
-def test_computed_damping_reproduces_the_findings(verdicts_for: Grading, case: Case) -> None:
+def test_computed_damping_reproduces_the_findings_and_wrong_damping_does_not(verdicts_for: Grading, case: Case) -> None:
     """The first group is not tested: the computed gain misses the finding of the paper there."""
     verdicts = verdicts_for(with_dampers(case.file.study.damper_N_s_m))
     assert [verdicts["pct", band] for band in range(2, 7)] == ["pass"] * 5
     assert verdicts["fading_pct", None] == "pass"
     assert verdicts["pct", 9] == "pass"
-
-
-def test_no_gain_without_a_damper(verdicts_for: Grading) -> None:
     verdicts = verdicts_for(lambda line: line)
     assert [verdicts["pct", band] for band in range(2, 7)] == ["fail"] * 5
     assert verdicts["pct", 9] == "pass"
-
-
-def test_damping_raised_in_every_band_is_detected(verdicts_for: Grading) -> None:
-    """Twice the damping of every component changes the band without a visible effect, too."""
+    # Twice the damping of every component changes the band without a visible effect, too.
     verdicts = verdicts_for(lambda line: replace(line, damping={kind: Rayleigh(0.2, 2e-4) for kind in Kind}))
     assert verdicts["pct", 9] == "fail"
-
-
-def test_gain_that_grows_with_frequency_is_detected(verdicts_for: Grading) -> None:
     verdicts = verdicts_for(lambda line: replace(line, damping={kind: Rayleigh(0.1, 5e-4) for kind in Kind}))
     assert verdicts["fading_pct", None] == "fail"

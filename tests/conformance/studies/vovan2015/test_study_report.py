@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,6 +11,8 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.quantities.evaluation import Value
+from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.studies.vovan2015 import line_damping
 from pantocheck.conformance.studies.vovan2015.study_report import build_findings_table, build_provenance_table
 
 CHANGE = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust="primary", source="test", note="less below 5 Hz")
@@ -52,9 +55,7 @@ def limit_rows(case: Case) -> list[list[str]]:
         ("vovan2015", "provisional", "assumed"),
     ],
 )
-def test_limit_is_printed_in_the_paper_only_if_its_source_names_the_paper(
-    source: str | list[str], trust: Trust, origin: str
-) -> None:
+def test_limit_is_printed_in_the_paper_of_its_source(source: str | list[str], trust: Trust, origin: str) -> None:
     """Limits that a user puts in place of those of a study may be primary without being printed in its paper."""
     (case,) = select_cases(["vovan2015/contact-force"])
     limit = Limit(quantity="change_rms_0_5_pct", upper=0.0, trust=trust, source=source)
@@ -67,3 +68,28 @@ def test_primary_limits_of_the_library_are_printed_in_the_paper(pattern: str) ->
     (case,) = select_cases([pattern])
     expected = ["printed in the paper" if limit.trust == "primary" else "assumed" for limit in case.limits]
     assert [row[1] for row in limit_rows(case)] == expected
+
+
+# Damping of a line: every drop is simulated once, and damping ratios are drawn in percent.
+
+
+def test_every_drop_of_a_case_is_simulated_and_identified(monkeypatch: pytest.MonkeyPatch) -> None:
+    (case,) = select_cases(["vovan2015/mass-drop/stand-in"])
+    monkeypatch.setattr(
+        line_damping, "simulate_drop", lambda case, number, line: SimpleNamespace(record=f"record {number}")
+    )
+    monkeypatch.setattr(line_damping, "identify_modes", lambda records, highest: [(records, highest)])
+    identified = line_damping.identify_drops(case)
+    assert len(identified.drops) == 3
+    assert identified.identification == (("record 1", "record 2", "record 3"), case.file.mass_drop.highest_Hz)
+
+
+def test_damping_ratios_are_drawn_in_percent_with_intervals_of_95_percent() -> None:
+    """Half an interval has 1.96 standard deviations."""
+    modes = [
+        Mode(frequency_Hz=f, damping_ratio=ratio, damping_ratio_std=deviation, sensor_shape=())
+        for f, ratio, deviation in ((1.0, 0.02, 0.001), (2.5, 0.0125, 0.0005))
+    ]
+    series = line_damping.draw_damping_ratios("identified", modes)
+    assert (series.label, series.x, series.y) == ("identified", [1.0, 2.5], [2.0, 1.25])
+    assert series.error == [0.196, 0.098]
