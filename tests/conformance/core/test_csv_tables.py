@@ -46,13 +46,10 @@ def test_decimal_comma_may_begin_after_the_first_lines(tmp_path: Path) -> None:
     assert_array_equal(read(tmp_path, f"a;b\n{rest}0,5;1,5\n", 10_000).values[-1], [0.5, 1.5])
 
 
-def test_table_without_a_head_line_has_no_names(tmp_path: Path) -> None:
+def test_names_of_columns_need_a_head_line(tmp_path: Path) -> None:
     table = read(tmp_path, "0,1\n0.5,-2.5\n1,1e3\n")
     assert_array_equal(table.values, EXPECTED)
     assert [column.name for column in table.columns] == [None, None]
-
-
-def test_line_of_numbers_with_one_name_is_a_head_line(tmp_path: Path) -> None:
     assert [column.name for column in read(tmp_path, "1,b\n0,1\n").columns] == ["1", "b"]
 
 
@@ -165,12 +162,9 @@ def test_ambiguous_layout_names_the_key_that_decides(
     assert np.abs(table.values).max() < 10
 
 
-def test_thousands_marks_after_the_first_lines_are_refused(tmp_path: Path) -> None:
+def test_marks_after_the_first_lines_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="may separate decimals or thousands"):
         read(tmp_path, "a;b\n" + "0;0\n" * 2000 + "1,000;0\n", 10_000)
-
-
-def test_second_decimal_mark_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"line 7, column 2: '0\.5' is not a number"):
         read(tmp_path, "a;b\n" + "0,1;0,1\n" * 5 + "0,1;0.5\n" + "0,1;0,1\n" * 9)
 

@@ -19,11 +19,8 @@ def test_messages_list_all_formats() -> None:
         find_table_format(Path("records/250"), (CSV, HDF5))
 
 
-def test_suffixes_are_unique_and_in_lower_case() -> None:
+def test_suffixes_are_unique_in_lower_case_and_read_in_any() -> None:
     suffixes = [suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes]
     assert sorted(set(suffixes)) == sorted(suffixes)
     assert all(suffix == suffix.lower() for suffix in suffixes)
-
-
-def test_upper_case_suffix_is_read() -> None:
     assert find_table_format(Path("A.HDF5"), (CSV, HDF5)) is HDF5
