@@ -77,6 +77,7 @@ def test_modes_json_has_the_keys_that_other_tools_read(folder: Path) -> None:
     assert page.count("<script") == 1  # that of every page
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_identify_is_deterministic(folder: Path) -> None:
     run_identify(folder, "again")
     written = sorted(path.name for path in (folder / "out").iterdir())

@@ -41,12 +41,9 @@ def sentences(section: Section) -> tuple[str, ...]:
     return tuple(map(str, items.items))
 
 
-def test_example_has_the_format_of_results(results: dict[str, Any]) -> None:
+def test_example_and_labels_are_complete(results: dict[str, Any]) -> None:
     content = json.loads(Results.model_validate(results).to_json())
     assert content == results
-
-
-def test_every_quantity_has_a_label() -> None:
     assert all(quantity.label for quantity in QUANTITIES.values())
 
 
@@ -97,10 +94,7 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     page_1 = marked[: marked.index('id="cases"')]
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
     assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
-    for text in (
-        summarise(passing),
-        render_markdown(certify(passing)),
-    ):
+    for text in (summarise(passing), render_markdown(certify(passing))):
         assert "Uncertainty without section and length, which are not known: it is too small" in text
     for other in passing["cases"]:
         other["uncertainty_basis"] = dict.fromkeys(unknown, "known")
@@ -137,9 +131,6 @@ def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
     assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
     assert len(groups["Not evaluated"]) == 2
     assert "Contact loss" not in "".join(groups["Smallest margins"])
-
-
-def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]) -> None:
     front, rear = (
         [str(row[2]) for row in build_band_table(CaseResult.model_validate(case)).rows] for case in results["cases"][:2]
     )
@@ -162,14 +153,11 @@ def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any])
     assert list_definitions([without]) == ()
 
 
-def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
+def test_case_facts_show_wall_time_filter_and_force_laws(passing: dict[str, Any]) -> None:
     facts = list_case_facts(CaseResult.model_validate(passing["cases"][0]))
     assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
     assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
-
-
-def test_case_facts_state_the_forces_of_the_force_laws(passing: dict[str, Any]) -> None:
-    """Without a law, results.json has no key for it."""
+    # Without a law, results.json has no key for it.
     case = passing["cases"][0]
     assert "law_forces" not in case["run"]
     forces = {

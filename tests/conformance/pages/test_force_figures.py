@@ -26,13 +26,10 @@ def test_no_two_of_eight_uplift_curves_look_alike() -> None:
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 8
 
 
-def test_ticks_of_the_force_stand_at_the_supports(passing: dict[str, Any]) -> None:
+def test_force_figure_has_ticks_at_the_supports_and_limits_of_force_statistics(passing: dict[str, Any]) -> None:
     trace = Traces.model_validate(passing["cases"][0]["traces"]["1"])
     axes = draw_force.__wrapped__(trace, [], []).axes[0]
     assert list(axes.get_xticks()) == trace.supports_m == [240, 300, 360]
-
-
-def test_force_figure_shows_limits_of_force_statistics_only(passing: dict[str, Any]) -> None:
     rows = [
         {"quantity": "std_force_N", "lower": 26.0, "upper": 31.0},
         {"quantity": "mean_force_N", "lower": None, "upper": 120.0},
@@ -43,6 +40,7 @@ def test_force_figure_shows_limits_of_force_statistics_only(passing: dict[str, A
     assert [row.quantity for row in select_limited([first.model_copy(update=row) for row in rows])] == ["mean_force_N"]
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_figures_do_not_depend_on_the_settings_of_matplotlib(passing: dict[str, Any]) -> None:
     case = CaseResult.model_validate(passing["cases"][0])
     expected = draw_uplift(case.uplift, case.criteria)

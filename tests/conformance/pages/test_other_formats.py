@@ -39,12 +39,8 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     suites = root.findall("testsuite")
     assert [suite.get("name") for suite in suites] == [case["id"] for case in results["cases"]]
-    assert [root.get(name) for name in ("tests", "failures", "errors", "skipped")] == [
-        "25",
-        "1",
-        "0",
-        "3",
-    ]  # with a test of each record
+    counts = [root.get(name) for name in ("tests", "failures", "errors", "skipped")]
+    assert counts == ["25", "1", "0", "3"]  # with a test of each record
     for suite in suites:
         assert int(suite.get("tests")) == len(suite.findall("testcase"))
         for element, counter in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
@@ -56,14 +52,11 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
     assert properties["system"] == "Pantocheck reference simulator 0.1.0 (builtin)"
 
 
-def test_junit_holds_an_error_of_a_case(passing: dict[str, Any]) -> None:
+def test_junit_holds_errors_and_any_text(passing: dict[str, Any], hostile: dict[str, Any]) -> None:
     passing["cases"][0] |= {"verdict": "error", "reason": "the solver diverged", "criteria": []}
     root = ElementTree.fromstring(render_junit(Results.model_validate(passing)))
     assert root.get("errors") == "1"
     assert next(root.iter("error")).get("message") == "the solver diverged"
-
-
-def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(Results.model_validate(hostile)))
     assert root.find("testsuite[2]").get("name") == "en50318-2002/300a|b `c` *d* [e](f) \\ _g_"
     assert all("\n" not in value for element in root.iter() for value in element.attrib.values())
@@ -122,13 +115,11 @@ def test_list_of_quantities_has_a_row_for_each_item(passing: dict[str, Any]) -> 
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
     rows = read_rows(passing)
     found = [rows["en50318-2002/250", "0", "presag_mm", item] for item in ("1", "2")]
-    assert [(row["value"], row["uncertainty"], row["discretisation"]) for row in found] == [
-        ("20.0", "0.5", "0.5"),
-        ("55.0", "0.25", "0.25"),
-    ]
+    values = [(row["value"], row["uncertainty"], row["discretisation"]) for row in found]
+    assert values == [("20.0", "0.5", "0.5"), ("55.0", "0.25", "0.25")]
 
 
-def test_badge(results: dict[str, Any]) -> None:
+def test_badge_states_verdict_and_counts(results: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_badge(Results.model_validate(results)))
     assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
@@ -160,16 +151,7 @@ def test_markdown_renders_every_element() -> None:
         Facts((("Suite", "1.0"),), times=(("Started", "now"),)),
         Figures((Figure("<svg/>", "a line", "caption"),)),
     )
-    document = Document(
-        "t",
-        PlainHeader("Heading", "Result."),
-        (
-            Section(
-                "Part",
-                (*blocks, Section("Deeper", ())),
-            ),
-        ),
-    )
+    document = Document("t", PlainHeader("Heading", "Result."), (Section("Part", (*blocks, Section("Deeper", ()))),))
     assert render_markdown(document).split("\n\n") == [
         "# Heading",
         "Result.",

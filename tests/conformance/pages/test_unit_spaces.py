@@ -47,11 +47,8 @@ def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
     )
     page = bind_page_units(to_plain(Document("10 N", PlainHeader("Head", "11 N"), blocks)))
     paragraph, code, bullets, figures = page["blocks"]
-    assert [part if isinstance(part, str) else part["text"] for part in paragraph["text"]] == [
-        f"at 5{GAP}m",
-        "5 m",
-        f"of 6{GAP}N",
-    ]
+    texts = [part if isinstance(part, str) else part["text"] for part in paragraph["text"]]
+    assert texts == [f"at 5{GAP}m", "5 m", f"of 6{GAP}N"]
     assert code["code"] == "# 5 m"
     assert bullets["items"] == [f"<7{GAP}N>"]
     assert figures["figures"][0]["svg"] == "<path d='M 1 m 5 s'/>"
