@@ -70,25 +70,23 @@ def outputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     return printed
 
 
-def test_installation_is_that_of_the_readme() -> None:
-    """The continuous integration runs the line of the README in a fresh environment."""
+def test_every_command_runs_and_prints_the_lines_of_the_page(outputs: dict[str, list[str]]) -> None:
+    """The continuous integration runs the installation of the README in a fresh environment."""
     install = list_blocks()[0][1].splitlines()[0]
     assert install in (ROOT / "README.md").read_text(encoding="utf-8")
-
-
-def test_every_command_runs(outputs: dict[str, list[str]]) -> None:
     assert len(outputs) >= 10
     folder = Path(outputs["folder"][0])
     for name in ("certificate.html", "certificate.pdf", "quantities.csv", "results.json"):
         assert (folder / "report" / name).stat().st_size > 1000
     for name in ("my-line.svg", "records/my-case.csv", "records/my-case.toml", "records/140-N.csv"):
         assert (folder / name).stat().st_size > 500
-
-
-def test_check_prints_the_lines_of_the_page(outputs: dict[str, list[str]]) -> None:
     (printed,) = outputs["pantocheck check my-line.toml my-pantograph.toml my-case.toml"]
     lines = "".join(f"{line.rstrip()}\n" for line in printed.splitlines())  # a wrapped line may end with a blank
     assert lines in [text for language, text in list_blocks() if language == ""]
+    rows = list(csv.DictReader((folder / "report-200" / "quantities.csv").read_text().splitlines()))
+    assert {row["changes"] for row in rows} == {
+        "speed_km_h = 200 (file: 250.0); line.contact_wire.tension_N = 22000.0 (file: 20000.0)"
+    }
 
 
 def test_run_prints_values_and_the_limit_decides(outputs: dict[str, list[str]]) -> None:
@@ -97,14 +95,6 @@ def test_run_prints_values_and_the_limit_decides(outputs: dict[str, list[str]]) 
     assert re.search(r"^mean_force_N +1\d\d", without, re.MULTILINE)
     assert with_limit.startswith("PASS")
     assert re.search(r"^std_force_N .*<= 60.* PASS +primary", with_limit, re.MULTILINE)
-
-
-def test_changed_inputs_are_stated(outputs: dict[str, list[str]]) -> None:
-    folder = Path(outputs["folder"][0])
-    rows = list(csv.DictReader((folder / "report-200" / "quantities.csv").read_text().splitlines()))
-    assert {row["changes"] for row in rows} == {
-        "speed_km_h = 200 (file: 250.0); line.contact_wire.tension_N = 22000.0 (file: 20000.0)"
-    }
 
 
 def test_keys_of_the_table_exist(outputs: dict[str, list[str]]) -> None:

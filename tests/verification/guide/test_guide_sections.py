@@ -91,11 +91,8 @@ def test_page_states_the_numbers_of_every_section(data: dict[str, Any]) -> None:
     assert "| own/twin | 2 | 10.0 | 0.500 | 0.050 |" in text
 
 
-def test_every_deviation_of_a_section_is_listed(data: dict[str, Any]) -> None:
+def test_values_counts_and_deviations_are_those_of_the_sections(data: dict[str, Any]) -> None:
     assert list_deviations(Guide.model_validate(data)) == ["library/own/twin/2/std_force_N", "self-test/delay/a/b"]
-
-
-def test_values_and_counts_are_those_of_the_sections(data: dict[str, Any]) -> None:
     guide = Guide.model_validate(data)
     counts = count_results(guide)
     expected = {"published_agreeing": 1, "published": 3, "contained_agreeing": 1, "contained": 2, "faults_records": 2}
