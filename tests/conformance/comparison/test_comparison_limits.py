@@ -49,23 +49,17 @@ def test_limit_that_fits_no_comparison_is_refused(tables: dict[str, Any], change
         ComparisonLimit.model_validate(tables | changes)
 
 
-def test_unit_follows_from_the_name() -> None:
+def test_unit_distance_and_uncertainty_of_a_grade() -> None:
     names = ("elasticity_difference_mm_N", "contact_wire_height_difference_mm", "phase_deviation_deg", "rms_ratio")
     assert [unit_of_difference(name) for name in names] == ["mm/N", "mm", "°", ""]
-
-
-def test_grade_states_the_distance_from_the_nearer_limit() -> None:
-    """Limits are included; missing data make a skip, which still tells that the value lies beyond the limit."""
+    # Limits are included; missing data make a skip, which still tells that the value lies beyond the limit.
     assert grade_value(2.0, (1.0, 2.0), "N") == ("pass", None, 0.0, ())
     assert grade_value(0.5, (1.0, 2.0), "N")[:3] == ("fail", "0.5 N beyond the limit", -1.0)
     assert grade_value(2.25, (None, 2.0), "", place=", at 3 m").reason == "0.25 beyond the limit, at 3 m"
     assert grade_value(2.25, (None, 2.0), "", missing="no data")[:2] == ("skip", "no data; 0.25 beyond the limit")
     assert grade_value(1.0, (None, 2.0), "", missing="no data")[:2] == ("skip", "no data")
     assert grade_value(None, (None, 2.0), "", missing="no data") == ("skip", "no data", None, ())
-
-
-def test_uncertainty_of_measurement_and_mesh_marks_a_close_criterion() -> None:
-    """Half-widths 0.3 and 0.4 are 0.5 together: a value 0.45 below the limit is marked, one 0.55 below is not."""
+    # Half-widths 0.3 and 0.4 are 0.5 together: a value 0.45 below the limit is marked, one 0.55 below is not.
     limit = ComparisonLimit.model_validate(RESPONSE)
     for value, marks in ((2.55, 1), (2.45, 0)):
         item = build_comparison_criterion(

@@ -61,7 +61,7 @@ def test_every_reader_refuses_a_file_over_its_limit(name: str, tmp_path: Path) -
         READERS[name](tmp_path / name)
 
 
-def test_growing_file_is_refused(tmp_path: Path) -> None:
+def test_growing_file_is_refused_and_a_whole_one_read(tmp_path: Path) -> None:
     """The limit holds while the file is read, not only before."""
     path = tmp_path / "a.csv"
     path.write_bytes(b"1\n" * 10)
@@ -70,9 +70,6 @@ def test_growing_file_is_refused(tmp_path: Path) -> None:
             writer.write(b"2\n")
         with pytest.raises(InputError, match=r"record 'a\.csv': grew while it was read"):
             file.read()
-
-
-def test_whole_file_is_read(tmp_path: Path) -> None:
     content = os.urandom(2**21 + 7)  # more than two chunks
     (tmp_path / "a").write_bytes(content)
     assert read_bytes(tmp_path / "a", "a", 2**22) == content

@@ -135,7 +135,7 @@ print(json.dumps({"loaded": loaded, **commands}))
     assert verify_document(tmp_path / "report" / "certificate.html").state == "consistent"
 
 
-def test_missing_package_is_named_with_the_line_that_installs_it() -> None:
+def test_missing_package_is_named_with_the_line_that_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError) as caught, refuse_missing_package("record 'a.h5'"):
         raise ModuleNotFoundError("No module named 'h5py._hl'", name="h5py._hl")
     assert str(caught.value) == (
@@ -145,9 +145,6 @@ def test_missing_package_is_named_with_the_line_that_installs_it() -> None:
     # A package that no extra installs is a defect of the installation, not a missing extra.
     with pytest.raises(ModuleNotFoundError, match="llvmlite"), refuse_missing_package("a passage"):
         raise ModuleNotFoundError("No module named 'llvmlite'", name="llvmlite")
-
-
-def test_required_package_is_found_without_its_import(monkeypatch: pytest.MonkeyPatch) -> None:
     require_package("numba", "reference simulator")
     monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(InputError, match=r"pip install 'pantocheck\[simulator\]'"):

@@ -91,15 +91,12 @@ def test_hint_describes_the_key(content: dict[str, Any], hint: str) -> None:
     assert message(content)[2] == hint
 
 
-def test_whole_numbers_are_numbers_and_tables_are_frozen() -> None:
+def test_tables_are_frozen_and_strict_where_they_are_known() -> None:
     table = Inner.model_validate({"depth_m": 2})
     assert table.depth_m == 2.0
     with pytest.raises(ValidationError, match="frozen"):
         table.depth_m = 1.0
-
-
-def test_sidecar_of_a_mass_drop_is_strict_where_it_is_known() -> None:
-    """Further keys are allowed; text in place of a number, or infinity, is not. The sidecar cannot be changed."""
+    # Further keys are allowed; text in place of a number, or infinity, is not. The sidecar cannot be changed.
     channel = {"column": 1, "name": "A", "sensor": 1, "unit": "g", "direction": "+z", "calibrated": "2015"}
     sidecar = DropSidecar.model_validate({"record": {"sampling_rate_hz": 50.0}, "channel": [channel], "team": 3})
     with pytest.raises(ValidationError, match="frozen"):
@@ -107,6 +104,10 @@ def test_sidecar_of_a_mass_drop_is_strict_where_it_is_known() -> None:
     for change in ({"sensor": "1"}, {"position_m": math.inf}, {"position_m": math.nan}, {"column": 0}, {"sensor": -1}):
         with pytest.raises(ValidationError):
             DropSidecar.model_validate({"record": {"sampling_rate_hz": 50.0}, "channel": [channel | change]})
+    with pytest.raises(ValidationError) as caught:
+        CaseFile.model_validate({"evaluated_spans": [5, "6"]})
+    locations = [error["loc"] for error in caught.value.errors()]
+    assert ("evaluated_spans", 1) in locations
 
 
 class Sourced(SourcedTable):
@@ -126,13 +127,6 @@ def test_every_provisional_key_is_one_of_the_table(provisional: list[str], valid
             Sourced.model_validate(content)
 
 
-def test_list_of_a_case_is_numbered_from_one() -> None:
-    with pytest.raises(ValidationError) as caught:
-        CaseFile.model_validate({"evaluated_spans": [5, "6"]})
-    locations = [error["loc"] for error in caught.value.errors()]
-    assert ("evaluated_spans", 1) in locations
-
-
 @pytest.mark.parametrize(
     ("data", "key"),
     [({"a": [1.0, "x"]}, "a[2]"), ([], "top level"), ({"b": {}}, "b"), ({"a": ["x"], "b": 1}, "a[1]")],
@@ -150,9 +144,6 @@ def test_fault_of_json_is_named_in_one_short_line() -> None:
         validate_json({"\x1b[31m\n" + "k" * 400: 1}, TypeAdapter(dict[str, list[float]]), "f", "Hint.")
     key = caught.value.where.removeprefix("f, key ")
     assert key == "?[31m " + "k" * 294
-
-
-def test_json_may_be_as_large_as_allowed() -> None:
     assert parse_json(b'{"a": 1} ', "f", 9) == {"a": 1}
     with pytest.raises(InputError, match="f: has 9 bytes"):
         parse_json(b'{"a": 1} ', "f", 8)

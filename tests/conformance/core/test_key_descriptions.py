@@ -51,7 +51,7 @@ def test_string_under_a_field_describes_the_field_and_those_of_derived_tables() 
     assert read_field_texts(create_model("Made", count=int)) == {}
 
 
-def test_schema_has_the_strings_and_prefers_them_to_the_description_of_a_type() -> None:
+def test_schema_and_sentences_have_the_strings() -> None:
     schema = Wire.model_json_schema(schema_generator=DescribedSchema)
     described = {key: content.get("description") for key, content in schema["properties"].items()}
     assert described == {
@@ -64,9 +64,6 @@ def test_schema_has_the_strings_and_prefers_them_to_the_description_of_a_type() 
     nested = schema["$defs"]["Part"]["properties"]
     assert nested["depth_m"]["description"] == "Depth of the part [m]; measured downwards."
     assert "description" not in nested["colour"]
-
-
-def test_description_is_part_of_a_sentence() -> None:
     assert describe_field(Wire, "depth_m") == "depth of the part [m]; measured downwards"
     assert describe_field(Wire, "colour") == "RAL number"
     assert describe_field(Wire, "model") == "name of any file"

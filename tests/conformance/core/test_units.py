@@ -68,22 +68,18 @@ def test_hint_repeats_numbers_and_short_lists(key: str, value: object, hint: str
     assert (suggest_key(key, value, ["y_kg", "x_m"]) or "").endswith(hint)
 
 
-def test_key_without_a_unit_of_the_schema_has_no_hint() -> None:
-    assert suggest_key("x_ft", 1.0, ["x_m", "name"]) is None
-
-
-def test_spellings_of_an_acceleration_are_one_unit() -> None:
+def test_spellings_and_unknown_units() -> None:
     for text in (" m/s2 ", "m/s^2", "m/s**2", "M/S²", "ms-2", "m s-2"):
         assert convert_unit(text, "here") == ("acceleration", 1.0), text
     for text in ("g", "gn", "g_n"):
         assert convert_unit(text, "here") == ("acceleration", STANDARD_GRAVITY), text
-
-
-def test_message_of_an_unknown_unit_is_short_and_lists_the_known_ones() -> None:
     with pytest.raises(InputError) as caught:
         convert_unit("x" * 100, "here")
     assert caught.value.found == f"has the unknown unit '{'x' * 40}'"
     assert caught.value.hint == "Known units are m/s2, mm/s2, g, mg, m/s, mm/s, km/h, mph, m, mm, cm, km."
+    assert suggest_key("x_ft", 1.0, ["x_m", "name"]) is None
+    for name in ("span", "span_N", "length_m", "number_m", "stiffness_m", ""):
+        assert convert_key(name, ["number", "span_m", "stiffness_N_m"]) is None, name
 
 
 @pytest.mark.parametrize(
@@ -100,8 +96,3 @@ def test_name_in_another_unit_is_a_key_with_a_factor(name: str, key: str, factor
     """Definitions of the SI, rounded once."""
     converted = convert_key(name, ["number", "span_m", "stagger_m", "stiffness_N_m", "elasticity_m_N"])
     assert converted == (key, pytest.approx(factor, rel=1e-14))
-
-
-def test_other_name_is_no_key() -> None:
-    for name in ("span", "span_N", "length_m", "number_m", "stiffness_m", ""):
-        assert convert_key(name, ["number", "span_m", "stiffness_N_m"]) is None, name

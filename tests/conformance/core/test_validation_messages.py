@@ -97,16 +97,13 @@ def test_text_that_is_not_toml_is_refused(tmp_path: Path, old: str, new: str, me
     assert caught.value.hint
 
 
-def test_bytes_that_are_not_text_and_missing_files_are_refused(tmp_path: Path) -> None:
+def test_bytes_missing_files_and_limits_of_the_line_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_bytes(b'id = "x"\n\xff\xfe')
     with pytest.raises(InputError, match="byte 10 is not UTF-8 text"):
         load_case(path)
     with pytest.raises(InputError, match="No such file"):
         load_case(tmp_path / "nothing.toml")
-
-
-def test_limit_of_a_line_quantity_has_no_pantograph(tmp_path: Path) -> None:
     path = tmp_path / "limits.toml"
     path.write_text(
         '[[limit]]\nquantity = "max_uplift_at_support_mm"\npantograph = 1\nupper = 60.0\n'

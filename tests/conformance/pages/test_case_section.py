@@ -13,7 +13,7 @@ WIRE = {"group": "line.contact_wire", "trust": "secondary", "source": "a book", 
 UNTRACED = {"group": "line.contact_wire.mass_kg_m", "trust": "provisional", "source": "not traced", "values": {}}
 
 
-def test_case_without_any_value_has_no_section(results: dict[str, Any]) -> None:
+def test_skipped_cases_have_no_section_and_share_a_sentence(results: dict[str, Any]) -> None:
     """The skipped case stands in the table of cases and among the reasons only."""
     skipped = results["cases"][2]
     shown = [shown.case.id for shown in list_shown_cases(Results.model_validate(results).cases)]
@@ -27,9 +27,6 @@ def test_case_without_any_value_has_no_section(results: dict[str, Any]) -> None:
     headings = [block.heading for block in section.blocks if isinstance(block, Section)]
     assert headings.index("Figures") == headings.index("Criteria") + 1
     assert headings.index("Figures") < headings.index("All quantities")
-
-
-def test_cases_skipped_for_one_reason_share_a_sentence(results: dict[str, Any]) -> None:
     results["cases"].append(results["cases"][2] | {"id": "own/other"})
     [reasons] = [block for block in certify(results).blocks if isinstance(block, Section) and block.anchor == "reasons"]
     items = [str(item) for part in reasons.blocks if isinstance(part, Section) for item in part.blocks[0].items]  # type: ignore[union-attr]
@@ -54,10 +51,6 @@ def test_inputs_have_values_with_units_and_marks(passing: dict[str, Any]) -> Non
     assert row[1] == "tension 20000 N; mass 1.35 kg/m ○; span list, length 40 values, 50 to 65 m"
     assert sources.items == ("a book",)  # type: ignore[union-attr]
     assert key == SmallPrint("○: value not traced to a printed source.")
-
-
-def test_inputs_of_an_earlier_case_or_without_values_are_named_only(passing: dict[str, Any]) -> None:
-    case = CaseResult.model_validate(passing["cases"][0] | {"inputs": [WIRE, UNTRACED]})
     [text] = input_blocks(case, (case.model_copy(update={"id": "own/first"}),), "case-2-input-source")
     assert text == SmallPrint("As in own/first: line.contact_wire.")
     case = CaseResult.model_validate(passing["cases"][0] | {"inputs": [WIRE | {"values": {}}, UNTRACED]})

@@ -6,20 +6,9 @@ from typing import Any
 
 from helpers.shown_page import certify, shown_certificate, summarise
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.criteria_table import criteria_blocks, describe_criterion
-from pantocheck.conformance.pages.document import (
-    BulletList,
-    Document,
-    Figures,
-    Link,
-    NumberedList,
-    Section,
-    SmallPrint,
-    Table,
-    TrustMark,
-    VerdictMark,
-)
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import build_band_table, list_definitions
@@ -29,15 +18,15 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
-def case_section(document: Document, number: int) -> dict[str, Section]:
+def case_section(document: doc.Document, number: int) -> dict[str, doc.Section]:
     """Sections of a case by their headings."""
-    [case] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == f"case-{number}"]
-    return {block.heading: block for block in case.blocks if isinstance(block, Section)}
+    [case] = [block for block in document.blocks if isinstance(block, doc.Section) and block.anchor == f"case-{number}"]
+    return {block.heading: block for block in case.blocks if isinstance(block, doc.Section)}
 
 
-def sentences(section: Section) -> tuple[str, ...]:
+def sentences(section: doc.Section) -> tuple[str, ...]:
     [items] = section.blocks
-    assert isinstance(items, BulletList)
+    assert isinstance(items, doc.BulletList)
     return tuple(map(str, items.items))
 
 
@@ -56,10 +45,14 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
     result = CaseResult.model_validate(case)
     table, note, sources = criteria_blocks(result.criteria, "case-1", "case-1-source", result)
-    assert note == SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
-    assert isinstance(table, Table)
-    assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
-    assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
+    assert note == doc.SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
+    assert isinstance(table, doc.Table)
+    assert table.rows[1][-3:] == (
+        doc.VerdictMark("pass"),
+        doc.TrustMark("secondary"),
+        doc.Link("[2]", "case-1-source-2"),
+    )
+    assert sources == doc.NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
     line = describe_criterion(
         Criterion.model_validate(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
     )
@@ -184,14 +177,14 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     Results.model_validate(passing)
     sections = case_section(certify(passing), 1)
     [figures] = sections["Figures"].blocks
-    assert isinstance(figures, Figures)
+    assert isinstance(figures, doc.Figures)
     assert [figure.caption.split(":")[0] for figure in figures.figures] == [
         *2 * ["Pantograph 1"],
         *3 * ["Pantograph 2"],
         "Uplift at the supports. Largest",
     ]
     [table] = sections["All quantities"].blocks
-    assert isinstance(table, Table)
+    assert isinstance(table, doc.Table)
     assert "1.0170, 0.89600" in [row[-1] for row in table.rows]
 
 

@@ -100,7 +100,9 @@ def test_figures_of_a_page_keep_their_text_and_share_no_id(page_text: str) -> No
         }
 
 
-def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], page_text: str) -> None:
+def test_criteria_show_trust_verdict_bar_and_the_places_of_their_extremes(
+    results: dict[str, Any], page_text: str
+) -> None:
     outline = Outline(page_text)
     place = results["cases"][0]["places"]["1"]["max_force_N"]["position_m"]
     assert (
@@ -114,6 +116,15 @@ def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], 
         ("case-1-uplift", "uplift", "0", "0"),
         ("case-2-force-1", "force", "1", "1"),
     ]
+    tables = re.findall(r'<table class="cards".*?</table>', page_text, re.S)
+    rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', "".join(tables), re.S)
+    criteria = [row for case in results["cases"] for row in case["criteria"]]
+    assert len(rows) == len(criteria)
+    for text, row in zip(rows, criteria, strict=True):
+        assert f"<code>{row['quantity']}</code>" in text
+        assert f'class="trust {row["trust"]}"' in text
+        assert f'class="verdict {row["verdict"]}"' in text
+        assert text.count("<svg") == (row["value"] is not None)
 
 
 @pytest.mark.parametrize("name", ["results", "hostile"])
@@ -127,9 +138,15 @@ def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequ
     assert json.dumps(json.loads(block)) == json.dumps(Results.model_validate(results).to_dict())
 
 
-def test_html_without_results_has_no_data_block() -> None:
+def test_html_escapes_hostile_text_and_has_data_with_results_only(hostile_text: str) -> None:
     page = render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
     assert "application/json" not in page
+    assert "<script>alert" not in hostile_text
+    assert ">&lt;script&gt;alert(1)&lt;/script&gt;</text>" in hostile_text  # in a figure
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
+    assert "{{ 7*7 }} {% raw %}" in hostile_text
+    assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")
+    hostile_text.encode("utf-8")
 
 
 def test_html_begins_with_the_verdict_and_states_the_self_declaration(page_text: str) -> None:
@@ -140,27 +157,6 @@ def test_html_begins_with_the_verdict_and_states_the_self_declaration(page_text:
     assert places == sorted(places)
     assert "self-declared conformance report, in the style of EN 50318" in page_text
     assert "not a certification" in page_text
-
-
-def test_html_escapes_hostile_text(hostile_text: str) -> None:
-    assert "<script>alert" not in hostile_text
-    assert ">&lt;script&gt;alert(1)&lt;/script&gt;</text>" in hostile_text  # in a figure
-    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
-    assert "{{ 7*7 }} {% raw %}" in hostile_text
-    assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")
-    hostile_text.encode("utf-8")
-
-
-def test_html_criteria_show_trust_verdict_and_bar(results: dict[str, Any], page_text: str) -> None:
-    tables = re.findall(r'<table class="cards".*?</table>', page_text, re.S)
-    rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', "".join(tables), re.S)
-    criteria = [row for case in results["cases"] for row in case["criteria"]]
-    assert len(rows) == len(criteria)
-    for text, row in zip(rows, criteria, strict=True):
-        assert f"<code>{row['quantity']}</code>" in text
-        assert f'class="trust {row["trust"]}"' in text
-        assert f'class="verdict {row["verdict"]}"' in text
-        assert text.count("<svg") == (row["value"] is not None)
 
 
 def test_tables_become_cards_on_a_narrow_screen(page_text: str) -> None:

@@ -18,7 +18,7 @@ TEMPLATES = Path(__file__).parents[3] / "templates"
 LIBRARY = TEMPLATES / "uplot"
 
 
-def test_library_for_plots_is_the_released_one() -> None:
+def test_library_for_plots_is_the_released_one_with_its_licence(page_text: str) -> None:
     release = tomllib.loads((LIBRARY / "release.toml").read_text("utf-8"))
     digests = {name: hashlib.sha256((LIBRARY / name).read_bytes()).hexdigest() for name in release["sha256"]}
     assert digests == release["sha256"]
@@ -26,10 +26,7 @@ def test_library_for_plots_is_the_released_one() -> None:
     script = (LIBRARY / "uPlot.iife.min.js").read_text("utf-8")
     assert script.startswith(f"/*! https://github.com/leeoniya/uPlot (v{release['version']}) */")
     assert script in read_results_code().scripts
-
-
-def test_page_with_the_library_holds_its_licence(page_text: str) -> None:
-    """The licence has to stand in every copy, and every page is a copy; a comment must not end inside of it."""
+    # The licence has to stand in every copy, and every page is a copy; a comment must not end inside of it.
     licence = (LIBRARY / "LICENSE").read_text("utf-8")
     assert "--" not in licence
     assert page_text.count(f"<!-- uPlot: {licence}-->") == 1

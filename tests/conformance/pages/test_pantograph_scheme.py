@@ -27,7 +27,7 @@ def case_with(*groups: dict[str, Any]) -> CaseResult:
     return build_ungraded(case, "skip", "not run").model_copy(update={"inputs": inputs})
 
 
-def test_scheme_has_the_values_of_a_library_case() -> None:
+def test_scheme_has_the_values_of_its_chain() -> None:
     [case] = select_cases(["en50318-2002/250"])
     content = build_ungraded(case, "skip", "not run")
     [figure] = scheme_figures(content, ())
@@ -35,9 +35,6 @@ def test_scheme_has_the_values_of_a_library_case() -> None:
         assert f">{text}<" in figure.svg
     assert figure.caption == "Pantograph 1: masses, springs and dampers, from base to head."
     assert figure.alternative.endswith("frame 15 kg, head 7.2 kg.")
-
-
-def test_equal_chains_are_drawn_once_without_missing_springs_and_dampers() -> None:
     [figure] = scheme_figures(chain_case(), ())
     assert figure.caption.startswith("Pantographs 1 and 2: ")
     assert scheme_figures(chain_case(), (chain_case(),)) == ()

@@ -45,16 +45,13 @@ def test_criteria_and_quantities_have_a_column_of_the_reference(case: dict[str, 
     assert str(mean[3]).endswith("± 0.50")
 
 
-def test_item_of_a_list_is_found_by_its_number(case: dict[str, Any]) -> None:
+def test_items_and_forces_of_the_reference_are_found(case: dict[str, Any]) -> None:
     case["reference"]["quantities"]["0"]["presag_mm"] = [10.0, 20.0]
     result = CaseResult.model_validate(case)
     row = result.criteria[0].model_copy(update={"quantity": "presag_mm", "pantograph": 0, "item": 2})
     assert find_reference(result, row) == 20.0
     assert find_reference(result, row.model_copy(update={"item": 3})) is None
     assert find_reference(result, row.model_copy(update={"quantity": "elasticity_mm_N", "item": None})) is None
-
-
-def test_force_of_the_reference_is_drawn_behind(case: dict[str, Any]) -> None:
     trace, force = Traces.model_validate(case["traces"]["1"]), case["reference"]["force_20_N"]["1"]
     for reference, count in ((force, 1), ([], 0)):
         figure = draw_force.__wrapped__(trace, [], reference)  # type: ignore[attr-defined]

@@ -51,11 +51,16 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     assert "Modified copies of the library: 1." in build_headline(Results.model_validate(copied))
 
 
-def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
+def test_page_1_names_modified_copy_weakened_limits_and_scope(copied: dict[str, Any], results: dict[str, Any]) -> None:
     page = " ".join(PdfReader(BytesIO(print_certificate(copied))).pages[0].extract_text().split())
     assert f"The {COPY} has other inputs, limits or sources than the library case." in page
     assert f"The limits file changes limits of {COPY}." in page
     assert "lowered from secondary to provisional" in page
+    page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
+    assert "self-declared conformance report, in the style of EN 50318" in page
+    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
+    assert all(step in " ".join(page.split()) for step in steps)
+    assert "superseded by EN 50318:2018" in " ".join(page.split())
 
 
 def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
@@ -99,11 +104,16 @@ def test_origin_states_the_edition_of_library_cases_only(
     assert describe_origin(CaseResult.model_validate(results["cases"][0] | changes)) == text
 
 
-def test_origin_of_a_profile_is_named(results: dict[str, Any]) -> None:
+def test_certificate_states_all_digests_and_the_origin_of_a_profile(results: dict[str, Any]) -> None:
     facts = {"library": "identical", "edition": None, "superseded_by": None, "profile": "line-test"}
     case = CaseResult.model_validate(results["cases"][0] | facts)
     assert describe_origin(case) == "library profile"
     assert describe_origin(case.model_copy(update={"library": "own"})) == "own profile"
+    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
+    changed["suite"]["digest"] = "sha256:" + "c" * 64
+    page = shown_certificate(changed)
+    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
+    assert changed["cases"][0]["input_digest"] in page
 
 
 def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
@@ -131,19 +141,3 @@ def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
     assert isinstance(table, Table)
     assert table.rows[0][1:] == ("informative", ("", "en50318-2002/250"))
     assert VerdictMark("pass") in table.rows[1][2]
-
-
-def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
-    page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
-    assert "self-declared conformance report, in the style of EN 50318" in page
-    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
-    assert all(step in " ".join(page.split()) for step in steps)
-    assert "superseded by EN 50318:2018" in " ".join(page.split())
-
-
-def test_certificate_states_all_digests(results: dict[str, Any]) -> None:
-    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
-    changed["suite"]["digest"] = "sha256:" + "c" * 64
-    page = shown_certificate(changed)
-    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
-    assert changed["cases"][0]["input_digest"] in page
