@@ -42,14 +42,10 @@ def cable() -> Cable:
     free = np.ones_like(position)
     free[:, [0, support, -1]] = 0.0
     wires = Wires(
-        first=np.array([0]),
-        last=np.array([POINTS - 1]),
-        axial_stiffness=np.array([AXIAL_STIFFNESS]),
-        bending_stiffness=np.zeros(1),
-        tension=np.array([TENSION]),
-        spacing=np.array([x[1]]),
+        first=np.array([0]), last=np.array([POINTS - 1]), axial_stiffness=np.array([AXIAL_STIFFNESS]),
+        bending_stiffness=np.zeros(1), tension=np.array([TENSION]), spacing=np.array([x[1]]),
         stiffness_coefficient=np.zeros(1),
-    )
+    )  # fmt: skip
     mass, parts = np.full(POINTS, MASS * x[1]), (no_bars(), no_springs(), no_strings())
     line = ExactLine(mass, np.zeros(POINTS), free, unstretched_lengths(position, wires), 0.0, wires, *parts)
     return line, position, np.array([support])

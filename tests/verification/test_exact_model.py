@@ -29,14 +29,10 @@ def build_cable(
     free = np.ones_like(position)
     free[:, [0, -1]] = 0.0
     wires = Wires(
-        first=np.array([0]),
-        last=np.array([points - 1]),
-        axial_stiffness=np.array([axial_stiffness]),
-        bending_stiffness=np.array([bending]),
-        tension=np.array([TENSION]),
-        spacing=np.array([h]),
+        first=np.array([0]), last=np.array([points - 1]), axial_stiffness=np.array([axial_stiffness]),
+        bending_stiffness=np.array([bending]), tension=np.array([TENSION]), spacing=np.array([h]),
         stiffness_coefficient=np.array([damping]),
-    )
+    )  # fmt: skip
     mass = np.full(points, MASS * h)
     unstretched = np.full(points, length / (points - 1))
     parts = (wires, no_bars(), no_springs(), no_strings())

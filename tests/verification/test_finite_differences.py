@@ -34,24 +34,18 @@ SPAN_LISTS = {
             "length_m": 50.0,
             "droppers": {"x_m": [4.5, 14.5, 25.0, 35.5, 45.5], "presag_m": [0.0, 0.03, 0.04, 0.03, 0.0]},
         },
-        {"length_m": 55.0},
-        {"length_m": 55.0},
-        {"length_m": 55.0},
+        {"length_m": 55.0}, {"length_m": 55.0}, {"length_m": 55.0},
     ],
     "support": [
         {"number": 1, "contact_wire_height_m": 5.31, "steady_arm": {"static_share": "level"}},
         {
-            "number": 2,
-            "stagger_contact_wire_m": 0.15,
-            "stagger_messenger_m": 0.05,
-            "encumbrance_m": 1.1,
+            "number": 2, "stagger_contact_wire_m": 0.15, "stagger_messenger_m": 0.05, "encumbrance_m": 1.1,
             "steady_arm": {"length_m": 0.9, "clamp_kg": 1.2, "vertical_damper_N_s_m": 30.0},
             "messenger_support": {"stiffness_N_m": 3e5, "damping_N_s_m": 500.0},
         },
     ],
-    "gradient": [{"from_m": 55.0, "to_m": 160.0, "slope": 0.002}],
-    "contact_wire_height_m": 5.3,
-}
+    "gradient": [{"from_m": 55.0, "to_m": 160.0, "slope": 0.002}], "contact_wire_height_m": 5.3,
+}  # fmt: skip
 """Geometry of the line as built: every value that a support can have, on a gradient."""
 
 

@@ -51,11 +51,8 @@ def toy(tmp_path: Path) -> Path:
 def test_mutants_change_code_and_sample_and_tests_are_chosen(toy: Path) -> None:
     changed = [mutant.mutate(SOURCE) for mutant in list_mutants(toy, "model/grading/grade.py")]
     assert {line.strip() for source in changed for line in set(source.splitlines()) - set(SOURCE.splitlines())} == {
-        "LIMIT: float = 1.5",
-        "LIMIT: float = -0.5",
-        "return value <= LIMIT",
-        "return value > LIMIT",
-    }
+        "LIMIT: float = 1.5", "LIMIT: float = -0.5", "return value <= LIMIT", "return value > LIMIT",
+    }  # fmt: skip
     folders = list_folders(toy)
     assert folders == {"model/grading": ["model/grading/grade.py"], "model": ["model/use.py"]}
     sample = draw_sample(toy, folders["model/grading"], 3)
