@@ -108,12 +108,9 @@ def test_problems_of_all_files_of_a_case_are_listed(edited_case: EditedCase) -> 
     assert result.stdout == "5 problems in 1 of 1 file\n"
     messages = result.stderr.splitlines()
     assert [line.partition(":")[0] for line in messages[::2]] == [
-        "case '250.toml', key speed_km_h",
-        "case '250.toml', key filter.order",
-        "line 'line.toml', key geometry.span_m",
-        "line 'line.toml', key messenger_wire.number",
-        "pantograph 'pantograph.toml', key chain.masses_kg[1]",
-    ]
+        "case '250.toml', key speed_km_h", "case '250.toml', key filter.order", "line 'line.toml', key geometry.span_m",
+        "line 'line.toml', key messenger_wire.number", "pantograph 'pantograph.toml', key chain.masses_kg[1]",
+    ]  # fmt: skip
 
 
 def test_faulty_files_and_empty_folders_hide_no_valid_file(edited_case: EditedCase, tmp_path: Path) -> None:

@@ -41,17 +41,8 @@ def test_error_is_the_uncertainty_where_it_is_known(
     """Four digits of the value, two of its errors. An uncertainty that lacks a component is marked."""
     rear |= {"discretisation_error": 0.01234, "spread": 0.5678, "uncertainty": None}
     expected = [
-        "std_force_N,",
-        "pantograph",
-        "2",
-        "28.12",
-        "0.012",
-        "0.57",
-        *("22", "to", "31"),
-        "+0.64",
-        "PASS",
-        "secondary",
-    ]
+        "std_force_N,", "pantograph", "2", "28.12", "0.012", "0.57", *("22", "to", "31"), "+0.64", "PASS", "secondary",
+    ]  # fmt: skip
     assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
     rear |= {"uncertainty": 0.98765, "spread": None}
     expected[4:6] = ["0.99*", "-"]
