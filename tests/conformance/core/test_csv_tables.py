@@ -24,15 +24,11 @@ def read(folder: Path, text: str, largest: int = 100) -> MeasuredTable:
 @pytest.mark.parametrize(
     "text",
     [
-        "a,b\n0,1\n0.5,-2.5\n1,1e3\n",
-        "a;b\n0;1\n0.5;-2.5\n1;1e3\n",
-        "a;b\n0;1\n0,5;-2,5\n1;1e3\n",
-        "a\tb\n0\t1\n0,5\t-2,5\n1\t1e3\n",
-        '"a" , "b"\n0,1\n0.5,-2.5\n1,1e3\n',
-        "# of the 3rd test\n#;x\n\na,b\n0,1\n\n0.5,-2.5\n  \n1,1e3\n\n",
-        "\ufeffa,b\r\n0,1\r\n0.5,-2.5\r\n1,1e3",
+        "a,b\n0,1\n0.5,-2.5\n1,1e3\n", "a;b\n0;1\n0.5;-2.5\n1;1e3\n", "a;b\n0;1\n0,5;-2,5\n1;1e3\n",
+        "a\tb\n0\t1\n0,5\t-2,5\n1\t1e3\n", '"a" , "b"\n0,1\n0.5,-2.5\n1,1e3\n',
+        "# of the 3rd test\n#;x\n\na,b\n0,1\n\n0.5,-2.5\n  \n1,1e3\n\n", "\ufeffa,b\r\n0,1\r\n0.5,-2.5\r\n1,1e3",
     ],
-)
+)  # fmt: skip
 def test_dialects_comments_and_blank_lines_give_one_table(text: str, tmp_path: Path) -> None:
     table = read(tmp_path, text)
     assert_array_equal(table.values, EXPECTED)

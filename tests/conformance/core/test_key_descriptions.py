@@ -55,12 +55,9 @@ def test_schema_and_sentences_have_the_strings() -> None:
     schema = Wire.model_json_schema(schema_generator=DescribedSchema)
     described = {key: content.get("description") for key, content in schema["properties"].items()}
     assert described == {
-        "depth_m": "Depth of the part [m]; measured downwards.",
-        "colour": "RAL number.",
-        "model": "name of any file",
-        "file": "Spearman's file.",
-        "portion": "true: a part of it. Null: none.",
-    }
+        "depth_m": "Depth of the part [m]; measured downwards.", "colour": "RAL number.", "model": "name of any file",
+        "file": "Spearman's file.", "portion": "true: a part of it. Null: none.",
+    }  # fmt: skip
     nested = schema["$defs"]["Part"]["properties"]
     assert nested["depth_m"]["description"] == "Depth of the part [m]; measured downwards."
     assert "description" not in nested["colour"]

@@ -16,17 +16,11 @@ def dotted(parts: int, separator: str = ".") -> str:
 @pytest.mark.parametrize(
     "line",
     [
-        f"{dotted(20_000)} = 1",
-        f"{dotted(500_000)} = 1",
-        f"{dotted(20_000, ' . ')} = 1",
-        f"[{dotted(20_000)}]",
-        f"[[{dotted(20_000)}]]",
-        f"b = {{ {dotted(20_000)} = 1 }}",
-        ".".join(['"a b"'] * 20_000) + " = 1",
-        ".".join(["'a'"] * 20_000) + " = 1",
-        f"{dotted(MOST_PARTS + 1)} = 1",
+        f"{dotted(20_000)} = 1", f"{dotted(500_000)} = 1", f"{dotted(20_000, ' . ')} = 1", f"[{dotted(20_000)}]",
+        f"[[{dotted(20_000)}]]", f"b = {{ {dotted(20_000)} = 1 }}", ".".join(['"a b"'] * 20_000) + " = 1",
+        ".".join(["'a'"] * 20_000) + " = 1", f"{dotted(MOST_PARTS + 1)} = 1",
     ],
-)
+)  # fmt: skip
 def test_key_of_many_parts_is_refused_quickly(line: str, tmp_path: Path) -> None:
     """The parser took 20 s and 2 GB for 20 000 parts."""
     (tmp_path / "a.toml").write_text(f"x = 1\n{line}\n")

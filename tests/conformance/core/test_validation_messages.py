@@ -76,16 +76,13 @@ def test_message_names_file_key_and_next_step(
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (
-            "order = 6",
-            "order = 6 = 7",
-            "is not valid TOML: Expected newline or end of document after a statement (at line ",
-        ),
+        ("order = 6", "order = 6 = 7",
+         "is not valid TOML: Expected newline or end of document after a statement (at line "),
         ('title = "EN', "title = EN", "is not valid TOML: Invalid value (at line 3, column 9)"),
         ("order = 6", f"order = {'9' * 5000}", "holds a number that is too long, or tables nested too deeply."),
         ("order = 6", "order = " + "[" * 100_000, "holds a number that is too long, or tables nested too deeply."),
     ],
-)
+)  # fmt: skip
 def test_text_that_is_not_toml_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
     text = (library_folder() / "en50318-2002" / CASE).read_text(encoding="utf-8")
     assert old in text

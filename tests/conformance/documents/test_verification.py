@@ -71,8 +71,7 @@ TAMPERINGS = {
     "margin gone": (lambda r: row(r).update(margin=None), "margin nothing stated"),
     "limit": (lambda r: row(r).update(upper=118.0), "verdict 'pass' stated, 'fail' follows"),
     "remark on a limit that is not close": (
-        lambda r: row(r).update(close=["lies close to a limit"]),
-        "1 remarks on a close limit stated, 0 follow",
+        lambda r: row(r).update(close=["lies close to a limit"]), "1 remarks on a close limit stated, 0 follow",
     ),
     "another remark on a close limit": (
         lambda r: (widen(r), row(r).update(close=["lies far from every limit"])),
@@ -80,8 +79,7 @@ TAMPERINGS = {
     ),
     "component beyond the limit without a remark": (widen, "0 remarks on a close limit stated, 1 follow"),
     "component of another quantity": (
-        lambda r: row(r)["components"].update(start=1.0),
-        "components of the uncertainty differ from those reported",
+        lambda r: row(r)["components"].update(start=1.0), "components of the uncertainty differ from those reported",
     ),
     "component that is not combined": (
         lambda r: r["cases"][0]["uncertainty_components"]["2"]["std_force_N"].update(start=9.0),
@@ -107,8 +105,7 @@ TAMPERINGS = {
     "maximum below what is drawn": (lambda r: set_quantity(r, "max_force_N", 165.0), "max_force_N 165 stated"),
     "minimum above what is drawn": (lambda r: set_quantity(r, "min_force_N", 70.0), "min_force_N 70 stated"),
     "quantity of a value gone": (
-        lambda r: r["cases"][1]["quantities"]["1"].pop("std_force_N"),
-        "graded, nothing reported among the quantities",
+        lambda r: r["cases"][1]["quantities"]["1"].pop("std_force_N"), "graded, nothing reported among the quantities",
     ),
     "statistics without a curve": (
         lambda r: (r["cases"][0].update(traces={}), set_quantity(r, "statistical_max_N", 190.0)),
@@ -129,7 +126,7 @@ TAMPERINGS = {
         "verdict 'unverified' stated, 'info' follows from the criteria",
     ),
     "band": (lambda r: set_quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
-}
+}  # fmt: skip
 
 
 def set_quantity(results: dict[str, Any], name: str, value: float) -> None:
