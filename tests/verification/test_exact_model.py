@@ -73,10 +73,8 @@ def track(line: ExactLine, motion: ExactMotion, dt: float, steps: int) -> tuple[
 
 
 def test_bar_rotates_as_a_pendulum() -> None:
-    """Released from the horizontal, a pendulum needs K(sin^2 45 deg) sqrt(L/g) to its lowest point.
-
-    The bar stretches by 3 m g / k = 3e-5 at most, the step is 1/60 of the period of this stretching: 1e-4 is allowed.
-    """
+    """Released from the horizontal, a pendulum needs K(sin^2 45 deg) sqrt(L/g) to its lowest point."""
+    # The bar stretches by 3 m g / k = 3e-5 at most, the step is 1/60 of the period of this stretching: 1e-4 is allowed.
     line, position = build_pendulum(1)
     dt = 1e-4
     positions, _ = track(line, start(position), dt, 7000)
@@ -121,10 +119,8 @@ def test_plucked_wire_keeps_its_energy_and_damping_takes_it() -> None:
 
 
 def test_cable_hangs_in_a_catenary() -> None:
-    """Deep sag of a tenth of the span; a chain of 100 links deviates from the catenary by (1 / 100)^2 of 5 m.
-
-    The tension m g a cosh(x / a) of the catenary stretches the cable; the stretch of 3 mm would add 5 mm to the sag.
-    """
+    """Deep sag of a tenth of the span; a chain of 100 links deviates from the catenary by (1 / 100)^2 of 5 m."""
+    # The tension m g a cosh(x / a) of the catenary stretches the cable; the stretch of 3 mm would add 5 mm to the sag.
     parameter = brentq(lambda a: a * (np.cosh(SPAN / (2 * a)) - 1) - SPAN / 10, 10.0, 200.0)
     length = 2 * parameter * np.sinh(SPAN / (2 * parameter))
     stretch = MASS * GRAVITY * parameter / 2 * (SPAN + parameter * np.sinh(SPAN / parameter)) / AXIAL_STIFFNESS
