@@ -225,17 +225,13 @@ def test_slow_record_is_aligned_too_and_a_very_slow_one_is_refused() -> None:
         ({"drop": DropDescription(30.0, "XW", 94.5)}, "key drop.wire: found 'XW'"),
         ({"drop": DropDescription(30.0, "CW", None)}, "key drop.position_m: missing"),
         ({"drop": DropDescription(30.0, "CW", 400.0)}, "key drop.position_m: no wire CW at 400 m"),
-        (
-            {"line": MeasuredLine(spans_m=(63.0, 63.0, 54.0))},
-            "length of span 3 is 54 m in the record, 58.5 m on the line",
-        ),
+        ({"line": MeasuredLine(spans_m=(63.0, 63.0, 54.0))},
+         "length of span 3 is 54 m in the record, 58.5 m on the line"),
         ({"line": MeasuredLine(spans_m=(63.0, 63.0))}, "number of spans is 2 in the record, 3 on the line"),
-        (
-            {"line": MeasuredLine(spans_m=(), contact_wire_tension_N=24e3)},
-            "tension of the contact wire is 24000 N in the record, 20000 N on the line",
-        ),
+        ({"line": MeasuredLine(spans_m=(), contact_wire_tension_N=24e3)},
+         "tension of the contact wire is 24000 N in the record, 20000 N on the line"),
     ],
-)
+)  # fmt: skip
 def test_record_of_another_drop_or_line_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         compare_drop(replace(record_drop(), **changes), build_task(0.1))
