@@ -38,8 +38,8 @@ def test_signed_certificate(certificate: bytes, signers: Signers, tmp_path: Path
     assert find_violations(content) == []
     assert content.startswith(certificate)
     # The first part of the identifier names the document, the second part its revision.
-    (tmp_path / "certificate.pdf").write_bytes(certificate)
-    signed = sign(tmp_path / "certificate.pdf", signers.author)
+    (tmp_path / "again.pdf").write_bytes(certificate)
+    signed = sign(tmp_path / "again.pdf", signers.author)
     before, after = (PdfReader(io.BytesIO(content)).trailer["/ID"] for content in (certificate, signed.read_bytes()))
     assert before[0] == after[0]
     assert before[1] != after[1]
@@ -97,15 +97,11 @@ SCRIPT = DictionaryObject({NameObject("/S"): NameObject("/JavaScript"), NameObje
 SPOILED: dict[str, Callable[[PdfWriter], None]] = {
     "version": spoil_catalog("/Version", NameObject("/2.0")),
     "identification": lambda writer: writer.xmp_metadata.stream.set_data(b"<x:xmpmeta/>"),
-    "metadata": lambda writer: writer.add_metadata({"/Title": "PASS"}),
-    "fonts": add_font,
-    "no actions": spoil_catalog("/OpenAction", SCRIPT),
-    "attachments": drop("/AF"),
-    "structure": drop("/Lang"),
-    "marked content": unmark,
-    "annotations": hide_annotation,
+    "metadata": lambda writer: writer.add_metadata({"/Title": "PASS"}), "fonts": add_font,
+    "no actions": spoil_catalog("/OpenAction", SCRIPT), "attachments": drop("/AF"), "structure": drop("/Lang"),
+    "marked content": unmark, "annotations": hide_annotation,
     "form": spoil_catalog("/AcroForm", DictionaryObject({NameObject("/XFA"): TextStringObject("0")})),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SPOILED)

@@ -121,14 +121,9 @@ def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None
 
 def test_markdown_renders_every_element() -> None:
     text = (
-        doc.Code("a_b"),
-        " ",
-        doc.Code("a`b"),
-        doc.Remark("*r*"),
-        doc.Link("[1]", "x"),
-        doc.TrustMark(""),
+        doc.Code("a_b"), " ", doc.Code("a`b"), doc.Remark("*r*"), doc.Link("[1]", "x"), doc.TrustMark(""),
         doc.Drawing("<svg/>", "bar"),
-    )
+    )  # fmt: skip
     blocks = (
         doc.Paragraph(text),
         doc.CodeBlock("x = 1\n[t]"),
@@ -141,14 +136,6 @@ def test_markdown_renders_every_element() -> None:
         "t", doc.PlainHeader("Heading", "Result."), (doc.Section("Part", (*blocks, doc.Section("Deeper", ()))),)
     )
     assert render_markdown(document).split("\n\n") == [
-        "# Heading",
-        "Result.",
-        "## Part",
-        r"`a_b` a\`b\*r\*\[1\]–bar",
-        "    x = 1\n    [t]",
-        r"* one\_",
-        "1. first\n2. second",
-        "* Suite: 1.0\n* Started: now",
-        "* a line",
-        "### Deeper\n",
-    ]
+        "# Heading", "Result.", "## Part", r"`a_b` a\`b\*r\*\[1\]–bar", "    x = 1\n    [t]", r"* one\_",
+        "1. first\n2. second", "* Suite: 1.0\n* Started: now", "* a line", "### Deeper\n",
+    ]  # fmt: skip
