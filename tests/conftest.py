@@ -21,6 +21,7 @@ def pytest_report_header() -> str:
 
 
 pytest_plugins = [
+    "helpers.figure_memory",  # first: it replaces a decorator
     "helpers.case_fixtures",
     "helpers.converged_fixtures",
     "helpers.example_results",

@@ -22,20 +22,10 @@ PRINTED_WIDTH = 688
 
 NOT_PRINTED = {
     *(
-        "svg",
-        "anchor",
-        "kind",
-        "alternative",
-        "short",
-        "verdict",
-        "layout",
-        "trust",
-        "footer",
-        "shown",
-        "owner",
+        "svg", "anchor", "kind", "alternative", "short", "verdict", "layout", "trust", "footer", "shown", "owner",
         "label",
     ),
-}
+}  # fmt: skip
 """Keys of a document whose texts are no texts of the page, or stand there as another word."""
 
 CLIPPED = """() => {

@@ -10,14 +10,11 @@ MOST_WORDS = 1500
 """Three printed pages."""
 
 
-def test_page_is_short_and_its_files_exist() -> None:
+def test_page_is_short_and_its_files_and_layers_exist() -> None:
     assert len(TEXT.split()) <= MOST_WORDS
     paths = re.findall(r"`((?:model|conformance|tests|docs|verification)/[\w./]*)`", TEXT)
     assert paths
     assert [path for path in paths if not (ROOT / path).exists()] == []
-
-
-def test_drawing_has_the_layers_of_the_import_rules() -> None:
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
         "contracts"
     ]

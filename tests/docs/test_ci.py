@@ -83,13 +83,10 @@ def test_job_passes_and_fails_by_the_baseline(project: Path) -> None:
     ]  # fmt: skip
 
 
-def test_both_services_run_the_same_commands() -> None:
+def test_both_services_run_the_same_commands_by_their_keys() -> None:
     job = [step["run"] for step in STEPS if step.get("if") != "always()"]
     assert GITLAB["conformance"]["script"][0] == job[0]
     assert GITLAB["conformance"]["script"][1] in job[1]
-
-
-def test_files_have_the_keys_of_their_services() -> None:
     job = GITHUB["jobs"]["conformance"]
     assert GITHUB[True] == ["push", "pull_request"]  # YAML 1.1 reads the key `on` as true; the service does not
     assert {"runs-on", "steps", "timeout-minutes"} <= set(job)

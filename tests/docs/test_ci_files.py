@@ -38,10 +38,17 @@ PINNED = {
 REPORT = "https://example.org/report.zip"
 
 
-def test_actions_of_other_people_are_pinned_by_their_commit() -> None:
+def test_actions_are_pinned_and_the_matrix_has_three_systems_and_the_supported_versions() -> None:
     for path in WORKFLOWS:
         for name, version in re.findall(r"uses: ([\w./-]+)@(.+)", path.read_text(encoding="utf-8")):
             assert PINNED[name] == version.strip(), path.name
+    jobs = WORKFLOW["jobs"]
+    assert jobs["others"]["strategy"]["matrix"]["os"] == ["windows-latest", "macos-latest"]
+    versions = jobs["linux"]["strategy"]["matrix"]["python"]
+    assert f">={versions[0]}" == PROJECT["project"]["requires-python"]
+    assert set(jobs["others"]["strategy"]["matrix"]["python"]) <= set(versions)
+    assert WORKFLOW["permissions"] == {"contents": "read"}
+    assert all("timeout-minutes" in job for job in jobs.values())
 
 
 def action_step(name: str) -> dict[str, Any]:
@@ -228,19 +235,6 @@ def test_commands_of_the_workflow_name_files_of_the_repository() -> None:
         if ".ci/thorough" in line:
             assert set(line.split(".ci/thorough", 1)[1].split()) <= known
     assert any(".ci/run" in line for line in runs)
-
-
-def test_matrix_has_three_systems_and_the_supported_versions() -> None:
-    jobs = WORKFLOW["jobs"]
-    assert jobs["others"]["strategy"]["matrix"]["os"] == ["windows-latest", "macos-latest"]
-    versions = jobs["linux"]["strategy"]["matrix"]["python"]
-    assert f">={versions[0]}" == PROJECT["project"]["requires-python"]
-    assert set(jobs["others"]["strategy"]["matrix"]["python"]) <= set(versions)
-    assert WORKFLOW["permissions"] == {"contents": "read"}
-    assert all("timeout-minutes" in job for job in jobs.values())
-
-
-def test_plan_of_the_page_is_valid() -> None:
     assert check_input_file(ROOT / "docs" / "ci" / "conformance.toml") == "plan file"
 
 

@@ -138,13 +138,9 @@ def prepare_certificate(run: Any) -> None:
 
 
 PREPARATIONS: dict[str, Callable] = {
-    "compare": prepare_comparison,
-    "pantograph-response": prepare_responses,
-    "pytest": prepare_adapter,
-    "site": prepare_records("records"),
-    "systems": prepare_records("my-records"),
-    "verify": prepare_certificate,
-}
+    "compare": prepare_comparison, "pantograph-response": prepare_responses, "pytest": prepare_adapter,
+    "site": prepare_records("records"), "systems": prepare_records("my-records"), "verify": prepare_certificate,
+}  # fmt: skip
 """Files that a page takes as given."""
 
 

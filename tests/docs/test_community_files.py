@@ -13,20 +13,14 @@ FORMS = sorted(set((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")) - {ROOT 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
-def test_citation_has_version_and_licence_of_the_project() -> None:
+def test_citation_templates_and_guide_agree_with_the_project() -> None:
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     own, *_ = PROJECT["license"].split(" AND ")  # the others are licences of packaged libraries
     assert (citation["version"], citation["license"]) == (PROJECT["version"], own)
     assert {"cff-version", "message", "title", "authors"} <= citation.keys()
-
-
-def test_issue_templates_ask_for_evidence() -> None:
     for path in FORMS:
         form = yaml.safe_load(path.read_text(encoding="utf-8"))
         assert {"name", "description", "body"} <= form.keys(), path
         assert any(part.get("validations", {}).get("required") for part in form["body"]), path
-
-
-def test_trust_levels_of_the_guide_are_those_of_the_suite() -> None:
     guide = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert all(f"| `{level}` |" in guide for level in get_args(Trust))

@@ -30,10 +30,13 @@ def describe(limit: Limit) -> tuple[str, str, str, str, str]:
     return finding.section, finding.sentence, finding.printed, bounds, finding.role.replace("_", " ")
 
 
-def test_table_holds_every_finding_of_the_library_once() -> None:
+def test_table_and_counts_hold_every_finding_of_the_library_once() -> None:
     rows = [tuple(row[name] for name in ("section", "finding", "printed", "bounds", "role")) for row in read_rows()]
     assert sorted(rows) == sorted(map(describe, list_limits()))
     assert len({row[1] for row in rows}) == len(rows)
+    outcomes = [row["outcome"] for row in read_rows()]
+    numbers = ", ".join(f"{outcomes.count(name)} {name}" for name in ("imposed", "reproduced", "not reproduced"))
+    assert f"Findings: {numbers}." in PAGE
 
 
 def test_outcomes_follow_from_the_printed_values() -> None:
@@ -53,9 +56,3 @@ def test_commands_of_the_page_are_those_of_the_damping_files() -> None:
     written = {name for name in names if f"reference_cases/vovan2015/damping/{name}.toml\n" in PAGE}
     assert written == {"stand-in", "updated", "updated-modal"}
     assert names - written == {"benchmark", "initial", "printed"}  # transcribed from their sources
-
-
-def test_counts_are_those_of_the_table() -> None:
-    outcomes = [row["outcome"] for row in read_rows()]
-    numbers = ", ".join(f"{outcomes.count(name)} {name}" for name in ("imposed", "reproduced", "not reproduced"))
-    assert f"Findings: {numbers}." in PAGE

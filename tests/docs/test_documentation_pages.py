@@ -13,13 +13,10 @@ TEMPLATES = sorted((ROOT / "templates").glob("new-*.toml"))
 FILE = re.compile(r"docs/[a-z-]+\.md")
 
 
-def test_pages_have_the_titles_of_their_files() -> None:
+def test_pages_and_drafts_have_the_titles_of_their_files() -> None:
     for page in DocumentationPage:
         assert TITLES[page.name.lower().replace("_", "-")] == page.value
         assert f"See {page}." == f"See the page '{page.value}' of the documentation."
-
-
-def test_drafts_name_pages_by_their_titles() -> None:
     named = re.findall(r"the page\s+(?:# )?'([^']+)'", "".join(path.read_text() for path in TEMPLATES))
     assert len(named) >= 8
     assert set(named) <= set(TITLES.values())

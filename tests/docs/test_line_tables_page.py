@@ -44,7 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_export_and_import_give_the_same_line(folder: Path) -> None:
+def test_export_and_import_give_the_same_line_and_overwrite_no_input(folder: Path) -> None:
     for name in ("line export", "line import"):
         done = CliRunner().invoke(app, command(name))
         assert done.exit_code == 0, done.output
@@ -52,9 +52,6 @@ def test_export_and_import_give_the_same_line(folder: Path) -> None:
     assert build_catenary(line) == build_catenary(read_unequal_line())
     done = CliRunner().invoke(app, ["check", "my-line.toml"])
     assert done.exit_code == 0, done.output
-
-
-def test_import_does_not_overwrite_its_input(folder: Path) -> None:
     CliRunner().invoke(app, command("line export"))
     arguments = ["mass-drop-line.toml" if text == "my-line.toml" else text for text in command("line import")]
     done = CliRunner().invoke(app, arguments)
@@ -84,7 +81,7 @@ def test_message_of_the_page_is_the_one_that_is_printed(folder: Path) -> None:
     assert str(caught.value).splitlines()[0] == message.strip()
 
 
-def test_comparison_runs_and_passes(folder: Path) -> None:
+def test_comparison_passes_and_is_informative_without_a_tolerance(folder: Path) -> None:
     done = CliRunner().invoke(app, command("line statics"))
     assert done.exit_code == 0, done.output
     assert {path.name for path in (folder / "statics").iterdir()} == {
@@ -92,9 +89,6 @@ def test_comparison_runs_and_passes(folder: Path) -> None:
         "contact_wire_height.csv",
     }  # fmt: skip
     assert "PASS" in done.output
-
-
-def test_comparison_without_a_tolerance_is_informative(folder: Path) -> None:
     done = CliRunner().invoke(app, command("line statics")[:-2])
     assert done.exit_code == 1, done.output
     assert "INFO" in done.output

@@ -40,12 +40,9 @@ def read_limits(text: str) -> ComparisonLimits:
     return ComparisonLimits.model_validate(read_tables(text, "comparison-limits"))
 
 
-def test_limits_of_a_compared_drop() -> None:
+def test_limits_and_sidecar_of_a_drop(tmp_path: Path) -> None:
     (limit,) = read_limits(list_blocks("compare-drop.md", "toml")[0]).limit
     assert (limit.sensors, limit.window_s, limit.band_Hz) == ((1, 2, 3, 4), (0.0, 10.0), (0.3, 20.0))
-
-
-def test_sidecar_of_a_mass_drop(tmp_path: Path) -> None:
     text = list_blocks("identification.md", "toml")[0]
     (tmp_path / "drop.toml").write_text(text, encoding="utf-8")
     sidecar = read_model(tmp_path / "drop.toml", DropSidecar, "sidecar")

@@ -34,9 +34,6 @@ def test_links_and_tables_of_every_page() -> None:
         wrong += [f"{page.name}: link to {target}" for target in list_broken_links(page, text)]
         wrong += [f"{page.name}: row {row}" for row in list_loose_rows(text)] if DOCS in page.parents else []
     assert wrong == []
-
-
-def test_faults_of_a_page_are_found() -> None:
     assert list_broken_links(DOCS / "index.md", "[a](nowhere.md) [b](index.md) [c](generated/x.md)") == ["nowhere.md"]
     assert list(list_loose_rows("| a | b |\n\n| a |\n|---|\n| 1 |\n")) == ["| a | b |"]
 

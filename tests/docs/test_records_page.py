@@ -27,7 +27,7 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_program_writes_a_record_that_can_be_graded(written: Path) -> None:
+def test_program_writes_a_record_that_can_be_graded(written: Path, tmp_path: Path) -> None:
     record, sidecar = read_record(written / "my250.toml")
     assert sidecar.case == "en50318-2002/250"
     assert record.rate == pytest.approx(1000)
@@ -36,10 +36,9 @@ def test_program_writes_a_record_that_can_be_graded(written: Path) -> None:
     assert re.search(r"min_force_N .* FAIL", done.output)
     assert "the record has no uplift at supports" in done.output
     assert (written / "report" / "certificate.html").exists()
-
-
-def test_page_shows_the_command_of_the_test() -> None:
     assert "pantocheck run en50318-2002/250 --system record:. --out report" in blocks("sh")[0]
+    (tmp_path / "s.toml").write_text(blocks("toml")[0])
+    assert open_record(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
 
 
 def test_matlab_program_writes_the_same_sidecar(written: Path) -> None:
@@ -49,11 +48,6 @@ def test_matlab_program_writes_the_same_sidecar(written: Path) -> None:
     for line in (written / "my250.toml").read_text().splitlines():
         assert f"'{line}'" in matlab
     assert len(matlab.splitlines()) <= 11
-
-
-def test_summary_of_the_page_is_read(tmp_path: Path) -> None:
-    (tmp_path / "s.toml").write_text(blocks("toml")[0])
-    assert open_record(tmp_path / "s.toml").quantities == {"max_uplift_at_support_mm": 52.2}
 
 
 def test_messages_of_the_page_are_those_that_are_printed(written: Path) -> None:

@@ -27,13 +27,9 @@ def test_commands_of_the_test_authority(accepted_wave: Results, tmp_path: Path) 
     script = f'set -e\npantocheck() {{ {program} "$@"; }}\n{commands}'
     folder = str(Path(sys.executable).parent)
     done = subprocess.run(
-        ["bash", "-c", script],
-        cwd=tmp_path,
-        env=os.environ | {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"},
-        capture_output=True,
-        check=False,
-        text=True,
-    )
+        ["bash", "-c", script], cwd=tmp_path, env=os.environ | {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"},
+        capture_output=True, check=False, text=True,
+    )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     assert "\nauthentic: the verdict 'pass' follows" in done.stdout
     output = " ".join(done.stdout.split())

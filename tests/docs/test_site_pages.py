@@ -30,16 +30,13 @@ def pages() -> Iterator[dict[str, str]]:
         yield {name: build() for name, build in package.PAGES.items()}
 
 
-def test_every_option_of_a_command_is_described(pages: dict[str, str]) -> None:
+def test_every_option_key_quantity_and_public_name_is_described(pages: dict[str, str]) -> None:
     missing = []
     for name in COMMANDS:
         section = pages["commands"].split(f"## pantocheck {name}\n")[1].split("\n## ")[0]
         options = {option for parameter in load_command(name).params for option in parameter.opts if option[:2] == "--"}
         missing += [(name, option) for option in options - {"--help"} if option not in section]
     assert missing == []
-
-
-def test_every_key_of_a_format_is_described(pages: dict[str, str]) -> None:
     missing = []
     for name in FORMAT_NAMES:
         section = pages["formats"].split(f"## {name}\n")[1].split("\n## ")[0]
@@ -47,6 +44,9 @@ def test_every_key_of_a_format_is_described(pages: dict[str, str]) -> None:
         parts = [schema, *schema.get("$defs", {}).values()]
         missing += [(name, key) for part in parts for key in part.get("properties", {}) if f"`{key}`" not in section]
     assert missing == []
+    assert {name for name in QUANTITIES if f"`{name}`" not in pages["quantity-reference"]} == set()
+    public = {*pantocheck.conformance.__all__, *pantocheck.model.__all__}
+    assert {name for name in public if name not in pages["interface"]} == set()
 
 
 def test_every_threshold_has_its_value_and_a_reason(pages: dict[str, str]) -> None:
@@ -59,13 +59,7 @@ def test_every_threshold_has_its_value_and_a_reason(pages: dict[str, str]) -> No
     assert values["CONTRADICTION"] == f"{record_checks.CONTRADICTION:g}"  # one of two numbers of a statement
 
 
-def test_every_quantity_and_public_name_is_described(pages: dict[str, str]) -> None:
-    assert {name for name in QUANTITIES if f"`{name}`" not in pages["quantity-reference"]} == set()
-    public = {*pantocheck.conformance.__all__, *pantocheck.model.__all__}
-    assert {name for name in public if name not in pages["interface"]} == set()
-
-
-def test_navigation_lists_every_page_once(pages: dict[str, str]) -> None:
+def test_navigation_and_list_of_pages_are_complete(pages: dict[str, str]) -> None:
     """A new page belongs into a toctree of docs/index.md."""
     blocks = re.findall(r"```\{toctree\}\n(.*?)```", (DOCS / "index.md").read_text("utf-8"), re.DOTALL)
     listed = [line for block in blocks for line in block.splitlines() if line and not line.startswith(":")]
@@ -73,10 +67,7 @@ def test_navigation_lists_every_page_once(pages: dict[str, str]) -> None:
     tutorials = {f"tutorials/{path.stem}" for path in (DOCS / "tutorials").glob("*.md")}
     generated = {f"generated/{name}" for name in pages} | {"gallery/index"}
     assert sorted(listed) == sorted(written | tutorials | generated)
-
-
-def test_list_of_pages_states_the_purpose_of_each(pages: dict[str, str]) -> None:
-    """Written pages only; generated ones are named in the navigation by their content."""
+    # Written pages only; generated ones are named in the navigation by their content.
     for page in {*DOCS.glob("*.md"), *DOCS.glob("tutorials/*.md")} - {DOCS / "index.md"}:
         link = f"](../{page.relative_to(DOCS).as_posix()}) | "
         assert pages["all-pages"].count(link) == 1, page

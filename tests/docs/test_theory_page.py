@@ -36,12 +36,9 @@ SECTIONS = {
 """Sections of the page, and the test of the equations of each beside those of this file."""
 
 
-def test_sections_are_complete_and_tested() -> None:
+def test_sections_are_complete_and_end_in_files_that_exist() -> None:
     assert re.findall(r"^## (.+)$", PAGE, re.MULTILINE) == list(SECTIONS)
     assert [test for test in SECTIONS.values() if not (ROOT / test).is_file()] == []
-
-
-def test_every_section_ends_in_files_that_exist() -> None:
     for section in PAGE.split("\n## ")[1:]:
         files = re.findall(r"`([\w/]+\.py)`", section.split("*Files:*")[1])
         assert files, section.split("\n")[0]
@@ -89,12 +86,13 @@ def test_period_errors_of_both_methods() -> None:
         assert (corrected - 1) / theta**4 == pytest.approx(1 / 480, rel=0.02)
 
 
-def test_gain_of_the_filter() -> None:
+def test_gain_of_the_filter_and_doppler_factor() -> None:
     rate, frequency = 200.0, np.array([5.0, 20.0, 30.0])
     cutoff = Filter().single_run(rate)[1]
     ratio = np.tan(np.pi * frequency / rate) / np.tan(np.pi * cutoff / rate)
     np.testing.assert_allclose(Filter().gain(frequency, rate), 1 / (1 + ratio**6), rtol=1e-9)
     assert Filter().gain(np.array([20.0]), rate)[0] == pytest.approx(10 ** (-3.0103 / 20), rel=1e-5)
+    assert doppler_factor(60.0, 120.0) == pytest.approx((120 - 60) / (120 + 60))
 
 
 def test_bands_partition_the_variance() -> None:
@@ -115,10 +113,6 @@ def test_spring_in_series_with_the_residual_flexibility() -> None:
     exact = 1 / (1 / (k + 1j * omega * c) + flexibility / (1 + 1j * omega * beta))
     assert series[0][0] == pytest.approx(exact.real, rel=1e-5)
     assert series[1][0] == pytest.approx(exact.imag / omega, rel=1e-4)
-
-
-def test_doppler_factor() -> None:
-    assert doppler_factor(60.0, 120.0) == pytest.approx((120 - 60) / (120 + 60))
 
 
 def test_transform_of_a_decay() -> None:

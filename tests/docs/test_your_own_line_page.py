@@ -70,44 +70,28 @@ def outputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     return printed
 
 
-def test_installation_is_that_of_the_readme() -> None:
-    """The continuous integration runs the line of the README in a fresh environment."""
+def test_every_command_of_the_page_runs_and_prints_what_it_shows(outputs: dict[str, list[str]]) -> None:
+    """The continuous integration runs the installation of the README in a fresh environment."""
     install = list_blocks()[0][1].splitlines()[0]
     assert install in (ROOT / "README.md").read_text(encoding="utf-8")
-
-
-def test_every_command_runs(outputs: dict[str, list[str]]) -> None:
     assert len(outputs) >= 10
     folder = Path(outputs["folder"][0])
     for name in ("certificate.html", "certificate.pdf", "quantities.csv", "results.json"):
         assert (folder / "report" / name).stat().st_size > 1000
     for name in ("my-line.svg", "records/my-case.csv", "records/my-case.toml", "records/140-N.csv"):
         assert (folder / name).stat().st_size > 500
-
-
-def test_check_prints_the_lines_of_the_page(outputs: dict[str, list[str]]) -> None:
     (printed,) = outputs["pantocheck check my-line.toml my-pantograph.toml my-case.toml"]
     lines = "".join(f"{line.rstrip()}\n" for line in printed.splitlines())  # a wrapped line may end with a blank
     assert lines in [text for language, text in list_blocks() if language == ""]
-
-
-def test_run_prints_values_and_the_limit_decides(outputs: dict[str, list[str]]) -> None:
+    rows = list(csv.DictReader((folder / "report-200" / "quantities.csv").read_text().splitlines()))
+    assert {row["changes"] for row in rows} == {
+        "speed_km_h = 200 (file: 250.0); line.contact_wire.tension_N = 22000.0 (file: 20000.0)"
+    }
     without, with_limit = outputs["pantocheck run my-case.toml --out report"]
     assert without.startswith("INFO")
     assert re.search(r"^mean_force_N +1\d\d", without, re.MULTILINE)
     assert with_limit.startswith("PASS")
     assert re.search(r"^std_force_N .*<= 60.* PASS +primary", with_limit, re.MULTILINE)
-
-
-def test_changed_inputs_are_stated(outputs: dict[str, list[str]]) -> None:
-    folder = Path(outputs["folder"][0])
-    rows = list(csv.DictReader((folder / "report-200" / "quantities.csv").read_text().splitlines()))
-    assert {row["changes"] for row in rows} == {
-        "speed_km_h = 200 (file: 250.0); line.contact_wire.tension_N = 22000.0 (file: 20000.0)"
-    }
-
-
-def test_keys_of_the_table_exist(outputs: dict[str, list[str]]) -> None:
     values = {"span_list": "61", "masses_kg": "[14.0, 7.0]", "speed_km_h": "300", "tension_N": "18e3"}
     table = re.findall(r"^\| `([^`]+)` \| (?:a|an|the) ", PAGE, re.MULTILINE)
     assert len(table) == 5
@@ -115,10 +99,6 @@ def test_keys_of_the_table_exist(outputs: dict[str, list[str]]) -> None:
         value = next((value for name, value in values.items() if name in key), "150")
         case = load_case(Path(outputs["folder"][0]) / "my-case.toml", parse_changes([f"{key}={value}"]))
         assert len(case.changes) == 1
-
-
-def test_errors_of_the_page_are_those_that_are_printed(outputs: dict[str, list[str]]) -> None:
-    folder = Path(outputs["folder"][0])
     text = (folder / "my-line.toml").read_text()
     text = text.replace("50.0, droppers = { x_m = [5.0, 15.0, 25.0, 35.0, 45.0] }", '50.0, droppers = "short"')
     text = text.replace("40.2, 49.0]", "40.2, 52.0]").replace("tension_N = 20000.0", "tension_kN = 20", 1)

@@ -19,14 +19,9 @@ PUBLIC = {"pantocheck.conformance", "pantocheck.model"}
 def test_example_runs(path: Path, tmp_path: Path) -> None:
     """In a fresh process, without a display, as a reader runs it."""
     done = subprocess.run(
-        [sys.executable, str(path)],
-        cwd=tmp_path,
-        env={**os.environ, "MPLBACKEND": "agg"},
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
+        [sys.executable, str(path)], cwd=tmp_path, env={**os.environ, "MPLBACKEND": "agg"}, capture_output=True,
+        text=True, timeout=600, check=False,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
 
 

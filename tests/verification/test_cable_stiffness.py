@@ -42,14 +42,10 @@ def cable() -> Cable:
     free = np.ones_like(position)
     free[:, [0, support, -1]] = 0.0
     wires = Wires(
-        first=np.array([0]),
-        last=np.array([POINTS - 1]),
-        axial_stiffness=np.array([AXIAL_STIFFNESS]),
-        bending_stiffness=np.zeros(1),
-        tension=np.array([TENSION]),
-        spacing=np.array([x[1]]),
+        first=np.array([0]), last=np.array([POINTS - 1]), axial_stiffness=np.array([AXIAL_STIFFNESS]),
+        bending_stiffness=np.zeros(1), tension=np.array([TENSION]), spacing=np.array([x[1]]),
         stiffness_coefficient=np.zeros(1),
-    )
+    )  # fmt: skip
     mass, parts = np.full(POINTS, MASS * x[1]), (no_bars(), no_springs(), no_strings())
     line = ExactLine(mass, np.zeros(POINTS), free, unstretched_lengths(position, wires), 0.0, wires, *parts)
     return line, position, np.array([support])
@@ -115,12 +111,10 @@ def test_free_support_lets_the_tension_of_both_spans_be_equal(cable: Cable) -> N
 
 
 def test_reference_simulator_with_fixed_supports_has_the_tangent_of_the_exact_model() -> None:
-    """Three spans of AC simple: frequencies within 0.3 %, elasticities at a quarter and in mid-span within 0.7 %.
-
-    The exact model is taken at the static state of the reference simulator, 2 mm from its own: 0.2 % of a frequency
-    and 0.2 % of an elasticity; a chain of points at 0.25 m bends more under a point force. With free supports the
-    elasticity in mid-span is 16 % larger, the first frequency 11 % smaller.
-    """
+    """Three spans of AC simple: frequencies within 0.3 %, elasticities at a quarter and in mid-span within 0.7 %."""
+    # The exact model is taken at the static state of the reference simulator, 2 mm from its own: 0.2 % of a frequency
+    # and 0.2 % of an elasticity; a chain of points at 0.25 m bends more under a point force. With free supports the
+    # elasticity in mid-span is 16 % larger, the first frequency 11 % smaller.
     study = build_exact_case(3, 0.25, 0.0)
     exact, position = build_exact_line(study.line, study.axial_stiffness, "fixed")
     start, end = study.case.line.geometry.span(2)

@@ -29,14 +29,10 @@ def build_cable(
     free = np.ones_like(position)
     free[:, [0, -1]] = 0.0
     wires = Wires(
-        first=np.array([0]),
-        last=np.array([points - 1]),
-        axial_stiffness=np.array([axial_stiffness]),
-        bending_stiffness=np.array([bending]),
-        tension=np.array([TENSION]),
-        spacing=np.array([h]),
+        first=np.array([0]), last=np.array([points - 1]), axial_stiffness=np.array([axial_stiffness]),
+        bending_stiffness=np.array([bending]), tension=np.array([TENSION]), spacing=np.array([h]),
         stiffness_coefficient=np.array([damping]),
-    )
+    )  # fmt: skip
     mass = np.full(points, MASS * h)
     unstretched = np.full(points, length / (points - 1))
     parts = (wires, no_bars(), no_springs(), no_strings())
@@ -77,10 +73,8 @@ def track(line: ExactLine, motion: ExactMotion, dt: float, steps: int) -> tuple[
 
 
 def test_bar_rotates_as_a_pendulum() -> None:
-    """Released from the horizontal, a pendulum needs K(sin^2 45 deg) sqrt(L/g) to its lowest point.
-
-    The bar stretches by 3 m g / k = 3e-5 at most, the step is 1/60 of the period of this stretching: 1e-4 is allowed.
-    """
+    """Released from the horizontal, a pendulum needs K(sin^2 45 deg) sqrt(L/g) to its lowest point."""
+    # The bar stretches by 3 m g / k = 3e-5 at most, the step is 1/60 of the period of this stretching: 1e-4 is allowed.
     line, position = build_pendulum(1)
     dt = 1e-4
     positions, _ = track(line, start(position), dt, 7000)
@@ -125,10 +119,8 @@ def test_plucked_wire_keeps_its_energy_and_damping_takes_it() -> None:
 
 
 def test_cable_hangs_in_a_catenary() -> None:
-    """Deep sag of a tenth of the span; a chain of 100 links deviates from the catenary by (1 / 100)^2 of 5 m.
-
-    The tension m g a cosh(x / a) of the catenary stretches the cable; the stretch of 3 mm would add 5 mm to the sag.
-    """
+    """Deep sag of a tenth of the span; a chain of 100 links deviates from the catenary by (1 / 100)^2 of 5 m."""
+    # The tension m g a cosh(x / a) of the catenary stretches the cable; the stretch of 3 mm would add 5 mm to the sag.
     parameter = brentq(lambda a: a * (np.cosh(SPAN / (2 * a)) - 1) - SPAN / 10, 10.0, 200.0)
     length = 2 * parameter * np.sinh(SPAN / (2 * parameter))
     stretch = MASS * GRAVITY * parameter / 2 * (SPAN + parameter * np.sinh(SPAN / parameter)) / AXIAL_STIFFNESS
@@ -142,7 +134,7 @@ def test_cable_hangs_in_a_catenary() -> None:
     assert sag == pytest.approx(expected, abs=1e-3)
 
 
-def test_frequencies_of_a_taut_beam_across_and_of_a_rod_along() -> None:
+def test_frequencies_and_elasticity_of_a_taut_string() -> None:
     """Lumped masses at distance h lower the frequency of wave number k by (k h)^2 / 24: 5e-4 for mode 3 here."""
     line, position = build_cable(101, SPAN * (1 - TENSION / AXIAL_STIFFNESS), AXIAL_STIFFNESS, BENDING_STIFFNESS)
     line = line._replace(unstretched=np.full(101, SPAN / 100 / (1 + TENSION / AXIAL_STIFFNESS)))
@@ -152,15 +144,12 @@ def test_frequencies_of_a_taut_beam_across_and_of_a_rod_along() -> None:
     assert natural_frequencies(line, position, 3, axes=(2,)) == pytest.approx(across, rel=5e-4)
     # The elastic stretch makes the rod stiffer per unstretched length by T / EA = 1.2e-3.
     assert natural_frequencies(line, position, 3, axes=(0,)) == pytest.approx(along, rel=2e-3)
-
-
-def test_elasticity_of_a_taut_string() -> None:
-    """In the middle L / 4 T; points of a chain deflect as those of a string."""
+    # In the middle L / 4 T; points of a chain deflect as those of a string.
     line, position = build_cable(101, SPAN / (1 + TENSION / AXIAL_STIFFNESS), AXIAL_STIFFNESS)
     assert point_elasticity(line, position, np.array([50])) == pytest.approx([SPAN / (4 * TENSION)], rel=1e-3)
 
 
-def test_slack_dropper_carries_no_force() -> None:
+def test_slack_dropper_carries_no_force_and_contact_shares_reproduce_a_cubic() -> None:
     line, position = build_pendulum(1)
     rope = line._replace(bars=line.bars._replace(unilateral=np.array([True])), gravity=0.0)
     force = np.zeros_like(position)
@@ -169,10 +158,7 @@ def test_slack_dropper_carries_no_force() -> None:
         moved[0, 1] += stretch
         sum_forces(rope, moved, np.zeros_like(position), force, allocate_scratch(2))
         assert force[0] == pytest.approx([tension, -tension])
-
-
-def test_contact_shares_reproduce_a_cubic() -> None:
-    """Four points determine a cubic; its value between them is exact."""
+    # Four points determine a cubic; its value between them is exact.
     places = np.arange(-1.0, 3.0)
     for s in (0.0, 0.3, 1.0):
         assert np.dot(cubic_shares(s), places**3 - 2 * places + 1) == pytest.approx(s**3 - 2 * s + 1)

@@ -34,24 +34,18 @@ SPAN_LISTS = {
             "length_m": 50.0,
             "droppers": {"x_m": [4.5, 14.5, 25.0, 35.5, 45.5], "presag_m": [0.0, 0.03, 0.04, 0.03, 0.0]},
         },
-        {"length_m": 55.0},
-        {"length_m": 55.0},
-        {"length_m": 55.0},
+        {"length_m": 55.0}, {"length_m": 55.0}, {"length_m": 55.0},
     ],
     "support": [
         {"number": 1, "contact_wire_height_m": 5.31, "steady_arm": {"static_share": "level"}},
         {
-            "number": 2,
-            "stagger_contact_wire_m": 0.15,
-            "stagger_messenger_m": 0.05,
-            "encumbrance_m": 1.1,
+            "number": 2, "stagger_contact_wire_m": 0.15, "stagger_messenger_m": 0.05, "encumbrance_m": 1.1,
             "steady_arm": {"length_m": 0.9, "clamp_kg": 1.2, "vertical_damper_N_s_m": 30.0},
             "messenger_support": {"stiffness_N_m": 3e5, "damping_N_s_m": 500.0},
         },
     ],
-    "gradient": [{"from_m": 55.0, "to_m": 160.0, "slope": 0.002}],
-    "contact_wire_height_m": 5.3,
-}
+    "gradient": [{"from_m": 55.0, "to_m": 160.0, "slope": 0.002}], "contact_wire_height_m": 5.3,
+}  # fmt: skip
 """Geometry of the line as built: every value that a support can have, on a gradient."""
 
 
@@ -131,10 +125,8 @@ def test_static_deflection_under_a_point_force(x: float) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_static_uplift_is_an_equilibrium_of_the_time_step(name: str) -> None:
-    """Matrices and time step are written separately: the first step from a static uplift returns minus its load.
-
-    Under 400 N droppers are slack.
-    """
+    """Matrices and time step are written separately: the first step from a static uplift returns minus its load."""
+    # Under 400 N droppers are slack.
     line = model(name)
     load = line.point_load(80.0, 400.0)
     displacement, n = line.uplift.displacement(load), load.size
@@ -249,10 +241,8 @@ def test_quantities_of_a_known_force() -> None:
 
 
 def test_line_as_built_agrees_with_the_reference_simulator() -> None:
-    """Spans 2 and 3 of five at 320 km/h, with every value that a support can have.
-
-    2.6 % in 20-50 Hz and below 1 % elsewhere, at spacings of 0.25 m and elements of 0.5 m.
-    """
+    """Spans 2 and 3 of five at 320 km/h, with every value that a support can have."""
+    # 2.6 % in 20-50 Hz and below 1 % elsewhere, at spacings of 0.25 m and elements of 0.5 m.
     section = {"evaluated_spans": (2, 3), "start_m": 20.0, "run_out_m": 70.0}
     built = case(AS_BUILT, 5)
     built = replace(built, file=built.file.model_copy(update=section))

@@ -24,12 +24,8 @@ from verification.attacks.forgeries import (
 from verification.tables.__main__ import TABLES
 
 PDF_KINDS = [
-    "heading painted over",
-    "note over the heading, as update",
-    "further attachment",
-    "script",
-    "written again",
-]
+    "heading painted over", "note over the heading, as update", "further attachment", "script", "written again",
+]  # fmt: skip
 HTML_KINDS = ["every word of a verdict", "coordinate of a curve", "rows hidden by style", "script", "embedded verdict"]
 
 

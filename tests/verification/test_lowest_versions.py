@@ -18,8 +18,5 @@ def test_every_extra_has_lower_bounds_and_all_contains_the_others() -> None:
     assert compiler.startswith("numba==")
     assert constraints["all"] >= set.union(*(constraints[name] for name in ("simulator", "pdf", "massdrop", "cluster")))
     assert constraints["test"] > constraints["simulator"]
-
-
-def test_dependency_without_a_lower_bound_is_refused() -> None:
     with pytest.raises(ValueError, match="'numpy' has no lower bound"):
         lowest_versions.pin_lowest("numpy")

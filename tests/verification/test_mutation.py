@@ -48,24 +48,15 @@ def toy(tmp_path: Path) -> Path:
     return tmp_path / "toy"
 
 
-def test_mutants_change_code_and_no_text(toy: Path) -> None:
+def test_mutants_change_code_and_sample_and_tests_are_chosen(toy: Path) -> None:
     changed = [mutant.mutate(SOURCE) for mutant in list_mutants(toy, "model/grading/grade.py")]
     assert {line.strip() for source in changed for line in set(source.splitlines()) - set(SOURCE.splitlines())} == {
-        "LIMIT: float = 1.5",
-        "LIMIT: float = -0.5",
-        "return value <= LIMIT",
-        "return value > LIMIT",
-    }
-
-
-def test_sample_is_seeded_and_leaves_compiled_kernels_out(toy: Path) -> None:
+        "LIMIT: float = 1.5", "LIMIT: float = -0.5", "return value <= LIMIT", "return value > LIMIT",
+    }  # fmt: skip
     folders = list_folders(toy)
     assert folders == {"model/grading": ["model/grading/grade.py"], "model": ["model/use.py"]}
     sample = draw_sample(toy, folders["model/grading"], 3)
     assert sample == draw_sample(toy, folders["model/grading"], 4)[:3]
-
-
-def test_related_tests_are_those_that_import_the_file_nearest_first(toy: Path) -> None:
     assert list(RelatedTests(toy).select("model/grading/grade.py")) == [
         "tests/model/grading/test_grade.py",
         "tests/conformance/test_use.py",
@@ -84,13 +75,10 @@ def test_tests_run_on_the_changed_copy(toy: Path, tmp_path: Path) -> None:
     assert worker.run_tests(tests, 0.01) is None
 
 
-def test_interval_is_that_of_wilson() -> None:
+def test_interval_is_that_of_wilson_and_equivalents_are_listed() -> None:
     """Newcombe (1998), Statistics in Medicine 17, 857-872, Table I: 81 of 263 and 0 of 20."""
     assert wilson_interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
     assert wilson_interval(0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)
-
-
-def test_survivor_is_equivalent_if_both_lines_are_listed() -> None:
     row = {"file": "a.py", "diff": ["@@ -1 +1 @@", "-    a < b", "+    a <= b"]}
     known = {"file": "a.py", "line": "a < b", "mutant": "a <= b", "reason": "never equal"}
     assert is_equivalent(row, [known])

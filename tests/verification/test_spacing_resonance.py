@@ -23,11 +23,9 @@ def load(*changes: str) -> Case:
 
 
 def test_highest_frequency_is_that_of_the_joined_wires_between_two_supports() -> None:
-    """Neighbouring spans in opposite phase are at rest at the supports, so that f = sqrt(T / m) / (2 L).
-
-    Both wires carry their tensions and masses together. Bending, the masses of the arms, the stiffness of the droppers
-    and their distance change the frequency by less than 1 %.
-    """
+    """Neighbouring spans in opposite phase are at rest at the supports, so that f = sqrt(T / m) / (2 L)."""
+    # Both wires carry their tensions and masses together. Bending, the masses of the arms, the stiffness of the
+    # droppers and their distance change the frequency by less than 1 %.
     line = load().line
     droppers = line.droppers
     lengths = np.array(droppers.length_m)
@@ -41,11 +39,9 @@ def test_highest_frequency_is_that_of_the_joined_wires_between_two_supports() ->
 
 
 def test_rear_pantograph_is_disturbed_at_whole_waves_behind_the_front_one() -> None:
-    """One wave v / f behind the front pantograph the standard deviation is twice that at one and a half waves.
-
-    It is 39 N against 19 N on the line of 48 spans; half of the difference must remain on a short line with a coarse
-    mesh.
-    """
+    """One wave v / f behind the front pantograph the standard deviation is twice that at one and a half waves."""
+    # It is 39 N against 19 N on the line of 48 spans; half of the difference must remain on a short line with a coarse
+    # mesh.
     wave = SPEED_KM_H / 3.6 / wake_frequency(load().line, SPEED_KM_H / 3.6)
     deviations = []
     for waves in (1.0, 1.5):

@@ -14,7 +14,7 @@ def line() -> stand_in_search.GroupedLine:
     return stand_in_search.group_line(case)
 
 
-def test_search_is_repeatable(line: stand_in_search.GroupedLine) -> None:
+def test_search_is_repeatable_without_findings_that_are_held_out(line: stand_in_search.GroupedLine) -> None:
     """All candidates of all rounds, about 3 s: nothing else shows that no number was chosen by hand."""
     (case,) = select_cases([stand_in_search.CASE])
     limits = stand_in_search.select_imposed(case)
@@ -28,11 +28,6 @@ def test_search_is_repeatable(line: stand_in_search.GroupedLine) -> None:
         for p in agreeing
     ]
     assert min(margins) > max(map(min, others))
-
-
-def test_search_uses_no_finding_that_is_held_out(line: stand_in_search.GroupedLine) -> None:
-    (case,) = select_cases([stand_in_search.CASE])
-    limits = stand_in_search.select_imposed(case)
     assert {limit.finding.role for limit in limits} == {"imposed"}
     assert len(limits) == 8
 

@@ -78,14 +78,11 @@ def _text(scenario: Scenario) -> tuple[str, ...]:
     return tuple("" if value is None else str(value) for value in scenario)
 
 
-def test_printed_levels_have_no_error() -> None:
+def test_printed_levels_and_changes_reproduce_every_finding() -> None:
     initial = printed_values("initial")
     assert level_error(InitialRun(CHOSEN, initial, ())) == 0
     doubled = {p: {name: 2 * value for name, value in table.items()} for p, table in initial.items()}
     assert level_error(InitialRun(CHOSEN, doubled, ())) == pytest.approx(0.6931, abs=1e-4)  # ln 2
-
-
-def test_printed_changes_reproduce_every_finding() -> None:
     changes = force_changes(printed_values("initial"), printed_values("updated"))
     assert count_reproduced(changes) == len(load_study().limits) == 12
 

@@ -28,13 +28,9 @@ from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered
 
 MODELS: dict[NewKind, type[BaseModel]] = {
-    "line": LineFile,
-    "case": CaseFile,
-    "pantograph": PantographFile,
-    "response": ResponseSidecar,
-    "administration": Administration,
-    "dossier": DossierFile,
-}
+    "line": LineFile, "case": CaseFile, "pantograph": PantographFile, "response": ResponseSidecar,
+    "administration": Administration, "dossier": DossierFile,
+}  # fmt: skip
 
 new = partial(pantocheck, "new")
 

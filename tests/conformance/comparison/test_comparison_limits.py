@@ -43,13 +43,10 @@ def test_limit_that_fits_no_comparison_is_refused(tables: dict[str, Any], change
         ComparisonLimit.model_validate(tables | changes)
 
 
-def test_unit_follows_from_the_name() -> None:
+def test_unit_distance_and_uncertainty_of_a_grade() -> None:
     names = ("elasticity_difference_mm_N", "contact_wire_height_difference_mm", "phase_deviation_deg", "rms_ratio")
     assert [unit_of_difference(name) for name in names] == ["mm/N", "mm", "°", ""]
-
-
-def test_uncertainty_of_measurement_and_mesh_marks_a_close_criterion() -> None:
-    """Half-widths 0.3 and 0.4 are 0.5 together: a value 0.45 below the limit is marked, one 0.55 below is not."""
+    # Half-widths 0.3 and 0.4 are 0.5 together: a value 0.45 below the limit is marked, one 0.55 below is not.
     limit = ComparisonLimit.model_validate(RESPONSE)
     for value, marks in ((2.55, 1), (2.45, 0)):
         item = grade_difference(limit, value, missing=None, discretisation=0.3, measurement=0.4)

@@ -22,15 +22,8 @@ EARLY, LATE = WINDOWS
 
 def limit(window: tuple[float, float] = LATE, **changes: Any) -> dict[str, Any]:
     """Limit of 2 % on the RMS ratio of both sensors."""
-    table = {
-        "quantity": "rms_ratio",
-        "sensors": [1, 2],
-        "window_s": window,
-        "band_Hz": ALL,
-        "lower": 0.98,
-        "upper": 1.02,
-    }
-    return table | changes
+    table = {"quantity": "rms_ratio", "sensors": [1, 2], "window_s": window, "band_Hz": ALL}
+    return table | {"lower": 0.98, "upper": 1.02} | changes
 
 
 def limits(*tables: dict[str, Any]) -> tuple[ComparisonLimit, ...]:
@@ -58,16 +51,14 @@ def two_models() -> DropComparison:
     return compare_drop(record_drop(), build_task(0.1, 0.3), SHARES.append)
 
 
-def test_progress_grows_over_all_models(two_models: DropComparison) -> None:
+def test_progress_grows_over_all_models_and_the_release_lies_between_two_samples(two_models: DropComparison) -> None:
     assert len(two_models.models) == 2
     assert sorted(SHARES) == SHARES
     assert 0 <= SHARES[0] <= 0.5 < SHARES[-1] <= 1
-
-
-def test_release_is_found_between_two_samples(two_models: DropComparison) -> None:
-    """A sample lasts 5 ms; the search interpolates to some microseconds, and noise adds as little."""
+    # A sample lasts 5 ms; the search interpolates to some microseconds, and noise adds as little.
     assert two_models.drop.release_s == pytest.approx(RELEASE, abs=2e-5)
     assert two_models.drop.release_correlation > 0.9999
+    assert (two_models.verdict, two_models.criteria) == ("info", ())
 
 
 @pytest.mark.parametrize("window", WINDOWS)
@@ -127,10 +118,6 @@ def test_limits_grade_the_first_model() -> None:
     assert "below the lower limit" in str(other.criteria[0].reason)
 
 
-def test_without_limits_nothing_is_judged(two_models: DropComparison) -> None:
-    assert (two_models.verdict, two_models.criteria) == ("info", ())
-
-
 def keep_channels(record: DropRecord, columns: tuple[int, ...]) -> DropRecord:
     return replace(
         record, signals=record.signals[:, list(columns)].copy(), channels=tuple(record.channels[c] for c in columns)
@@ -165,65 +152,56 @@ def test_release_near_the_start_of_the_record_is_found(rest: float) -> None:
     Without rest, the offset of a sensor follows from the decay, with an error of less than a percent of it.
     """
     begin = round((RELEASE - rest) * RATE)
-    record = replace(record_drop(), signals=record_drop().signals[begin:].copy())
-    record = replace(record, drop=replace(record.drop, trigger_nominal=rest))
-    comparison = compare_drop(record, build_task(0.1))
+    comparison = compare_drop(keep_samples(begin, trigger_nominal=rest), build_task(0.1))
     assert comparison.drop.release_s == pytest.approx(RELEASE - begin / RATE, abs=1e-4)
     (own,) = find(comparison, "S1_z", "velocity", LATE)
     assert own.rms_ratio == pytest.approx(1.0, abs=5e-3)
 
 
-def test_record_that_ends_early_leaves_its_window_open() -> None:
+def keep_samples(begin: int | None, end: int | None = None, **drop: float) -> DropRecord:
+    """Part of the record; its description of the drop may be changed."""
+    record = record_drop()
+    return replace(record, signals=record.signals[begin:end].copy(), drop=replace(record.drop, **drop))
+
+
+def test_record_that_ends_early_or_has_no_rest_leaves_its_limits_open() -> None:
     """The fade of one second at the end must lie behind the window."""
-    record = replace(record_drop(), signals=record_drop().signals[: round((RELEASE + 9.9) * RATE)].copy())
+    record = keep_samples(None, round((RELEASE + 9.9) * RATE))
     comparison = grade(record, limit(EARLY), limit(LATE))
     assert [item.verdict for item in comparison.criteria] == ["pass", "pass", "skip", "skip"]
     assert "does not contain the window from 6 to 9 s" in str(comparison.criteria[2].reason)
     assert any("window from 6 to 9 s" in text for text in comparison.warnings)
-
-
-def test_record_without_rest_leaves_every_limit_open() -> None:
-    """Its noise is not known, and could hide a ratio outside the limits."""
-    record = replace(record_drop(), signals=record_drop().signals[round(2.5 * RATE) :].copy())
-    record = replace(record, drop=replace(record.drop, trigger_nominal=RELEASE - 2.5))
+    # Its noise is not known, and could hide a ratio outside the limits.
+    record = keep_samples(round(2.5 * RATE), trigger_nominal=RELEASE - 2.5)
     comparison = grade(record, limit())
     assert comparison.verdict == "skip"
     assert "no rest before the release" in str(comparison.criteria[0].reason)
 
 
-def test_noise_leaves_a_limit_open() -> None:
+def test_noise_leaves_a_limit_open_or_marks_a_close_criterion() -> None:
     """Noise of 2 m/s2 has 0.8 m/s2 in the band, more than 0.3 of the 2.1 m/s2 of the record."""
     comparison = grade(record_drop(noise=2.0), limit(band_Hz=(5.0, 20.0), sensors=[1]))
     assert comparison.verdict == "skip"
     assert "noise of the record is too large" in str(comparison.criteria[0].reason)
     assert comparison.criteria[0].value is None
-
-
-def test_noise_marks_a_close_criterion() -> None:
-    """Noise of 1 m/s2: 2 * 0.4 / 2.0 / sqrt(2 * 15 * 3) = 4 %, more than the distance from the limits."""
+    # Noise of 1 m/s2: 2 * 0.4 / 2.0 / sqrt(2 * 15 * 3) = 4 %, more than the distance from the limits.
     comparison = grade(record_drop(noise=1.0), limit(band_Hz=(5.0, 20.0), sensors=[1], lower=0.9, upper=1.03))
     (item,) = comparison.criteria
     assert item.limit_uncertainty == pytest.approx(0.041, abs=0.003)
     assert "could reverse the verdict" in item.close[0]
 
 
-def test_clipped_channel_leaves_its_limit_open() -> None:
+def test_clipped_channel_unknown_line_and_high_band_leave_limits_open() -> None:
     """Sensor 2 is saturated shortly after the release; integrals and filters carry the error on."""
     signals = record_drop().signals.copy()
     signals[:, 1] = np.clip(signals[:, 1], -8.0, 8.0)
     comparison = grade(replace(record_drop(), signals=signals), limit(lower=0.5, upper=2.0))
     assert [item.verdict for item in comparison.criteria] == ["pass", "skip"]
     assert comparison.criteria[1].reason == "the channel is clipped in this window"
-
-
-def test_record_of_an_unknown_line_is_at_best_unverified() -> None:
     comparison = grade(replace(record_drop(), line=MeasuredLine()), limit())
     assert comparison.verdict == "unverified"
     assert any("not verified" in text for text in comparison.warnings)
-
-
-def test_band_above_the_sampling_rate_leaves_its_limit_open() -> None:
-    """A record of 100 samples per second supports 40 Hz."""
+    # A record of 100 samples per second supports 40 Hz.
     record = replace(record_drop(), signals=record_drop().signals[::2].copy(), rate=RATE / 2)
     comparison = grade(record, limit(band_Hz=(20.0, 50.0)))
     assert comparison.criteria[0].reason == "the sampling rate of the record does not support the band of 20 to 50 Hz"
@@ -247,23 +225,19 @@ def test_slow_record_is_aligned_too_and_a_very_slow_one_is_refused() -> None:
         ({"drop": DropDescription(30.0, "XW", 94.5)}, "key drop.wire: found 'XW'"),
         ({"drop": DropDescription(30.0, "CW", None)}, "key drop.position_m: missing"),
         ({"drop": DropDescription(30.0, "CW", 400.0)}, "key drop.position_m: no wire CW at 400 m"),
-        (
-            {"line": MeasuredLine(spans_m=(63.0, 63.0, 54.0))},
-            "length of span 3 is 54 m in the record, 58.5 m on the line",
-        ),
+        ({"line": MeasuredLine(spans_m=(63.0, 63.0, 54.0))},
+         "length of span 3 is 54 m in the record, 58.5 m on the line"),
         ({"line": MeasuredLine(spans_m=(63.0, 63.0))}, "number of spans is 2 in the record, 3 on the line"),
-        (
-            {"line": MeasuredLine(spans_m=(), contact_wire_tension_N=24e3)},
-            "tension of the contact wire is 24000 N in the record, 20000 N on the line",
-        ),
+        ({"line": MeasuredLine(spans_m=(), contact_wire_tension_N=24e3)},
+         "tension of the contact wire is 24000 N in the record, 20000 N on the line"),
     ],
-)
+)  # fmt: skip
 def test_record_of_another_drop_or_line_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         compare_drop(replace(record_drop(), **changes), build_task(0.1))
 
 
-def test_sensor_of_another_wire_is_refused() -> None:
+def test_record_of_another_sensor_wire_or_duration_is_refused() -> None:
     record = record_drop()
     for channel, message in (
         (replace(record.channels[0], wire="XW"), "channel 'S1_z', key wire: found 'XW'"),
@@ -272,10 +246,6 @@ def test_sensor_of_another_wire_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=message):
             compare_drop(replace(record, channels=(channel, record.channels[1])), build_task(0.1))
-
-
-def test_record_without_vertical_channel_or_a_minute_is_refused() -> None:
-    record = record_drop()
     lateral = tuple(replace(channel, axis="y") for channel in record.channels)
     with pytest.raises(InputError, match="no vertical channel"):
         compare_drop(replace(record, channels=lateral), build_task(0.1))
@@ -303,10 +273,7 @@ def test_wrong_mass_is_doubted_in_the_ratio_and_wrong_place_in_the_correlation()
     assert any("mass, place, line or units" in text for text in elsewhere.warnings)
 
 
-def test_same_record_gives_the_same_bytes() -> None:
+def test_same_record_gives_the_same_bytes_on_its_line() -> None:
     first, second = (compare_drop(record_drop(), build_task(0.1)).model_dump_json() for _ in range(2))
     assert first == second
-
-
-def test_short_line_is_that_of_the_record() -> None:
     assert read_short_line().geometry.span_lengths == (63.0, 63.0, 58.5)

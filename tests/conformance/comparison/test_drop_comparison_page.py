@@ -115,9 +115,6 @@ def test_figures_show_record_models_and_difference() -> None:
     assert [[line.get_label() for line in axes.lines] for axes in motion.axes] == [["record", "own", "other"]] * 2
     assert [line.get_label() for line in energy.axes[0].lines] == ["record", "own", "other", "own − record"]
     assert [line.get_label() for line in mass.axes[0].lines] == ["own", "other"]
-
-
-def test_name_of_a_model_is_not_a_formula() -> None:
-    """A damping file may have any name; matplotlib reads text between two dollar signs as a formula."""
+    # A damping file may have any name; matplotlib reads text between two dollar signs as a formula.
     curve = build_curve("S1", "velocity", WINDOWS[0]) | {"models": {r"$\frac$": [1.0, 0.0, -1.0]}}
     assert "<svg" in draw_drop_motion([MotionCurve.model_validate(curve)])

@@ -65,9 +65,6 @@ def test_bands_of_a_known_difference() -> None:
     assert middle.difference_N == pytest.approx(8, rel=5e-3)  # two sines in quadrature: amplitude 8 sqrt 2
     assert (high.low_Hz, high.high_Hz) == (20, 50)
     assert high.difference_N < 0.02
-
-
-def test_a_force_filtered_at_20_hz_has_no_upper_band() -> None:
     forces = pair_forces(signals(base, 1000.0), signals(base, 1000.0, filtered=20.0))
     assert forces.highest_Hz == 20
     assert [band.high_Hz for band in compare_force_bands(forces)] == [5, 20]
@@ -117,12 +114,9 @@ def test_differences_along_the_spans() -> None:
     assert profile.place[12] == pytest.approx(12.5 / 24)
 
 
-def test_sections_without_a_common_stretch_are_not_compared() -> None:
+def test_sections_without_a_common_stretch_or_span_are_not_compared() -> None:
     with pytest.raises(SectionNotCovered, match="no common stretch"):
         pair_forces(signals(base, 1000.0), signals(base, 1000.0, section=(900.0, 950.0)))
-
-
-def test_a_profile_needs_a_complete_span() -> None:
     run = signals(base, 1000.0)
     assert span_profile(pair_forces(run, run), [500.0]) is None
     assert compare_spans(pair_forces(run, run), [100.0, 500.0]) == ()

@@ -89,9 +89,6 @@ def test_page_states_verdict_caveats_criteria_and_bands() -> None:
         "0.5 to 5", "1", "8.00 ± 2.0", "4.00 ± 2.0", "10.6 ± 2.0", "8.00 at 1.00 Hz", "4.00 at 1.00 Hz", "100", "–"
     )  # fmt: skip
     assert bands.rows[1] == ("5 to 20", "0", "–", "–", "–", "–", "–", "–", "no value in row 2")
-
-
-def test_informative_response_is_marked_in_its_heading() -> None:
     response = build_response(is_graded=False, height_m=None, excited_at="left_strip")
     document = build_comparison(build_results(responses=[response], criteria=[], warnings=[]))
     assert find_blocks(document.blocks, doc.WarningBox) == []
@@ -118,15 +115,9 @@ def test_figure_shows_error_bars_curve_bands_and_limits() -> None:
         assert sorted(segment[:, 1]) == pytest.approx(sorted((first - half, first + half)))
     steps = [line for line in deviation.lines if len(line.get_xdata()) == 2 and line.get_ydata()[0] in {10.6, 5.0}]
     assert [list(line.get_xdata()) for line in steps] == [[0.5, 5.0], [20.0, 50.0], [0.5, 5.0]]
-
-
-def test_figure_without_uncertainty_has_no_error_bars() -> None:
     modulus, _, _ = paint(build_response(modulus_uncertainty_pct=[], phase_uncertainty_deg=[]), ())
     assert modulus.containers[0].has_yerr is False
-
-
-def test_figure_of_a_long_table_shows_some_of_its_rows() -> None:
-    """20,000 linear rows: at most one of each 400 parts of the logarithmic axis, the first row included."""
+    # 20,000 linear rows: at most one of each 400 parts of the logarithmic axis, the first row included.
     frequency = np.arange(0.5, 50, 0.0025)
     rows = select_drawn_rows(list(frequency))
     assert (rows[0], len(rows) <= 401) == (0, True)

@@ -86,7 +86,7 @@ def paint(first: int, last: int, tolerance: float | None) -> list[Axes]:
     return list(figure.axes)
 
 
-def test_figure_shows_values_outliers_and_supports() -> None:
+def test_figure_shows_values_outliers_supports_tolerance_and_the_rest_of_the_line() -> None:
     """Spans 1 to 10, of which the third has no value: nine points, and a ring around row 4."""
     upper, lower = paint(1, 10, 0.1)
     for axes, level in ((upper, 0.5), (lower, 0.2)):
@@ -96,10 +96,7 @@ def test_figure_shows_values_outliers_and_supports() -> None:
         supports = [line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == ":"]
         assert supports == [SPAN * n for n in range(10)]
     assert upper.get_xlim() == (0.0, 600.0)
-
-
-def test_figure_shows_tolerance_and_the_rest_of_the_line() -> None:
-    """Spans 1 to 10 begin before the evaluated section, spans 11 and 12 end behind it."""
+    # Spans 1 to 10 begin before the evaluated section, spans 11 and 12 end behind it.
     for spans, grey in (((1, 10), (0.0, 60.0)), ((11, 12), (660.0, 720.0))):
         for tolerance, bands in ((0.1, 1), (None, 0)):
             _, lower = paint(*spans, tolerance)

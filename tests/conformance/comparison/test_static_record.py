@@ -31,26 +31,6 @@ def test_rows_are_sorted_and_converted(tmp_path: Path) -> None:
     assert record.row.tolist() == [2, 3, 1]
     assert record.values["elasticity"] == pytest.approx([4e-4, np.nan, 5e-4], nan_ok=True, rel=1e-12)
     assert record.values["contact_wire_height"] == pytest.approx([0.0, -0.02, -0.01], abs=1e-12)
-
-
-def test_table_of_a_spreadsheet_with_decimal_commas_is_read(tmp_path: Path) -> None:
-    path = write_static_record(tmp_path, COLUMNS)
-    text = path.read_text().replace(",", ";").replace(".", ",").replace("\n", "\r\n")
-    path.write_bytes(b"\xef\xbb\xbf" + text.encode())
-    assert read_static_record(path, GEOMETRY).position.tolist() == [10.0, 20.0, 30.0]
-
-
-def test_columns_of_another_program_are_named_in_the_sidecar(tmp_path: Path) -> None:
-    """Heights in a column with a free name; a column that the sidecar does not name is ignored."""
-    columns = {"x": COLUMNS["position_m"], "z": 1000 * COLUMNS["contact_wire_height_m"], "note": np.ones(3)}
-    names = {"position_m": "x", "contact_wire_height_mm": "z"}
-    layout = {"separator": ",", "decimal": "."}
-    record = read_static_record(write_static_record(tmp_path, columns, columns=names, table=layout), GEOMETRY)
-    assert record.position.tolist() == [10.0, 20.0, 30.0]
-    assert record.values["contact_wire_height"] == pytest.approx([0.0, -0.02, -0.01])
-
-
-def test_positions_may_decrease_along_the_line(tmp_path: Path) -> None:
     columns = COLUMNS | {"position_m": 1000 - COLUMNS["position_m"]}
     path = write_static_record(tmp_path, columns, line_start_m=1000.0, positions="decreasing")
     record = read_static_record(path, GEOMETRY)
@@ -58,12 +38,23 @@ def test_positions_may_decrease_along_the_line(tmp_path: Path) -> None:
     assert record.row.tolist() == [2, 3, 1]
 
 
-def test_hdf5_file_holds_one_data_set_per_column(tmp_path: Path) -> None:
+def test_tables_of_spreadsheets_hdf5_and_other_programs_are_read(tmp_path: Path) -> None:
+    path = write_static_record(tmp_path, COLUMNS)
+    text = path.read_text().replace(",", ";").replace(".", ",").replace("\n", "\r\n")
+    path.write_bytes(b"\xef\xbb\xbf" + text.encode())
+    assert read_static_record(path, GEOMETRY).position.tolist() == [10.0, 20.0, 30.0]
     write_static_record(tmp_path, COLUMNS, file="measured.h5")
     write_hdf5_table(tmp_path / "measured.h5", {}, {name: values.tolist() for name, values in COLUMNS.items()})
     record = read_static_record(tmp_path / "measured.h5", GEOMETRY)
     assert record.position.tolist() == [10.0, 20.0, 30.0]
     assert record.values["elasticity"] == pytest.approx([4e-4, np.nan, 5e-4], nan_ok=True, rel=1e-12)
+    # Heights in a column with a free name; a column that the sidecar does not name is ignored.
+    columns = {"x": COLUMNS["position_m"], "z": 1000 * COLUMNS["contact_wire_height_m"], "note": np.ones(3)}
+    names = {"position_m": "x", "contact_wire_height_mm": "z"}
+    layout = {"separator": ",", "decimal": "."}
+    record = read_static_record(write_static_record(tmp_path, columns, columns=names, table=layout), GEOMETRY)
+    assert record.position.tolist() == [10.0, 20.0, 30.0]
+    assert record.values["contact_wire_height"] == pytest.approx([0.0, -0.02, -0.01])
 
 
 @pytest.mark.parametrize(
@@ -96,11 +87,7 @@ def test_record_that_cannot_be_compared_is_refused(
 @pytest.mark.parametrize(
     ("columns", "sidecar", "count"),
     [
-        (
-            {"position_m": np.array([1.0, 2.0, np.nan]), "elasticity_mm_N": np.array([-1, 1, np.inf])},
-            {"force_N": None},
-            4,
-        ),
+        ({"position_m": np.array([1, 2, np.nan]), "elasticity_mm_N": np.array([-1, 1, np.inf])}, {"force_N": None}, 4),
         ({"position_m": np.array([1.0, 500.0, 2.0])}, {"evaluated_spans": [1, 9], "largest_distance_m": 99.0}, 3),
     ],
 )
@@ -112,15 +99,10 @@ def test_all_problems_of_rows_and_sidecar_are_named_at_once(
     assert len(caught.value.problems) == count
 
 
-@pytest.mark.parametrize("columns", [["position_m"], ["elasticity_mm_N"]])
-def test_table_without_positions_or_values_is_refused(tmp_path: Path, columns: list[str]) -> None:
-    path = write_static_record(tmp_path, {name: COLUMNS[name] for name in columns})
-    with pytest.raises(InputError, match=r"has no (measured value|positions)"):
-        read_static_record(path, GEOMETRY)
-
-
-def test_table_of_heights_needs_no_force(tmp_path: Path) -> None:
+def test_table_needs_positions_and_values_and_for_elasticities_a_force(tmp_path: Path) -> None:
+    for name, message in (("position_m", "has no measured value"), ("elasticity_mm_N", "has no positions")):
+        with pytest.raises(InputError, match=message):
+            read_static_record(write_static_record(tmp_path, {name: COLUMNS[name]}), GEOMETRY)
     columns = {name: COLUMNS[name] for name in ("position_m", "contact_wire_height_m")}
-    assert list(read_static_record(write_static_record(tmp_path, columns, force_N=None), GEOMETRY).values) == [
-        "contact_wire_height"
-    ]
+    record = read_static_record(write_static_record(tmp_path, columns, force_N=None), GEOMETRY)
+    assert list(record.values) == ["contact_wire_height"]

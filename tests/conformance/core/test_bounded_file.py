@@ -10,6 +10,7 @@ import pytest
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.core.files import NO_LINK, file_digest, open_file, read_bytes
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.json_file import read_json
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS, read_tables
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.documents.document_reading import read_certificate
@@ -23,6 +24,7 @@ READERS: dict[str, Reader] = {
     "model.toml": lambda path: read_model(path, CaseFile, "case"),
     "results.json": read_results,
     "modes.json": read_modes,
+    "any.json": lambda path: read_json(path, "numbers", 10),
     "certificate.pdf": read_certificate,
     "digest": file_digest,
 } | {f"table{form.suffixes[0]}": lambda path: read_tables(path, ("a",), 100) for form in TABLE_FORMATS}
@@ -40,15 +42,14 @@ def limit_time() -> Iterator[None]:
 @pytest.mark.parametrize("name", READERS)
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder"])
 def test_every_reader_refuses_what_is_no_regular_file(name: str, kind: str, tmp_path: Path) -> None:
-    path = tmp_path / name
-    if kind == "pipe":
-        os.mkfifo(path)
-    elif kind == "device":
-        path.symlink_to("/dev/zero")
-    else:
-        path.mkdir()
+    make: dict[str, Reader] = {
+        "pipe": os.mkfifo,
+        "device": lambda path: path.symlink_to("/dev/zero"),
+        "folder": os.mkdir,
+    }
+    make[kind](tmp_path / name)
     with pytest.raises(InputError, match="not a regular file"):
-        READERS[name](path)
+        READERS[name](tmp_path / name)
 
 
 @pytest.mark.parametrize("name", READERS)
@@ -60,7 +61,7 @@ def test_every_reader_refuses_a_file_over_its_limit(name: str, tmp_path: Path) -
         READERS[name](tmp_path / name)
 
 
-def test_growing_file_is_refused(tmp_path: Path) -> None:
+def test_growing_file_is_refused_and_a_whole_one_read(tmp_path: Path) -> None:
     """The limit holds while the file is read, not only before."""
     path = tmp_path / "a.csv"
     path.write_bytes(b"1\n" * 10)
@@ -69,9 +70,6 @@ def test_growing_file_is_refused(tmp_path: Path) -> None:
             writer.write(b"2\n")
         with pytest.raises(InputError, match=r"record 'a\.csv': grew while it was read"):
             file.read()
-
-
-def test_whole_file_is_read(tmp_path: Path) -> None:
     content = os.urandom(2**21 + 7)  # more than two chunks
     (tmp_path / "a").write_bytes(content)
     assert read_bytes(tmp_path / "a", "a", 2**22) == content

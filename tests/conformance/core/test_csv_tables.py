@@ -24,36 +24,30 @@ def read(folder: Path, text: str, largest: int = 100) -> MeasuredTable:
 @pytest.mark.parametrize(
     "text",
     [
-        "a,b\n0,1\n0.5,-2.5\n1,1e3\n",
-        "a;b\n0;1\n0.5;-2.5\n1;1e3\n",
-        "a;b\n0;1\n0,5;-2,5\n1;1e3\n",
-        "a\tb\n0\t1\n0,5\t-2,5\n1\t1e3\n",
-        '"a" , "b"\n0,1\n0.5,-2.5\n1,1e3\n',
-        "# of the 3rd test\n#;x\n\na,b\n0,1\n\n0.5,-2.5\n  \n1,1e3\n\n",
-        "\ufeffa,b\r\n0,1\r\n0.5,-2.5\r\n1,1e3",
+        "a,b\n0,1\n0.5,-2.5\n1,1e3\n", "a;b\n0;1\n0.5;-2.5\n1;1e3\n", "a;b\n0;1\n0,5;-2,5\n1;1e3\n",
+        "a\tb\n0\t1\n0,5\t-2,5\n1\t1e3\n", '"a" , "b"\n0,1\n0.5,-2.5\n1,1e3\n',
+        "# of the 3rd test\n#;x\n\na,b\n0,1\n\n0.5,-2.5\n  \n1,1e3\n\n", "\ufeffa,b\r\n0,1\r\n0.5,-2.5\r\n1,1e3",
     ],
-)
+)  # fmt: skip
 def test_dialects_comments_and_blank_lines_give_one_table(text: str, tmp_path: Path) -> None:
     table = read(tmp_path, text)
     assert_array_equal(table.values, EXPECTED)
     assert [column.name for column in table.columns] == ["a", "b"]
 
 
-def test_decimal_comma_may_begin_after_the_first_lines(tmp_path: Path) -> None:
-    """A record at rest begins with whole numbers."""
-    assert_array_equal(read(tmp_path, "a;b\n0;0\n0;0\n0;0\n0,5;1,5\n").values[-1], [0.5, 1.5])
-    rest = "0;0\n" * 2000
-    assert_array_equal(read(tmp_path, f"a;b\n{rest}0,5;1,5\n", 10_000).values[-1], [0.5, 1.5])
-
-
-def test_table_without_a_head_line_has_no_names(tmp_path: Path) -> None:
+def test_names_of_columns_need_a_head_line(tmp_path: Path) -> None:
     table = read(tmp_path, "0,1\n0.5,-2.5\n1,1e3\n")
     assert_array_equal(table.values, EXPECTED)
     assert [column.name for column in table.columns] == [None, None]
-
-
-def test_line_of_numbers_with_one_name_is_a_head_line(tmp_path: Path) -> None:
     assert [column.name for column in read(tmp_path, "1,b\n0,1\n").columns] == ["1", "b"]
+    # A record at rest begins with whole numbers.
+    assert_array_equal(read(tmp_path, "a;b\n0;0\n0;0\n0;0\n0,5;1,5\n").values[-1], [0.5, 1.5])
+    rest = "0;0\n" * 2000
+    assert_array_equal(read(tmp_path, f"a;b\n{rest}0,5;1,5\n", 10_000).values[-1], [0.5, 1.5])
+    # A time stamp beside numbers, a trailing separator, and a missing number.
+    table = read(tmp_path, "Uhr;a;b;\n12:00:01,5;1,5;2;\n12:00:01,6;;3;\n12:00:01,7;1,7;4;\n12:00:01,8;1,8;5;\n")
+    assert_array_equal(table.values[:, 1:3], [[1.5, 2], [np.nan, 3], [1.7, 4], [1.8, 5]])
+    assert np.isnan(table.values[:, [0, 3]]).all()
 
 
 @pytest.mark.parametrize(
@@ -165,21 +159,11 @@ def test_ambiguous_layout_names_the_key_that_decides(
     assert np.abs(table.values).max() < 10
 
 
-def test_thousands_marks_after_the_first_lines_are_refused(tmp_path: Path) -> None:
+def test_marks_after_the_first_lines_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="may separate decimals or thousands"):
         read(tmp_path, "a;b\n" + "0;0\n" * 2000 + "1,000;0\n", 10_000)
-
-
-def test_second_decimal_mark_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"line 7, column 2: '0\.5' is not a number"):
         read(tmp_path, "a;b\n" + "0,1;0,1\n" * 5 + "0,1;0.5\n" + "0,1;0,1\n" * 9)
-
-
-def test_text_columns_and_empty_cells_are_missing_values(tmp_path: Path) -> None:
-    """A time stamp beside numbers, a trailing separator, and a missing number."""
-    table = read(tmp_path, "Uhr;a;b;\n12:00:01,5;1,5;2;\n12:00:01,6;;3;\n12:00:01,7;1,7;4;\n12:00:01,8;1,8;5;\n")
-    assert_array_equal(table.values[:, 1:3], [[1.5, 2], [np.nan, 3], [1.7, 4], [1.8, 5]])
-    assert np.isnan(table.values[:, [0, 3]]).all()
 
 
 def test_stated_encoding_is_used(tmp_path: Path) -> None:

@@ -45,12 +45,8 @@ def run_without_extras(code: str, *arguments: str, folder: Path) -> dict[str, An
     """Run code in a process in which no optional package can be imported; it prints one JSON object at its end."""
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT_EXTRAS + code, *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+        cwd=folder, capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr[-2000:]
     assert "Traceback" not in done.stderr
     return dict(json.loads(done.stdout.splitlines()[-1]))
@@ -139,22 +135,16 @@ print(json.dumps({"loaded": loaded, **commands}))
     assert verify_document(tmp_path / "report" / "certificate.html").state == "consistent"
 
 
-def test_missing_package_is_named_with_the_line_that_installs_it() -> None:
+def test_missing_package_is_named_with_the_line_that_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError) as caught, refuse_missing_package("record 'a.h5'"):
         raise ModuleNotFoundError("No module named 'h5py._hl'", name="h5py._hl")
     assert str(caught.value) == (
         "record 'a.h5': needs the package h5py, which is not installed.\n"
         "  Install it: pip install 'pantocheck[massdrop]'"
     )
-
-
-def test_failure_of_another_import_is_not_hidden() -> None:
-    """A package that no extra installs is a defect of the installation, not a missing extra."""
+    # A package that no extra installs is a defect of the installation, not a missing extra.
     with pytest.raises(ModuleNotFoundError, match="llvmlite"), refuse_missing_package("a passage"):
         raise ModuleNotFoundError("No module named 'llvmlite'", name="llvmlite")
-
-
-def test_required_package_is_found_without_its_import(monkeypatch: pytest.MonkeyPatch) -> None:
     require_package("numba", "reference simulator")
     monkeypatch.setitem(sys.modules, "numba", None)
     with pytest.raises(InputError, match=r"pip install 'pantocheck\[simulator\]'"):

@@ -46,11 +46,6 @@ def test_runs_follow_their_numbers(quantity: str, tmp_path: Path) -> None:
         assert (table.rate, table.attributes["test"]) == (50.0, "T")
 
 
-def test_two_runs_are_numbered(tmp_path: Path) -> None:
-    write_runs(tmp_path / "r.h5", "1", "2")
-    assert [table.run for table in read(tmp_path / "r.h5")] == [1, 2]
-
-
 def test_channels_are_those_of_the_description(tmp_path: Path) -> None:
     write_runs(tmp_path / "r.h5", "1", rate=None)
     (table,) = read(tmp_path / "r.h5")
@@ -60,17 +55,11 @@ def test_channels_are_those_of_the_description(tmp_path: Path) -> None:
         TableColumn("b", 1, "m/s2", 5, "MW", None, "-y"),
         TableColumn("c", 1, "mm/s2", 6, "", -2.0, "+x"),
     )
-
-
-def test_channels_with_a_sidecar_have_name_and_unit_for_comparison(tmp_path: Path) -> None:
     write_runs(tmp_path / "r.h5", "1")
     (table,) = read(tmp_path / "r.h5", ("a", "b", "c"))
     assert table.columns == tuple(
         TableColumn(name, unit=unit) for name, unit in zip("abc", DESCRIPTION["unit"], strict=True)
     )
-
-
-def test_runs_without_a_description_have_nameless_columns(tmp_path: Path) -> None:
     write_hdf5_table(tmp_path / "r.h5", {}, {"run_1/velocity": SAMPLES})
     (table,) = read(tmp_path / "r.h5")
     assert table.columns == (TableColumn(),) * 3
@@ -139,16 +128,13 @@ def test_data_sets_at_the_root_have_one_length(datasets: dict[str, object], mess
         read(tmp_path / "r.h5")
 
 
-def test_group_may_have_as_many_data_sets_as_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_and_group_may_be_as_large_as_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_hdf5_table(tmp_path / "r.h5", {}, {f"d{k}": SAMPLES[0] for k in range(4)})
     monkeypatch.setattr(hdf5_table, "MOST_ITEMS", 4)
     assert read(tmp_path / "r.h5")[0].values.shape == (20, 4)
     monkeypatch.setattr(hdf5_table, "MOST_ITEMS", 3)
     with pytest.raises(InputError, match="4 data sets"):
         read(tmp_path / "r.h5")
-
-
-def test_file_may_have_as_many_numbers_as_allowed(tmp_path: Path) -> None:
     write_hdf5_table(tmp_path / "r.h5", {}, {"a": SAMPLES, "b": SAMPLES[0]})
     assert read_tables(tmp_path / "r.h5", (), 80)[0].values.size == 80
     with pytest.raises(InputError, match="80 numbers"):

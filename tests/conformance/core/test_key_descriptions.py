@@ -39,30 +39,28 @@ def test_string_under_a_field_describes_the_field_and_those_of_derived_tables() 
     own = {"colour": "RAL number.", "file": "Spearman's file.", "part": "true: a part of it. Null: none."}
     assert read_field_texts(Part) == {"depth_m": "Depth of the part [m]; measured downwards."}
     assert read_field_texts(Wire) == {"depth_m": "Depth of the part [m]; measured downwards.", **own}
-
-
-def test_schema_has_the_strings_and_prefers_them_to_the_description_of_a_type() -> None:
-    schema = Wire.model_json_schema(schema_generator=DescribedSchema)
-    described = {key: content.get("description") for key, content in schema["properties"].items()}
-    assert described == {
-        "depth_m": "Depth of the part [m]; measured downwards.",
-        "colour": "RAL number.",
-        "model": "name of any file",
-        "file": "Spearman's file.",
-        "portion": "true: a part of it. Null: none.",
-    }
-    nested = schema["$defs"]["Part"]["properties"]
-    assert nested["depth_m"]["description"] == "Depth of the part [m]; measured downwards."
-    assert "description" not in nested["colour"]
-
-
-def test_import_leaves_the_source_alone() -> None:
-    """Only `DescribedSchema` and messages read it."""
+    # Only `DescribedSchema` and messages read it.
     assert Part.model_fields["depth_m"].description is None
     assert "description" not in Part.model_json_schema()["properties"]["depth_m"]
 
+    class Local(BaseModel):
+        count: int
+        """Number of parts."""
 
-def test_description_is_part_of_a_sentence() -> None:
+    assert read_field_texts(Local) == {"count": "Number of parts."}
+    assert read_field_texts(create_model("Made", count=int)) == {}
+
+
+def test_schema_and_sentences_have_the_strings() -> None:
+    schema = Wire.model_json_schema(schema_generator=DescribedSchema)
+    described = {key: content.get("description") for key, content in schema["properties"].items()}
+    assert described == {
+        "depth_m": "Depth of the part [m]; measured downwards.", "colour": "RAL number.", "model": "name of any file",
+        "file": "Spearman's file.", "portion": "true: a part of it. Null: none.",
+    }  # fmt: skip
+    nested = schema["$defs"]["Part"]["properties"]
+    assert nested["depth_m"]["description"] == "Depth of the part [m]; measured downwards."
+    assert "description" not in nested["colour"]
     assert describe_field(Wire, "depth_m") == "depth of the part [m]; measured downwards"
     assert describe_field(Wire, "colour") == "RAL number"
     assert describe_field(Wire, "model") == "name of any file"
@@ -72,12 +70,3 @@ def test_description_is_part_of_a_sentence() -> None:
     assert describe_key(Wire, "depth_m") == (
         "It is: depth of the part [m]; measured downwards. Allowed: a number at least 1."
     )
-
-
-def test_model_inside_a_function_and_model_without_a_source() -> None:
-    class Local(BaseModel):
-        count: int
-        """Number of parts."""
-
-    assert read_field_texts(Local) == {"count": "Number of parts."}
-    assert read_field_texts(create_model("Made", count=int)) == {}

@@ -1,5 +1,6 @@
 """TDMS and MDF tables: units, rates, counts and faults of the files of data loggers."""
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -45,13 +46,10 @@ def test_tdms_has_units_and_the_rate_of_its_interval(tmp_path: Path) -> None:
     assert [(column.name, column.unit) for column in table.columns] == [("a", "g"), ("b", None)]
 
 
-def test_tdms_without_an_interval_has_no_rate(tmp_path: Path) -> None:
+def test_tdms_without_an_interval_has_no_rate_and_without_samples_is_refused(tmp_path: Path) -> None:
     path = write_tdms(tmp_path / "r.tdms", ("g", "a", SAMPLES[:, 0], {}), ("g", "empty", [], {"wf_increment": 1.0}))
     (table,) = read_tables(path, (), 1000)
     assert (table.rate, table.values.shape) == (None, (40, 1))
-
-
-def test_tdms_without_samples_is_refused(tmp_path: Path) -> None:
     path = write_tdms(tmp_path / "r.tdms", ("g", "a", [], {}))
     with pytest.raises(InputError, match=r"r\.tdms': holds no samples"):
         read_tables(path, (), 1000)
@@ -86,11 +84,9 @@ def test_mdf_states_its_samples_before_they_are_read(tmp_path: Path) -> None:
 def test_mdf_channels_are_sampled_within_a_microsecond(shift: float, together: bool, tmp_path: Path) -> None:
     time = np.arange(40) / 50
     path = write_mdf(tmp_path / "r.mf4", {"a": (SAMPLES[:, 0], time, "g")}, {"b": (SAMPLES[:, 1], time + shift, "g")})
-    if together:
+    different = pytest.raises(InputError, match="has channels with different sampling times")
+    with nullcontext() if together else different:
         assert read_tables(path, ("a", "b"), 1000)[0].values.shape == (40, 2)
-    else:
-        with pytest.raises(InputError, match="has channels with different sampling times"):
-            read_tables(path, ("a", "b"), 1000)
 
 
 def test_mdf_names_the_missing_channel_and_needs_a_sidecar(tmp_path: Path) -> None:

@@ -63,14 +63,11 @@ def test_single_time_is_no_time_column(tmp_path: Path) -> None:
     assert table.time[1] == 0.1
 
 
-def test_vectors_of_a_sidecar_stand_in_its_order(tmp_path: Path) -> None:
+def test_vectors_of_a_sidecar_stand_in_its_order_or_none_is_taken(tmp_path: Path) -> None:
     variables = {"a": SAMPLES[:, 0], "b": SAMPLES[:, 1:], "c": np.ones(40)}
     table = read(tmp_path, variables, ("b", "a"))
     assert_array_equal(table.values, SAMPLES[:, ::-1])
     assert [column.name for column in table.columns] == ["b", "a"]
-
-
-def test_matrix_beside_an_incomplete_set_of_vectors_is_the_table(tmp_path: Path) -> None:
     table = read(tmp_path, {"a": SAMPLES[:, 0], "signals": SAMPLES}, ("a", "b"))
     assert_array_equal(table.values, SAMPLES)
     assert [column.name for column in table.columns] == [None, None]
@@ -89,12 +86,9 @@ def test_file_without_one_table_is_refused(variables: dict[str, Any], message: s
         read(tmp_path, variables)
 
 
-def test_text_beside_the_samples_is_ignored(tmp_path: Path) -> None:
+def test_other_variables_and_numbers_that_look_like_a_compressed_one_are_no_hindrance(tmp_path: Path) -> None:
     assert_array_equal(read(tmp_path, {"note": "text", "signals": SAMPLES, "flag": np.array([True])}).values, SAMPLES)
-
-
-def test_numbers_that_look_like_a_compressed_variable_are_read(tmp_path: Path) -> None:
-    """15 is the type of a compressed variable; the search for those steps over the others as a whole."""
+    # 15 is the type of a compressed variable; the search for those steps over the others as a whole.
     samples = np.tile(np.array([15, 64], dtype=np.int32), (30, 2))
     assert_array_equal(read(tmp_path, {"signals": samples}).values, samples)
 

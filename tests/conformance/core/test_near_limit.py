@@ -41,20 +41,14 @@ def test_uncertainty_larger_than_the_distance_is_named(
     ]
 
 
-def test_further_component_never_removes_a_remark() -> None:
+def test_further_component_never_removes_a_remark_and_none_is_no_zero() -> None:
     """The combination grows with every component: to leave one out never makes a value less close."""
     assert near_limit_remarks(38.0, LIMITS, "N", errors(start=2.5))
     assert near_limit_remarks(38.0, LIMITS, "N", errors(start=2.5, length=0.0, section=1e-9, discretisation=30.0))
-
-
-def test_value_without_a_component_has_no_uncertainty() -> None:
-    """None is not zero."""
+    # None is not zero.
     assert errors().uncertainty is None
     assert errors(start=0.0).uncertainty == 0.0
     assert errors(start=3.0, section=4.0, limit_uncertainty=9.0).uncertainty == pytest.approx(5.0, rel=1e-12)
-
-
-def test_remark_without_a_unit_ends_without_a_space() -> None:
     (remark,) = near_limit_remarks(0.29, (None, 0.3), "", errors(length=0.02))
     assert remark == (
         "lies 0.01 from a limit, less than its uncertainty of 0.02 (mostly length): "

@@ -100,15 +100,12 @@ def test_hdf5_that_states_terabytes_is_refused(file: str, name: str, tmp_path: P
         read_tables(path, (), LARGEST)
 
 
-def test_hdf5_chunk_over_the_limit_is_refused(tmp_path: Path) -> None:
+def test_numbers_of_all_runs_and_chunks_count(tmp_path: Path) -> None:
     """The library reads a chunk as a whole, even for one number of it."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.create_dataset("x", (10,), "f8", chunks=(10**8,), maxshape=(None,))
     with pytest.raises(InputError, match="has chunks of the shape"):
         read_tables(tmp_path / "a.h5", (), LARGEST)
-
-
-def test_many_runs_count_together(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         for run in (1, 2):
             file[f"run_{run}/acceleration"] = np.zeros((3, 2000))

@@ -8,7 +8,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import CSV, HDF5, TABLE_FORMATS, find_table_format, list_suffixes
 
 
-def test_messages_list_all_formats() -> None:
+def test_formats_follow_from_unique_suffixes_and_are_listed() -> None:
     assert list_suffixes(TABLE_FORMATS) == ".csv, .uff, .mat, .h5, .tdms or .mf4"
     assert list_suffixes((CSV,)) == ".csv"
     with pytest.raises(InputError, match=r"has the unknown suffix '\.xls'\.\n  Known formats are \.csv or \.h5\."):
@@ -17,13 +17,7 @@ def test_messages_list_all_formats() -> None:
         InputError, match=r"has no suffix\.\n  Did you mean 250\.csv \? Known formats are \.csv or \.h5\."
     ):
         find_table_format(Path("records/250"), (CSV, HDF5))
-
-
-def test_suffixes_are_unique_and_in_lower_case() -> None:
     suffixes = [suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes]
     assert sorted(set(suffixes)) == sorted(suffixes)
     assert all(suffix == suffix.lower() for suffix in suffixes)
-
-
-def test_upper_case_suffix_is_read() -> None:
     assert find_table_format(Path("A.HDF5"), (CSV, HDF5)) is HDF5

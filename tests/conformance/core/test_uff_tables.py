@@ -20,26 +20,12 @@ def write(path: Path, *changes: dict[str, Any], interval_s: tuple[float, float] 
     sets = []
     for row, change in enumerate(changes):
         fields: dict[str, Any] = {
-            "binary": 1,
-            "func_type": 1,
-            "rsp_node": 7 + row,
-            "rsp_dir": 3,
-            "ref_node": 0,
-            "ref_dir": 0,
-            "ord_data_type": 4,
-            "num_pts": 40,
-            "data": SAMPLES[row],
-            "x": np.arange(40) * interval_s[row],
-            "abscissa_spacing": 1,
-            "abscissa_min": 0.0,
-            "abscissa_inc": interval_s[row],
-            "abscissa_spec_data_type": 17,
-            "ordinate_spec_data_type": 12,
-            "ordinate_axis_units_lab": "NONE",
-            "orddenom_spec_data_type": 0,
-            "z_axis_spec_data_type": 0,
-            **{f"id{line}": "NONE" for line in range(1, 6)},
-        }
+            "binary": 1, "func_type": 1, "rsp_node": 7 + row, "rsp_dir": 3, "ref_node": 0, "ref_dir": 0,
+            "ord_data_type": 4, "num_pts": 40, "data": SAMPLES[row], "x": np.arange(40) * interval_s[row],
+            "abscissa_spacing": 1, "abscissa_min": 0.0, "abscissa_inc": interval_s[row], "abscissa_spec_data_type": 17,
+            "ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "NONE", "orddenom_spec_data_type": 0,
+            "z_axis_spec_data_type": 0, **{f"id{line}": "NONE" for line in range(1, 6)},
+        }  # fmt: skip
         sets.append(pyuff.prepare_58(**(fields | change)))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)  # pyuff leaves its files to the garbage collector
@@ -79,17 +65,9 @@ def test_identification_lines_describe_channel_and_drop(tmp_path: Path) -> None:
     assert (column.name, column.wire, column.position, column.direction) == ("A4", "MW", -12.5, "-y")
     assert table.columns[1].name == "S8_z"
     assert table.rate == pytest.approx(50.0, rel=1e-9)  # the interval is stored with nine digits or more
-    assert table.attributes == {
-        "test": "T3",
-        "drop_mass_kg": "40.5",
-        "drop_wire": "CW",
-        "drop_position_m": "33",
-        "trigger_nominal_s": "1.25",
-    }
-
-
-def test_drop_without_a_trigger_is_known(tmp_path: Path) -> None:
-    attributes = read(write(tmp_path / "r.uff", {"id2": "40 kg on MW at 5 m"})).attributes
+    drop = {"drop_mass_kg": "40.5", "drop_wire": "CW", "drop_position_m": "33", "trigger_nominal_s": "1.25"}
+    assert table.attributes == {"test": "T3"} | drop
+    attributes = read(write(tmp_path / "q.uff", {"id2": "40 kg on MW at 5 m"})).attributes
     assert (attributes["drop_wire"], attributes["trigger_nominal_s"]) == ("MW", None)
     assert read(write(tmp_path / "s.uff", {"id1": "T3", "id2": "a mass"})).attributes == {"test": "T3"}
 
@@ -136,16 +114,13 @@ def test_channels_share_a_positive_interval(interval_s: tuple[float, float], mes
         read(write(tmp_path / "r.uff", {}, {}, interval_s=interval_s))
 
 
-def test_truncated_data_set_is_named(tmp_path: Path) -> None:
+def test_samples_are_counted_and_truncated_data_named(tmp_path: Path) -> None:
     path = write(tmp_path / "r.uff", {}, {})
     first, second, third = path.read_bytes().split(b"         4        40")
     path.write_bytes(first + b"         4        40" + second + b"         4        41" + third)
     with pytest.raises(InputError, match=r"r\.uff', data set 2: holds 40 samples, but its head states 41"):
         read(path)
-
-
-def test_file_may_have_as_many_numbers_as_allowed(tmp_path: Path) -> None:
-    path = write(tmp_path / "r.uff", {}, {})
+    path = write(tmp_path / "whole.uff", {}, {})
     assert read_tables(path, (), 80)[0].values.size == 80
     with pytest.raises(InputError, match="more than 79 numbers"):
         read_tables(path, (), 79)

@@ -21,16 +21,6 @@ def test_key_in_another_unit_is_converted(key: str, value: float, known: str, hi
     assert hint in (suggest_key(key, value, [known]) or "")
 
 
-def test_g_is_grams_in_a_key_and_gravity_at_a_sensor() -> None:
-    assert find_key_units("kg")["g"] == 1e-3
-    assert convert_unit("g", "here") == ("acceleration", STANDARD_GRAVITY)
-
-
-def test_unknown_unit_is_refused() -> None:
-    with pytest.raises(InputError, match="has the unknown unit 'furlong'"):
-        convert_unit("furlong", "here")
-
-
 @pytest.mark.parametrize(
     ("symbol", "units"),
     [
@@ -78,25 +68,18 @@ def test_hint_repeats_numbers_and_short_lists(key: str, value: object, hint: str
     assert (suggest_key(key, value, ["y_kg", "x_m"]) or "").endswith(hint)
 
 
-def test_key_without_a_unit_of_the_schema_has_no_hint() -> None:
-    assert suggest_key("x_ft", 1.0, ["x_m", "name"]) is None
-
-
-@pytest.mark.parametrize("text", [" m/s2 ", "m/s^2", "m/s**2", "M/S²", "ms-2", "m s-2"])
-def test_spellings_of_an_acceleration_are_one_unit(text: str) -> None:
-    assert convert_unit(text, "here") == ("acceleration", 1.0)
-
-
-@pytest.mark.parametrize("text", ["gn", "g_n"])
-def test_spellings_of_gravity_are_one_unit(text: str) -> None:
-    assert convert_unit(text, "here") == ("acceleration", STANDARD_GRAVITY)
-
-
-def test_message_of_an_unknown_unit_is_short_and_lists_the_known_ones() -> None:
+def test_spellings_and_unknown_units() -> None:
+    for text in (" m/s2 ", "m/s^2", "m/s**2", "M/S²", "ms-2", "m s-2"):
+        assert convert_unit(text, "here") == ("acceleration", 1.0), text
+    for text in ("g", "gn", "g_n"):
+        assert convert_unit(text, "here") == ("acceleration", STANDARD_GRAVITY), text
     with pytest.raises(InputError) as caught:
         convert_unit("x" * 100, "here")
     assert caught.value.found == f"has the unknown unit '{'x' * 40}'"
     assert caught.value.hint == "Known units are m/s2, mm/s2, g, mg, m/s, mm/s, km/h, mph, m, mm, cm, km."
+    assert suggest_key("x_ft", 1.0, ["x_m", "name"]) is None
+    for name in ("span", "span_N", "length_m", "number_m", "stiffness_m", ""):
+        assert convert_key(name, ["number", "span_m", "stiffness_N_m"]) is None, name
 
 
 @pytest.mark.parametrize(
@@ -113,8 +96,3 @@ def test_name_in_another_unit_is_a_key_with_a_factor(name: str, key: str, factor
     """Definitions of the SI, rounded once."""
     converted = convert_key(name, ["number", "span_m", "stagger_m", "stiffness_N_m", "elasticity_m_N"])
     assert converted == (key, pytest.approx(factor, rel=1e-14))
-
-
-@pytest.mark.parametrize("name", ["span", "span_N", "length_m", "number_m", "stiffness_m", ""])
-def test_other_name_is_no_key(name: str) -> None:
-    assert convert_key(name, ["number", "span_m", "stiffness_N_m"]) is None

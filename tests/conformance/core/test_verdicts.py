@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.core.trust import limit_counts
+from pantocheck.conformance.core.trust import LEVELS, limit_counts
 from pantocheck.conformance.core.verdicts import Verdict, judge, margin, worst_verdict
 from pantocheck.conformance.line.library_folder import library_folder
 
@@ -56,11 +56,6 @@ def test_margin_by_hand(value: float, lower: float | None, upper: float | None, 
     assert margin(value, lower, upper) == pytest.approx(expected, abs=1e-12)
 
 
-def test_margin_needs_a_limit() -> None:
-    with pytest.raises(ValueError, match="at least one"):
-        margin(1.0, None, None)
-
-
 @pytest.mark.parametrize("speed", ["250", "300"])
 def test_published_results_pass_and_each_value_outside_its_limits_fails_alone(speed: str) -> None:
     limits = {limit.quantity: limit for limit in load_case(library_folder() / "en50318-2002" / f"{speed}.toml").limits}
@@ -76,7 +71,7 @@ def test_published_results_pass_and_each_value_outside_its_limits_fails_alone(sp
         assert failing(known | {name: limit.lower - 0.01}) == [name]
 
 
-def test_worst_verdict_decides() -> None:
+def test_worst_verdict_decides_and_limits_count_from_the_lowest_trust_up() -> None:
     order: tuple[Verdict, ...] = ("pass", "unverified", "info", "skip", "fail", "error")
     for better, worse in pairwise(order):
         assert worst_verdict([better, worse, "pass"]) == worst_verdict([worse, better]) == worse
@@ -84,11 +79,9 @@ def test_worst_verdict_decides() -> None:
     assert worst_verdict(["skip", "fail", "pass"]) == "fail"
     assert worst_verdict(["fail", "error"]) == "error"
     assert worst_verdict([]) == "info"
-
-
-def test_limits_count_from_the_lowest_trust_up() -> None:
-    assert limit_counts("primary", "secondary")
-    assert limit_counts("secondary", "secondary")
-    assert not limit_counts("provisional", "secondary")
-    assert not limit_counts("secondary", "primary")
-    assert limit_counts("provisional", "provisional")
+    # Rows: trust of the limit; columns: lowest trust that counts; both from primary to provisional.
+    assert LEVELS == ("primary", "secondary", "provisional")
+    counts = [[limit_counts(trust, lowest) for lowest in LEVELS] for trust in LEVELS]
+    assert counts == [[True, True, True], [False, True, True], [False, False, True]]
+    with pytest.raises(ValueError, match="at least one"):
+        margin(1.0, None, None)

@@ -53,10 +53,19 @@ def keep_supports(record: Record, kept: Any) -> Record:
     return replace(record, support_position=record.support_position[kept], support_uplift=record.support_uplift[kept])
 
 
-def test_complete_record_passes(twin: Case, record: Record) -> None:
+def cut(record: Record, kept: Any) -> Record:
+    """Record with some of its samples."""
+    rows = ("position", "force", "contact_height", "support_uplift")
+    return replace(record, time=record.time[kept], **{name: getattr(record, name)[:, kept] for name in rows})
+
+
+def test_complete_record_passes_and_every_quantity_has_a_checked_need(twin: Case, record: Record) -> None:
     result = grade(twin, record)
     assert result.verdict == "pass", [result.reason, result.record, [c for c in result.criteria if c.verdict != "pass"]]
     assert {criterion.pantograph for criterion in result.criteria} == {0, 1, 2}
+    for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES):
+        with pytest.raises(AttributeError):  # no need is met by an object without signals
+            quantity.needs.check(object())
 
 
 @pytest.mark.parametrize("missing", [240.0, 300.0, 360.0])
@@ -69,15 +78,12 @@ def test_uplift_is_skipped_without_any_support_of_the_section(twin: Case, record
     assert result.verdict == "skip"
 
 
-@pytest.mark.parametrize("held", [0.0, 0.012])
-def test_support_with_a_dead_sensor_counts_as_missing(twin: Case, record: Record, held: float) -> None:
+def test_support_with_a_dead_sensor_counts_as_missing_inside_the_section(twin: Case, record: Record) -> None:
     """A constant channel, for example of the support with the largest uplift, is no measurement of its uplift."""
-    uplift = np.where((record.support_position == 300.0)[:, None], held, record.support_uplift)
-    criterion = find_criterion(grade(twin, replace(record, support_uplift=uplift)), UPLIFT)
-    assert (criterion.verdict, criterion.value) == ("skip", None)
-
-
-def test_support_outside_the_section_is_not_needed(twin: Case, record: Record) -> None:
+    for held in (0.0, 0.012):
+        uplift = np.where((record.support_position == 300.0)[:, None], held, record.support_uplift)
+        criterion = find_criterion(grade(twin, replace(record, support_uplift=uplift)), UPLIFT)
+        assert (criterion.verdict, criterion.value) == ("skip", None)
     inside = (record.support_position >= 240) & (record.support_position <= 360)
     assert grade(twin, keep_supports(record, inside)).verdict == "pass"
 
@@ -106,21 +112,16 @@ def test_spacing_of_the_record_is_that_of_the_case(twin: Case, record: Record, s
         assert result.reason == f"pantograph 2 runs {spacing:g} m behind pantograph 1 in the record, 150 m in the case"
 
 
-def test_pantographs_that_part_from_each_other_are_refused(twin: Case, record: Record) -> None:
+def test_pantographs_that_part_or_stop_early_are_refused(twin: Case, record: Record) -> None:
     """Only the last samples differ, so that neither the first nor the mean distance shows it."""
     position = record.position.copy()
     position[1, -1] += 0.3
     position[0, -1] += 1.5
     assert "runs 151.2 m behind" in (grade(twin, replace(record, position=position)).reason or "")
-
-
-def test_trailing_pantograph_that_stops_early_is_refused(twin: Case, record: Record) -> None:
-    """Coverage counts for each pantograph: the first one has crossed the whole section."""
+    # Coverage counts for each pantograph: the first one has crossed the whole section.
     kept = record.position[1] < 350
     assert record.position[0][kept].max() > 400
-    rows = ("position", "force", "contact_height", "support_uplift")
-    cut = replace(record, time=record.time[kept], **{name: getattr(record, name)[:, kept] for name in rows})
-    result = grade(twin, cut)
+    result = grade(twin, cut(record, kept))
     assert result.verdict == "error"
     assert "the record of pantograph 2 is cut short" in result.reason
 
@@ -128,10 +129,7 @@ def test_trailing_pantograph_that_stops_early_is_refused(twin: Case, record: Rec
 @pytest.mark.parametrize(("end", "verdict"), [(362.0, "skip"), (366.0, "pass")])
 def test_uplift_needs_the_record_behind_the_last_support(twin: Case, record: Record, end: float, verdict: str) -> None:
     """The section ends with the support at 360 m; the rear pantograph lifts it last."""
-    kept = record.position[1] < end
-    rows = ("position", "force", "contact_height", "support_uplift")
-    cut = replace(record, time=record.time[kept], **{name: getattr(record, name)[:, kept] for name in rows})
-    criterion = find_criterion(grade(twin, cut), UPLIFT)
+    criterion = find_criterion(grade(twin, cut(record, record.position[1] < end)), UPLIFT)
     assert criterion.verdict == verdict
     assert verdict == "pass" or "the record ends at 36" in criterion.reason
 
@@ -144,12 +142,6 @@ def test_record_of_another_version_of_the_case_is_refused(twin: Case, record: Re
     assert result.reason.startswith("the record was made with other inputs than those of the case")
     assert grade(twin, record).record.case_digest is None
     assert grade(twin, record, twin.digest).record.case_digest == twin.digest
-
-
-def test_every_quantity_of_a_record_has_a_checked_need() -> None:
-    for quantity in (*PANTOGRAPH_QUANTITIES, *LINE_QUANTITIES):
-        with pytest.raises(AttributeError):  # no need is met by an object without signals
-            quantity.needs.check(object())
 
 
 def write_files(folder: Path, case: Case, record: Record) -> Path:
@@ -229,26 +221,14 @@ def test_same_files_pass_before_they_are_spoilt(twin: Case, record: Record, tmp_
         assert grade_files(twin, tmp_path) == "pass", removed
 
 
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        (["spacing_m"], "channel position: missing, and the sidecar does not state spacing_m"),
-        (
-            ["start_m"],
-            "channel position: missing, and the sidecar does not state start_m (the first pantograph of the case "
-            "starts at 210 m)",
-        ),
-    ],
-)
-def test_record_with_time_alone_needs_the_places_of_its_pantographs(
-    twin: Case, record: Record, tmp_path: Path, keys: list[str], message: str
-) -> None:
-    sidecar = write_files(tmp_path, twin, record)
-    remove_columns(tmp_path / "run.csv", {"position_1_m", "position_2_m"})
-    edit_toml(sidecar, dict.fromkeys(keys))
-    result = run_case(twin, open_record_folder(tmp_path), "secondary")
-    assert result.verdict == "error"
-    assert message in result.reason
+def test_record_with_time_alone_needs_the_places_of_its_pantographs(twin: Case, record: Record, tmp_path: Path) -> None:
+    for key in ("spacing_m", "start_m (the first pantograph of the case starts at 210 m)"):
+        sidecar = write_files(tmp_path, twin, record)
+        remove_columns(tmp_path / "run.csv", {"position_1_m", "position_2_m"})
+        edit_toml(sidecar, {key.split()[0]: None})
+        result = run_case(twin, open_record_folder(tmp_path), "secondary")
+        assert result.verdict == "error"
+        assert f"channel position: missing, and the sidecar does not state {key}" in result.reason
 
 
 @pytest.mark.parametrize(

@@ -48,16 +48,13 @@ def test_signing_and_checking_inside_a_running_event_loop(document: Path, signer
         assert pool.submit(lambda: asyncio.run(sign_and_check())).result()
 
 
-def test_two_signatures_in_one_file(document: Path, signers: Signers, roots_file: Path) -> None:
+def test_two_signatures_in_one_file_of_one_version(document: Path, signers: Signers, roots_file: Path) -> None:
     sign(document, signers.author, role="author", encoding="pem")
     sign(document, signers.assessor, role="assessor of the company, 2nd")
     report = check_signatures(document, roots_file)
     assert report.authentic
     roles = {facts.signer: facts.role for facts in report.signatures}
     assert roles == {"Ada Author": "author", "Ben Assessor": "assessor of the company, 2nd"}
-
-
-def test_signature_of_another_version_is_kept(document: Path, signers: Signers) -> None:
     signature = sign(document, signers.author)
     earlier = signature.read_bytes()
     document.write_bytes(b"written anew")
@@ -66,19 +63,11 @@ def test_signature_of_another_version_is_kept(document: Path, signers: Signers) 
     assert signature.read_bytes() == earlier
 
 
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (b"", "no CMS signature"),
-        (b"hello", "no CMS signature"),
-        (b"-----BEGIN CMS-----\nAAAA\n-----END CMS-----\n", "no CMS signature"),
-        (b"0\x80" * 100_000, "no CMS signature"),
-    ],
-)
-def test_damaged_signature_files(document: Path, content: bytes, message: str) -> None:
-    document.with_name(document.name + ".p7s").write_bytes(content)
-    with pytest.raises(InputError, match=message):
-        check_signatures(document, None)
+def test_damaged_signature_files(document: Path) -> None:
+    for content in (b"", b"hello", b"-----BEGIN CMS-----\nAAAA\n-----END CMS-----\n", b"0\x80" * 100_000):
+        document.with_name(document.name + ".p7s").write_bytes(content)
+        with pytest.raises(InputError, match="no CMS signature"):
+            check_signatures(document, None)
 
 
 def test_every_damage_is_reported(document: Path, signers: Signers, roots_file: Path) -> None:
@@ -134,12 +123,8 @@ def test_time_stamp_servers_that_fail(document: Path, signers: Signers) -> None:
     server = HTTPServer(("127.0.0.1", 0), Handler)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
-        for page, message in [
-            ("refusal", "it answered without a time stamp"),
-            ("page", "it answered without a time stamp"),
-            ("empty", "it answered without a time stamp"),
-            ("500", "gave no time stamp"),
-        ]:
+        for page in ("refusal", "page", "empty", "500"):
+            message = "gave no time stamp" if page == "500" else "it answered without a time stamp"
             with pytest.raises(InputError, match=message):
                 sign(document, signers.author, timestamp_url=f"http://127.0.0.1:{server.server_port}/{page}")
     finally:

@@ -24,22 +24,16 @@ def widen(row: Criterion) -> Criterion:
     return row.model_copy(update={"upper": 1.0 + (row.upper or 0.0)})
 
 
-def test_limits_of_the_case_are_no_own_limits(case_250: Case, result: CaseResult) -> None:
+def test_own_limits_are_named_alone(case_250: Case, result: CaseResult) -> None:
     assert len(result.criteria) > 2
     assert list_own_limits(case_250, result) == []
     assert list(compare_limits(case_250, result)) == []
-
-
-def test_each_changed_limit_is_named_alone(case_250: Case, result: CaseResult) -> None:
     for number, row in enumerate(result.criteria):
         rows = [*result.criteria[:number], widen(row), *result.criteria[number + 1 :]]
         changed = result.model_copy(update={"criteria": rows})
         for found in (list_own_limits(case_250, changed), list(compare_limits(case_250, changed))):
             assert len(found) == 1
             assert found[0].startswith(row.quantity)
-
-
-def test_limit_that_the_case_does_not_have_is_named(case_250: Case, result: CaseResult) -> None:
     added = result.criteria[0].model_copy(update={"pantograph": 7})
     changed = result.model_copy(update={"criteria": [*result.criteria, added]})
     for found in (list_own_limits(case_250, changed), list(compare_limits(case_250, changed))):

@@ -48,20 +48,16 @@ def test_commands_from_signing_to_authentic(
     first = invoke("sign", passing_certificate, "--key", author, "--visible", "top-left")
     assert (first.exit_code, first.stdout) == (0, f"Signed by Ada Author as author\n{signed}\n")
     second = invoke("sign", signed, "--key", assessor, "--role", "assessor")
-    assert (second.exit_code, second.stdout) == (
-        0,
-        f"Signed by Ben Assessor as assessor\n{signed}\n",
-    )
+    assert (second.exit_code, second.stdout) == (0, f"Signed by Ben Assessor as assessor\n{signed}\n")
     assert passing_certificate.read_bytes() == unsigned
     assert signed.read_bytes().startswith(unsigned)
 
     trusted = invoke("verify", signed, "--trust-roots", roots_file)
     assert trusted.exit_code == 0
     assert trusted.stdout.startswith("authentic: the verdict 'pass' follows")
-    assert "signature 2: signed by Ben Assessor as assessor (trusted: its chain leads to Test root)." in one_line(
-        trusted.stdout
-    )
-    assert "Revocation of certificates was not checked" in one_line(trusted.stdout)
+    text = one_line(trusted.stdout)
+    assert "signature 2: signed by Ben Assessor as assessor (trusted: its chain leads to Test root)." in text
+    assert "Revocation of certificates was not checked" in text
 
     named = invoke("verify", signed)
     assert named.exit_code == 0
@@ -99,11 +95,8 @@ def test_failing_certificate_may_be_authentic(
 def test_unusable_trust_roots(passing_certificate: Path, signers: Signers, tmp_path: Path) -> None:
     signed = sign(passing_certificate, signers.author)
     (tmp_path / "empty.pem").write_text("no certificate")
-    for roots, message in [
-        (tmp_path / "none.pem", "cannot be read"),
-        (tmp_path / "empty.pem", "a certificate is damaged"),
-    ]:
-        result = invoke("verify", signed, "--trust-roots", roots)
+    for roots, message in (("none.pem", "cannot be read"), ("empty.pem", "a certificate is damaged")):
+        result = invoke("verify", signed, "--trust-roots", tmp_path / roots)
         assert result.exit_code == 2
         assert message in result.stderr
 

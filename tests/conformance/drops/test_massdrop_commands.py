@@ -133,6 +133,7 @@ def test_unknown_export_or_missing_record_is_refused(tmp_path: Path, folder: Pat
     assert "cannot be read" in result.output
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_identify_each_writes_the_population(folder: Path) -> None:
     """One record: a population of one test, which agrees with itself; the identification is deterministic."""
     output = run_identify(folder, "each", "--each")

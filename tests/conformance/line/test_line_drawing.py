@@ -282,6 +282,7 @@ def test_listed_spans_keep_one_scale() -> None:
     assert per_metre == pytest.approx([per_metre[0]] * len(views))
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_files_are_valid_and_the_same_every_time(staggered: tuple[DiscretisedLine, Geometry]) -> None:
     drawing = LineDrawing(staggered[0], "Line", staggered[1])
     first, second = draw_line_svg(drawing), draw_line_svg(drawing)

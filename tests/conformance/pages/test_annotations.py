@@ -84,26 +84,17 @@ def run_plan(folder: Path, *arguments: str) -> list[Command]:
 
 def test_failed_limits_are_annotated_at_their_lines(project: Path) -> None:
     commands = run_plan(project)
+    own = line_of(project / "mine.toml", 'quantity = "std_force_N"') - 1
     assert [(command.name, command.properties) for command in commands] == [
         ("error", {"file": "limits.toml", "line": "2", "title": "en50318-2002/250: mean_force_N of pantograph 1"}),
-        (
-            "error",
-            {
-                "file": "mine.toml",
-                "line": str(line_of(project / "mine.toml", 'quantity = "std_force_N"') - 1),
-                "title": "mine: std_force_N of pantograph 1",
-            },
-        ),
+        ("error", {"file": "mine.toml", "line": str(own), "title": "mine: std_force_N of pantograph 1"}),
     ]
     assert commands[0].message.startswith("118.2 N, limits <= 100, margin -0.182, primary")
-
-
-def test_code_quality_report_has_the_same_places(project: Path) -> None:
-    run_plan(project)
+    # The code quality report has the same places.
     issues = json.loads((project / "report" / "codequality.json").read_text())
     assert [issue["location"] for issue in issues] == [
         {"path": "limits.toml", "lines": {"begin": 2}},
-        {"path": "mine.toml", "lines": {"begin": line_of(project / "mine.toml", 'quantity = "std_force_N"') - 1}},
+        {"path": "mine.toml", "lines": {"begin": own}},
     ]
     assert {issue["severity"] for issue in issues} == {"critical"}
     assert len({issue["fingerprint"] for issue in issues}) == len(issues)
@@ -123,16 +114,11 @@ def test_missing_record_is_a_warning_at_the_case_and_drift_an_error_at_the_basel
     edit_toml(project / "records" / "250.toml", {"pantograph.0.max_force_N": 197.0})  # 1.7 % more; 1 % may drift
     (project / "records" / "300.toml").unlink()
     drift, *missing = run_plan(project)
-    plan = project / "plan.toml"
-    assert (drift.name, drift.properties["file"], drift.properties["line"]) == (
-        *("error", "plan.toml"),
-        str(line_of(plan, "baseline")),
-    )
-    assert drift.properties["title"] == "en50318-2002/250: drift of max_force_N of pantograph 1"
-    assert {(command.name, command.properties["file"]) for command in missing} <= {
-        ("warning", "mine.toml"),
-        ("warning", "plan.toml"),
-    }
+    baseline = str(line_of(project / "plan.toml", "baseline"))
+    title = "en50318-2002/250: drift of max_force_N of pantograph 1"
+    assert drift[:2] == ("error", {"file": "plan.toml", "line": baseline, "title": title})
+    assert {command.name for command in missing} == {"warning"}
+    assert {command.properties["file"] for command in missing} <= {"mine.toml", "plan.toml"}
     assert any(command.properties["file"] == "mine.toml" for command in missing)
 
 
@@ -154,9 +140,8 @@ def test_assessed_record_and_own_profile_are_the_places_of_an_assessment(project
     arguments = ["assess", "records/250.toml", "--profile", "profile.toml", "--formats", "annotations"]
     assert CliRunner().invoke(app, arguments).exit_code == 1
     commands = [read_command(line) for line in (project / "report" / "annotations.txt").read_text().splitlines()]
-    assert [(command.properties["file"], command.properties.get("line")) for command in commands] == [
-        ("profile.toml", "5")
-    ]
+    (command,) = commands
+    assert (command.properties["file"], command.properties.get("line")) == ("profile.toml", "5")
 
 
 HOSTILE = "50 %::stop-commands::x\r\n::add-mask::secret,file=other.toml\n##[add-mask]a\x1b[31m\u202e%0A::error::"
@@ -174,10 +159,8 @@ def test_texts_of_other_people_stay_in_their_field(results: dict[str, Any], tmp_
     assert len(lines) == len(annotations) > 1
     for line, annotation in zip(lines, annotations, strict=True):
         command = read_command(line)
-        assert set(command.properties) == {"file", "line", "title"}
-        assert command.properties["file"] == path.as_posix()
-        assert command.properties["line"] == "3"
-        assert command.properties["title"] == f"{annotation.group}: {annotation.name}"
+        title = f"{annotation.group}: {annotation.name}"
+        assert command.properties == {"file": path.as_posix(), "line": "3", "title": title}
         assert command.message == annotation.text
     issues = json.loads(render_code_quality(annotations, tmp_path / "results.json"))
     assert [issue["location"]["path"] for issue in issues] == [path.as_posix()] * len(annotations)

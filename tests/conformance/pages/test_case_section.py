@@ -7,46 +7,31 @@ from pantocheck.conformance.pages.case_section import build_case_section, input_
 from pantocheck.conformance.pages.document import BulletList, Section, SmallPrint, Table
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
-WIRE = {
-    "group": "line.contact_wire",
-    "trust": "secondary",
-    "source": "a book",
-    "values": {
-        "tension_N": 20000.0,
-        "mass_kg_m": 1.35,
-        "span_list.length_m": {"count": 40, "lowest": 50, "highest": 65},
-    },
-}
+SPANS = {"count": 40, "lowest": 50, "highest": 65}
+VALUES = {"tension_N": 20000.0, "mass_kg_m": 1.35, "span_list.length_m": SPANS}
+WIRE = {"group": "line.contact_wire", "trust": "secondary", "source": "a book", "values": VALUES}
 UNTRACED = {"group": "line.contact_wire.mass_kg_m", "trust": "provisional", "source": "not traced", "values": {}}
 
 
-def test_case_without_any_value_has_no_section(results: dict[str, Any]) -> None:
+def test_skipped_cases_have_no_section_and_share_a_sentence(results: dict[str, Any]) -> None:
     """The skipped case stands in the table of cases and among the reasons only."""
     skipped = results["cases"][2]
-    assert [shown.case.id for shown in list_shown_cases(Results.model_validate(results).cases)] == [
-        "en50318-2002/250",
-        "en50318-2002/300",
-    ]
+    shown = [shown.case.id for shown in list_shown_cases(Results.model_validate(results).cases)]
+    assert shown == ["en50318-2002/250", "en50318-2002/300"]
     document = certify(results)
     headings = [block.heading for block in document.blocks if isinstance(block, Section)]
     assert skipped["title"] not in headings
     [index] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == "cases"]
     assert skipped["id"] in [row[0] for row in index.blocks[0].rows]  # type: ignore[union-attr]
-
-
-def test_cases_skipped_for_one_reason_share_a_sentence(results: dict[str, Any]) -> None:
+    section = build_case_section(list_shown_cases(Results.model_validate(results).cases)[0])
+    headings = [block.heading for block in section.blocks if isinstance(block, Section)]
+    assert headings.index("Figures") == headings.index("Criteria") + 1
+    assert headings.index("Figures") < headings.index("All quantities")
     results["cases"].append(results["cases"][2] | {"id": "own/other"})
     [reasons] = [block for block in certify(results).blocks if isinstance(block, Section) and block.anchor == "reasons"]
     items = [str(item) for part in reasons.blocks if isinstance(part, Section) for item in part.blocks[0].items]  # type: ignore[union-attr]
     sentence = f"{results['cases'][2]['id']}, own/other: {results['cases'][2]['reason']}"
     assert sentence in items
-
-
-def test_figures_stand_before_the_tables_of_all_values(results: dict[str, Any]) -> None:
-    section = build_case_section(list_shown_cases(Results.model_validate(results).cases)[0])
-    headings = [block.heading for block in section.blocks if isinstance(block, Section)]
-    assert headings.index("Figures") == headings.index("Criteria") + 1
-    assert headings.index("Figures") < headings.index("All quantities")
 
 
 def test_notes_of_an_earlier_case_are_counted(results: dict[str, Any]) -> None:
@@ -66,15 +51,8 @@ def test_inputs_have_values_with_units_and_marks(passing: dict[str, Any]) -> Non
     assert row[1] == "tension 20000 N; mass 1.35 kg/m ○; span list, length 40 values, 50 to 65 m"
     assert sources.items == ("a book",)  # type: ignore[union-attr]
     assert key == SmallPrint("○: value not traced to a printed source.")
-
-
-def test_inputs_of_an_earlier_case_are_named_only(passing: dict[str, Any]) -> None:
-    case = CaseResult.model_validate(passing["cases"][0] | {"inputs": [WIRE, UNTRACED]})
     [text] = input_blocks(case, (case.model_copy(update={"id": "own/first"}),), "case-2-input-source")
     assert text == SmallPrint("As in own/first: line.contact_wire.")
-
-
-def test_inputs_without_values_have_none_on_the_page(passing: dict[str, Any]) -> None:
     case = CaseResult.model_validate(passing["cases"][0] | {"inputs": [WIRE | {"values": {}}, UNTRACED]})
     table, _ = input_blocks(case, (), "case-1-input-source")
     assert isinstance(table, Table)

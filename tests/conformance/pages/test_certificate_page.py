@@ -6,20 +6,9 @@ from typing import Any
 
 from helpers.shown_page import certify, shown_certificate, summarise
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.criteria_table import criteria_blocks, describe_criterion
-from pantocheck.conformance.pages.document import (
-    BulletList,
-    Document,
-    Figures,
-    Link,
-    NumberedList,
-    Section,
-    SmallPrint,
-    Table,
-    TrustMark,
-    VerdictMark,
-)
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import build_band_table, list_definitions
@@ -29,24 +18,21 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 
-def case_section(document: Document, number: int) -> dict[str, Section]:
+def case_section(document: doc.Document, number: int) -> dict[str, doc.Section]:
     """Sections of a case by their headings."""
-    [case] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == f"case-{number}"]
-    return {block.heading: block for block in case.blocks if isinstance(block, Section)}
+    [case] = [block for block in document.blocks if isinstance(block, doc.Section) and block.anchor == f"case-{number}"]
+    return {block.heading: block for block in case.blocks if isinstance(block, doc.Section)}
 
 
-def sentences(section: Section) -> tuple[str, ...]:
+def sentences(section: doc.Section) -> tuple[str, ...]:
     [items] = section.blocks
-    assert isinstance(items, BulletList)
+    assert isinstance(items, doc.BulletList)
     return tuple(map(str, items.items))
 
 
-def test_example_has_the_format_of_results(results: dict[str, Any]) -> None:
+def test_example_and_labels_are_complete(results: dict[str, Any]) -> None:
     content = json.loads(Results.model_validate(results).to_json())
     assert content == results
-
-
-def test_every_quantity_has_a_label() -> None:
     assert all(quantity.label for quantity in QUANTITIES.values())
 
 
@@ -59,10 +45,14 @@ def test_criterion_shows_all_its_values(passing: dict[str, Any]) -> None:
     assert (texts.margin, texts.pantograph) == ("+0.36", "1")
     result = CaseResult.model_validate(case)
     table, note, sources = criteria_blocks(result.criteria, "case-1", "case-1-source", result)
-    assert note == SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
-    assert isinstance(table, Table)
-    assert table.rows[1][-3:] == (VerdictMark("pass"), TrustMark("secondary"), Link("[2]", "case-1-source-2"))
-    assert sources == NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
+    assert note == doc.SmallPrint("* Uncertainty without section and length, which are not known: it is too small.")
+    assert isinstance(table, doc.Table)
+    assert table.rows[1][-3:] == (
+        doc.VerdictMark("pass"),
+        doc.TrustMark("secondary"),
+        doc.Link("[2]", "case-1-source-2"),
+    )
+    assert sources == doc.NumberedList("Sources of the limits", ("another", row["source"]), "case-1-source")
     line = describe_criterion(
         Criterion.model_validate(row | {"pantograph": 0, "item": 3, "discretisation_error": None, "uncertainty": None})
     )
@@ -97,10 +87,7 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     page_1 = marked[: marked.index('id="cases"')]
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
     assert f"The uncertainty of {counted} counted values is incomplete (*: section or length not known)" in page_1
-    for text in (
-        summarise(passing),
-        render_markdown(certify(passing)),
-    ):
+    for text in (summarise(passing), render_markdown(certify(passing))):
         assert "Uncertainty without section and length, which are not known: it is too small" in text
     for other in passing["cases"]:
         other["uncertainty_basis"] = dict.fromkeys(unknown, "known")
@@ -137,9 +124,6 @@ def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
     assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
     assert len(groups["Not evaluated"]) == 2
     assert "Contact loss" not in "".join(groups["Smallest margins"])
-
-
-def test_band_table_shows_verdicts_or_why_there_are_none(results: dict[str, Any]) -> None:
     front, rear = (
         [str(row[2]) for row in build_band_table(CaseResult.model_validate(case)).rows] for case in results["cases"][:2]
     )
@@ -162,14 +146,11 @@ def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any])
     assert list_definitions([without]) == ()
 
 
-def test_case_facts_show_wall_time_and_filter(passing: dict[str, Any]) -> None:
+def test_case_facts_show_wall_time_filter_and_force_laws(passing: dict[str, Any]) -> None:
     facts = list_case_facts(CaseResult.model_validate(passing["cases"][0]))
     assert dict(facts.times)["Wall time / simulated time"] == format_value(0.412 / 7.0, 3)
     assert dict(facts.pairs)["Filter"] == "Butterworth, order 6, −3 dB at 20 Hz, zero phase"
-
-
-def test_case_facts_state_the_forces_of_the_force_laws(passing: dict[str, Any]) -> None:
-    """Without a law, results.json has no key for it."""
+    # Without a law, results.json has no key for it.
     case = passing["cases"][0]
     assert "law_forces" not in case["run"]
     forces = {
@@ -196,14 +177,14 @@ def test_certificate_of_a_record_with_gaps(passing: dict[str, Any]) -> None:
     Results.model_validate(passing)
     sections = case_section(certify(passing), 1)
     [figures] = sections["Figures"].blocks
-    assert isinstance(figures, Figures)
+    assert isinstance(figures, doc.Figures)
     assert [figure.caption.split(":")[0] for figure in figures.figures] == [
         *2 * ["Pantograph 1"],
         *3 * ["Pantograph 2"],
         "Uplift at the supports. Largest",
     ]
     [table] = sections["All quantities"].blocks
-    assert isinstance(table, Table)
+    assert isinstance(table, doc.Table)
     assert "1.0170, 0.89600" in [row[-1] for row in table.rows]
 
 

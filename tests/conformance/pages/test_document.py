@@ -23,18 +23,14 @@ DOCUMENT = Document(
 )
 
 
-def test_html_tables_and_figures_scroll_and_numbers_stay_whole() -> None:
+def test_html_scrolls_and_refuses_what_is_active() -> None:
     """A table wider than a phone broke its numbers into single digits and widened the page."""
     page = render_html(DOCUMENT)
     assert re.findall(r'<div class="scroll"[^>]*>\s*<(\w+)', page) == ["svg", "table"]
     assert re.search(r"<td[^>]*>0.836193</td>", page)
     assert re.search(r"\.grid td \{[^}]*overflow-wrap: normal", page)
     assert '<table class="grid"' in page
-
-
-def test_html_security_policy() -> None:
-    """A browser refuses anything active that reached a figure through the data."""
-    page = render_html(DOCUMENT)
+    # A browser refuses anything active that reached a figure through the data.
     digest = "'sha256-[A-Za-z0-9+/]{43}='"
     assert re.search(
         '<meta http-equiv="Content-Security-Policy" content="'
@@ -54,7 +50,7 @@ def test_pdf_without_results_bears_no_date(epoch: str | None, tmp_path: Path, mo
     files = [tmp_path / name for name in ("one.pdf", "two.pdf")]
     for file in files:
         write_report(DOCUMENT, file)
-        time.sleep(1.1)  # dates count seconds
+        time.sleep(1.1 if file == files[0] else 0)  # dates count seconds
     assert files[0].read_bytes() == files[1].read_bytes()
     reader = PdfReader(files[0])
     assert reader.metadata is not None

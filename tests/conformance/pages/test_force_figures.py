@@ -12,27 +12,21 @@ from pantocheck.conformance.pages.case_figures import draw_force, draw_uplift, s
 from pantocheck.conformance.results.results_format import CaseResult
 
 
-def test_uplift_figure_names_only_the_largest_of_many_supports() -> None:
+def test_uplift_figure_names_few_supports_and_no_two_curves_look_alike() -> None:
     """A legend of eleven names would halve the width of the figure."""
     supports = [UpliftTrace(support_m=55.0 * i, time_s=[0, 1, 2], uplift_mm=[0, 40 + i % 7, 0]) for i in range(11)]
     named = draw_uplift.__wrapped__(supports, []).axes[0].get_legend().get_texts()
     assert [text.get_text() for text in named] == ["other supports", "largest: support at 330 m"]
-
-
-def test_no_two_of_eight_uplift_curves_look_alike() -> None:
-    """Colour and dashes of every named curve differ from those of all others."""
+    # Colour and dashes of every named curve differ from those of all others.
     supports = [UpliftTrace(support_m=55.0 * i, time_s=[0, 1, 2], uplift_mm=[0, 40 + i, 0]) for i in range(8)]
     lines = draw_uplift.__wrapped__(supports, []).axes[0].lines
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 8
 
 
-def test_ticks_of_the_force_stand_at_the_supports(passing: dict[str, Any]) -> None:
+def test_force_figure_has_ticks_at_the_supports_and_limits_of_force_statistics(passing: dict[str, Any]) -> None:
     trace = Traces.model_validate(passing["cases"][0]["traces"]["1"])
     axes = draw_force.__wrapped__(trace, [], []).axes[0]
     assert list(axes.get_xticks()) == trace.supports_m == [240, 300, 360]
-
-
-def test_force_figure_shows_limits_of_force_statistics_only(passing: dict[str, Any]) -> None:
     rows = [
         {"quantity": "std_force_N", "lower": 26.0, "upper": 31.0},
         {"quantity": "mean_force_N", "lower": None, "upper": 120.0},
@@ -41,8 +35,14 @@ def test_force_figure_shows_limits_of_force_statistics_only(passing: dict[str, A
     ]
     first = Criterion.model_validate(passing["cases"][0]["criteria"][0])
     assert [row.quantity for row in select_limited([first.model_copy(update=row) for row in rows])] == ["mean_force_N"]
+    # The example has 0.98 x 24 N at the span-passing frequency; two spans hold two periods: no leakage.
+    trace = passing["cases"][0]["traces"]["1"]["spectrum"]
+    peak = max(zip(trace["amplitude_N"], trace["frequency_Hz"], strict=True))
+    assert peak[1] == pytest.approx(250 / 3.6 / 60, rel=0.01)
+    assert math.isclose(peak[0], 24 * 0.98, rel_tol=0.02)
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_figures_do_not_depend_on_the_settings_of_matplotlib(passing: dict[str, Any]) -> None:
     case = CaseResult.model_validate(passing["cases"][0])
     expected = draw_uplift(case.uplift, case.criteria)
@@ -51,11 +51,3 @@ def test_figures_do_not_depend_on_the_settings_of_matplotlib(passing: dict[str, 
         assert matplotlib.rcParams["svg.fonttype"] == "path"
     assert ">time [s]</text>" in expected
     assert "dc:date" not in expected
-
-
-def test_example_spectrum_agrees_with_its_signal(passing: dict[str, Any]) -> None:
-    """The example has 0.98 x 24 N at the span-passing frequency; two spans hold two periods: no leakage."""
-    trace = passing["cases"][0]["traces"]["1"]["spectrum"]
-    peak = max(zip(trace["amplitude_N"], trace["frequency_Hz"], strict=True))
-    assert peak[1] == pytest.approx(250 / 3.6 / 60, rel=0.01)
-    assert math.isclose(peak[0], 24 * 0.98, rel_tol=0.02)

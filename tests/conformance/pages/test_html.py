@@ -46,6 +46,7 @@ class Outline(HTMLParser):
         return [attrs[attribute] for _, attrs in self.tags if attribute in attrs]
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_html_is_deterministic(results: dict[str, Any], page_text: str) -> None:
     assert show_certificate(results) == page_text
 
@@ -62,11 +63,6 @@ def test_html_fetches_and_runs_nothing(name: str, request: pytest.FixtureRequest
     for style in re.findall("<style>(.*?)</style>", text, re.S):
         assert "url(" not in style
         assert "@import" not in style
-
-
-@pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_policy_admits_exactly_the_styles_and_scripts_of_the_page(name: str, request: pytest.FixtureRequest) -> None:
-    text = request.getfixturevalue(name)
     [policy] = [attrs["content"] for tag, attrs in Outline(text).tags if tag == "meta" and "http-equiv" in attrs]
     admitted = {words[0]: set(words[1:]) for words in map(str.split, str(policy).split(";"))}
     assert admitted["default-src"] == {"'none'"}
@@ -76,55 +72,6 @@ def test_policy_admits_exactly_the_styles_and_scripts_of_the_page(name: str, req
         assert admitted[directive] == digests
     own = {"type": "application/json", "id": "pantocheck-results"}  # data, which no browser executes
     assert [attrs for tag, attrs in Outline(text).tags if tag == "script" and attrs] == [own]
-
-
-def test_figures_of_a_page_keep_their_text_and_share_no_id(page_text: str) -> None:
-    """Two figures have equal tick marks; a repeated id would draw those of the first figure in all others."""
-    figures = re.findall(r"<figure.*?</figure>", page_text, re.S)
-    assert all("contact force" in figure or "uplift" in figure or "amplitude" in figure for figure in figures)
-    for figure in figures:
-        outline = Outline(figure)
-        owned = {name for tag, attrs in outline.tags if tag != "figure" for name in [attrs.get("id")] if name}
-        assert owned
-        assert set(re.findall(r'href="#([^"]+)|url\(#([^)]+)', figure)) == {
-            (name, "") if f'href="#{name}"' in figure else ("", name) for name in owned
-        }
-
-
-def test_criteria_link_to_the_places_of_their_extremes(results: dict[str, Any], page_text: str) -> None:
-    outline = Outline(page_text)
-    place = results["cases"][0]["places"]["1"]["max_force_N"]["position_m"]
-    assert (
-        f'<code>max_force_N</code> <a href="#case-1-force-1">at {round(place, 1):g}\N{NO-BREAK SPACE}m</a>' in page_text
-    )
-    assert '<a href="#case-1-uplift">at 300\N{NO-BREAK SPACE}m</a>' in page_text
-    figures = [attrs for tag, attrs in outline.tags if tag == "figure" and "data-curves" in attrs]
-    assert [(attrs["id"], attrs["data-curves"], attrs["data-case"], attrs["data-owner"]) for attrs in figures] == [
-        ("case-1-force-1", "force", "0", "1"),
-        ("case-1-force-2", "force", "0", "2"),
-        ("case-1-uplift", "uplift", "0", "0"),
-        ("case-2-force-1", "force", "1", "1"),
-    ]
-
-
-@pytest.mark.parametrize("name", ["results", "hostile"])
-def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequest) -> None:
-    """The data block has every key in the order of the results; hostile text cannot end it."""
-    results = request.getfixturevalue(name)
-    page = show_certificate(results)
-    [block] = re.findall('<script type="application/json" id="pantocheck-results">(.*?)</script>', page)
-    assert not set("<>&") & set(block)
-    assert block.isascii()
-    assert json.dumps(json.loads(block)) == json.dumps(Results.model_validate(results).to_dict())
-
-
-def test_html_without_results_has_no_data_block() -> None:
-    page = render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
-    assert "application/json" not in page
-
-
-@pytest.mark.parametrize("name", ["page_text", "hostile_text"])
-def test_html_has_a_valid_structure(name: str, request: pytest.FixtureRequest) -> None:
     outline = Outline(request.getfixturevalue(name))
     assert outline.open == []
     identities = outline.values("id")
@@ -140,24 +87,35 @@ def test_html_has_a_valid_structure(name: str, request: pytest.FixtureRequest) -
     assert all(attrs.get("aria-label") for _, attrs in outline.tags if attrs.get("role") == "img")
 
 
-def test_html_begins_with_the_verdict(page_text: str) -> None:
-    seen = " ".join(Outline(page_text).texts)
-    seen = seen[seen.index("self-declared") :]  # after the style sheet
-    order = ["FAIL", "1 of 21 counted", "Failed", "Smallest margins", "Criteria", "Extended band", "All quantities"]
-    places = [seen.index(text) for text in order]
-    assert places == sorted(places)
+def test_figures_of_a_page_keep_their_text_and_share_no_id(page_text: str) -> None:
+    """Two figures have equal tick marks; a repeated id would draw those of the first figure in all others."""
+    figures = re.findall(r"<figure.*?</figure>", page_text, re.S)
+    assert all("contact force" in figure or "uplift" in figure or "amplitude" in figure for figure in figures)
+    for figure in figures:
+        outline = Outline(figure)
+        owned = {name for tag, attrs in outline.tags if tag != "figure" for name in [attrs.get("id")] if name}
+        assert owned
+        assert set(re.findall(r'href="#([^"]+)|url\(#([^)]+)', figure)) == {
+            (name, "") if f'href="#{name}"' in figure else ("", name) for name in owned
+        }
 
 
-def test_html_escapes_hostile_text(hostile_text: str) -> None:
-    assert "<script>alert" not in hostile_text
-    assert ">&lt;script&gt;alert(1)&lt;/script&gt;</text>" in hostile_text  # in a figure
-    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
-    assert "{{ 7*7 }} {% raw %}" in hostile_text
-    assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")
-    hostile_text.encode("utf-8")
-
-
-def test_html_criteria_show_trust_verdict_and_bar(results: dict[str, Any], page_text: str) -> None:
+def test_criteria_show_trust_verdict_bar_and_the_places_of_their_extremes(
+    results: dict[str, Any], page_text: str
+) -> None:
+    outline = Outline(page_text)
+    place = results["cases"][0]["places"]["1"]["max_force_N"]["position_m"]
+    assert (
+        f'<code>max_force_N</code> <a href="#case-1-force-1">at {round(place, 1):g}\N{NO-BREAK SPACE}m</a>' in page_text
+    )
+    assert '<a href="#case-1-uplift">at 300\N{NO-BREAK SPACE}m</a>' in page_text
+    figures = [attrs for tag, attrs in outline.tags if tag == "figure" and "data-curves" in attrs]
+    assert [(attrs["id"], attrs["data-curves"], attrs["data-case"], attrs["data-owner"]) for attrs in figures] == [
+        ("case-1-force-1", "force", "0", "1"),
+        ("case-1-force-2", "force", "0", "2"),
+        ("case-1-uplift", "uplift", "0", "0"),
+        ("case-2-force-1", "force", "1", "1"),
+    ]
     tables = re.findall(r'<table class="cards".*?</table>', page_text, re.S)
     rows = re.findall(r'<tr role="row">\n<th role="rowheader".*?</tr>', "".join(tables), re.S)
     criteria = [row for case in results["cases"] for row in case["criteria"]]
@@ -169,7 +127,34 @@ def test_html_criteria_show_trust_verdict_and_bar(results: dict[str, Any], page_
         assert text.count("<svg") == (row["value"] is not None)
 
 
-def test_html_states_self_declaration_and_no_certification(page_text: str) -> None:
+@pytest.mark.parametrize("name", ["results", "hostile"])
+def test_html_embeds_its_complete_results(name: str, request: pytest.FixtureRequest) -> None:
+    """The data block has every key in the order of the results; hostile text cannot end it."""
+    results = request.getfixturevalue(name)
+    page = show_certificate(results)
+    [block] = re.findall('<script type="application/json" id="pantocheck-results">(.*?)</script>', page)
+    assert not set("<>&") & set(block)
+    assert block.isascii()
+    assert json.dumps(json.loads(block)) == json.dumps(Results.model_validate(results).to_dict())
+
+
+def test_html_escapes_hostile_text_and_has_data_with_results_only(hostile_text: str) -> None:
+    page = render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
+    assert "application/json" not in page
+    assert "<script>alert" not in hostile_text
+    assert ">&lt;script&gt;alert(1)&lt;/script&gt;</text>" in hostile_text  # in a figure
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile_text
+    assert "{{ 7*7 }} {% raw %}" in hostile_text
+    assert not set(hostile_text) & set("\x00\x1b\u202e\ufffe\ue000")
+    hostile_text.encode("utf-8")
+
+
+def test_html_begins_with_the_verdict_and_states_the_self_declaration(page_text: str) -> None:
+    seen = " ".join(Outline(page_text).texts)
+    seen = seen[seen.index("self-declared") :]  # after the style sheet
+    order = ["FAIL", "1 of 21 counted", "Failed", "Smallest margins", "Criteria", "Extended band", "All quantities"]
+    places = [seen.index(text) for text in order]
+    assert places == sorted(places)
     assert "self-declared conformance report, in the style of EN 50318" in page_text
     assert "not a certification" in page_text
 
@@ -215,9 +200,5 @@ def test_css_colours_have_contrast_against_the_paper(scheme: str) -> None:
     [box] = re.findall(r"--caution-paper: (#[0-9a-f]{6})", part)
     [ink] = re.findall(r"--ink: (#[0-9a-f]{6})", part)
     assert contrast(ink, box) > 5
-
-
-def test_css_names_every_colour_once() -> None:
-    """A colour outside of the two schemes would not follow them."""
-    style = (TEMPLATES / "page.css").read_text("utf-8")
+    # A colour outside of the two schemes would not follow them.
     assert not re.search(r"#[0-9a-f]{3,6}\b", style[style.index("* { box-sizing") :])

@@ -75,6 +75,7 @@ def test_every_figure_has_a_caption_and_another_alternative_text(document: Docum
         assert figure.svg.startswith("<svg")
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_page_is_the_same_every_time(line: dict[str, Any], document: Document) -> None:
     assert render_html(report(line)) == render_html(document)
 
@@ -90,9 +91,6 @@ def test_half_power_bands_are_one_sentence_and_one_figure(line: dict[str, Any], 
     (points, recommended) = axes.lines
     np.testing.assert_allclose(points.get_ydata(), [mode["half_power_points"] for mode in line["modes"]])
     assert list(recommended.get_ydata()) == [5, 5]
-
-
-def test_results_without_counts_have_no_such_figure(line: dict[str, Any]) -> None:
     document = report(line | {"half_power": line["half_power"] | {"modes": 0}})
     assert not any("half-power" in text for text in list_sentences(document))
 
@@ -125,10 +123,7 @@ def test_shapes_have_a_row_per_mode_with_the_real_parts(line: dict[str, Any]) ->
     expected = [1.0, 0.4, -0.7 / 0.9, 1.0, 0.6 / 0.8, 1.0]
     np.testing.assert_allclose(points.get_ydata(), levels + 0.42 * np.array(expected), atol=1e-6)
     assert right.get_xlim() == (0.0, 60.0)
-
-
-def test_shapes_need_two_sensors_with_positions(line: dict[str, Any]) -> None:
-    """Uncertain and lateral modes are left out as well."""
+    # Uncertain and lateral modes are left out as well.
     mode = line["modes"][0]
     alone = mode | {"sensor_shape": mode["sensor_shape"][:1]}
     nowhere = mode | {"sensor_shape": [part | {"position_m": None} for part in mode["sensor_shape"]]}
@@ -176,10 +171,7 @@ def test_motion_shows_velocity_and_acceleration_of_every_record(line: dict[str, 
         assert [curve.get_label() for curve in axes.lines] == ["run 1", "run 2"]
         for curve, run in zip(axes.lines, runs, strict=True):
             np.testing.assert_array_equal(curve.get_ydata(), run["windows"][number % 2][key])
-
-
-def test_motion_of_a_short_record_has_one_window(line: dict[str, Any]) -> None:
-    """No window fits into a record of less than ten seconds: it has no figure."""
+    # No window fits into a record of less than ten seconds: it has no figure.
     overlay = line["overlays"][0]
     short = {"channel": "S1_z", "runs": [{"name": "run 1", "windows": overlay["runs"][0]["windows"][:1]}]}
     document = report(line | {"overlays": [short]})
@@ -190,7 +182,7 @@ def test_motion_of_a_short_record_has_one_window(line: dict[str, Any]) -> None:
     assert not any(figure.caption.startswith("Velocity") for figure in list_figures(document))
 
 
-def test_order_search_is_drawn_with_its_steps_and_selected_orders(line: dict[str, Any]) -> None:
+def test_order_search_is_drawn_with_its_steps_and_selected_orders(line: dict[str, Any], document: Document) -> None:
     """One band of two orders; the first pole of the second order is stable."""
     band = {"from_Hz": 0.3, "to_Hz": 1.3, "selected_order": 2, "order": [1, 2, 2], "frequency_Hz": [0.9, 0.9, 1.1]}
     steps = [{"name": "start poles", "frequency_Hz": [0.9, 1.1]}, {"name": "added", "frequency_Hz": [0.9, 1.0, 1.1]}]
@@ -207,10 +199,7 @@ def test_order_search_is_drawn_with_its_steps_and_selected_orders(line: dict[str
         figure for figure in list_figures(report(line | {"order_search": search})) if "model order" in figure.caption
     ]
     assert "start poles: 2 poles; added: 3 poles. Selected orders of the bands, by frequency: 2." in figure.alternative
-
-
-def test_search_without_trials_is_not_drawn(document: Document) -> None:
-    """The example has no search; poles placed by hand have none either."""
+    # The example has no search; poles placed by hand have none either.
     assert not any("model order" in figure.caption for figure in list_figures(document))
 
 
@@ -244,9 +233,6 @@ def test_layout_shows_sensors_and_mass_on_their_wires(line: dict[str, Any], docu
     # In the middle of a span the messenger wire is at its lowest, 0.6 of the height at a support.
     assert (*marks["s"].get_xdata(), *marks["s"].get_ydata()) == pytest.approx((90.0, 0.6))
     assert (*marks["v"].get_xdata(), *marks["v"].get_ydata()) == pytest.approx((30.0, -0.1))
-
-
-def test_layout_is_left_out_if_the_spans_are_unknown(line: dict[str, Any]) -> None:
     figures = list_figures(report(line | {"spans_m": []}))
     assert not any("masses" in figure.caption for figure in figures)
 

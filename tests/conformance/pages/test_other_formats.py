@@ -9,24 +9,8 @@ from xml.etree import ElementTree
 import pytest
 
 from helpers.shown_page import summarise
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.ci_reports import render_junit
-from pantocheck.conformance.pages.document import (
-    BulletList,
-    Code,
-    CodeBlock,
-    Document,
-    Drawing,
-    Facts,
-    Figure,
-    Figures,
-    Link,
-    NumberedList,
-    Paragraph,
-    PlainHeader,
-    Remark,
-    Section,
-    TrustMark,
-)
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.quantity_tables import render_quantity_list
 from pantocheck.conformance.pages.report_writers import write_pages
@@ -39,12 +23,8 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(Results.model_validate(results)))
     suites = root.findall("testsuite")
     assert [suite.get("name") for suite in suites] == [case["id"] for case in results["cases"]]
-    assert [root.get(name) for name in ("tests", "failures", "errors", "skipped")] == [
-        "25",
-        "1",
-        "0",
-        "3",
-    ]  # with a test of each record
+    counts = [root.get(name) for name in ("tests", "failures", "errors", "skipped")]
+    assert counts == ["25", "1", "0", "3"]  # with a test of each record
     for suite in suites:
         assert int(suite.get("tests")) == len(suite.findall("testcase"))
         for element, counter in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
@@ -54,16 +34,15 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
     properties = {p.get("name"): p.get("value") for p in suites[0].iter("property")}
     assert properties["suite_version"] == "0.1.0"
     assert properties["system"] == "Pantocheck reference simulator 0.1.0 (builtin)"
+    root = ElementTree.fromstring(render_badge(Results.model_validate(results)))
+    assert root.get("aria-label") == "EN 50318 style: fail 19/21"
 
 
-def test_junit_holds_an_error_of_a_case(passing: dict[str, Any]) -> None:
+def test_junit_holds_errors_and_any_text(passing: dict[str, Any], hostile: dict[str, Any]) -> None:
     passing["cases"][0] |= {"verdict": "error", "reason": "the solver diverged", "criteria": []}
     root = ElementTree.fromstring(render_junit(Results.model_validate(passing)))
     assert root.get("errors") == "1"
     assert next(root.iter("error")).get("message") == "the solver diverged"
-
-
-def test_junit_is_valid_xml_for_any_text(hostile: dict[str, Any]) -> None:
     root = ElementTree.fromstring(render_junit(Results.model_validate(hostile)))
     assert root.find("testsuite[2]").get("name") == "en50318-2002/300a|b `c` *d* [e](f) \\ _g_"
     assert all("\n" not in value for element in root.iter() for value in element.attrib.values())
@@ -115,22 +94,17 @@ def test_list_of_quantities_has_every_value_with_its_components(results: dict[st
     assert (speed["uncertainty"], speed["discretisation"], speed["verdict"]) == ("NA", "NA", "")
 
 
-def test_list_of_quantities_has_a_row_for_each_item(passing: dict[str, Any]) -> None:
+def test_list_of_quantities_has_a_row_for_each_item_and_pages_one_file(passing: dict[str, Any], tmp_path: Path) -> None:
     case = passing["cases"][0]
     case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
     case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
     rows = read_rows(passing)
     found = [rows["en50318-2002/250", "0", "presag_mm", item] for item in ("1", "2")]
-    assert [(row["value"], row["uncertainty"], row["discretisation"]) for row in found] == [
-        ("20.0", "0.5", "0.5"),
-        ("55.0", "0.25", "0.25"),
-    ]
-
-
-def test_badge(results: dict[str, Any]) -> None:
-    root = ElementTree.fromstring(render_badge(Results.model_validate(results)))
-    assert root.get("aria-label") == "EN 50318 style: fail 19/21"
+    values = [(row["value"], row["uncertainty"], row["discretisation"]) for row in found]
+    assert values == [("20.0", "0.5", "0.5"), ("55.0", "0.25", "0.25")]
+    write_pages(Results.model_validate(passing), tmp_path, list(FILES))
+    assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
 
 
 def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None:
@@ -145,40 +119,23 @@ def test_modified_copy_is_named_in_every_format(passing: dict[str, Any]) -> None
     assert name in summarise(passing)
 
 
-def test_write_pages_leaves_one_file_per_format(passing: dict[str, Any], tmp_path: Path) -> None:
-    write_pages(Results.model_validate(passing), tmp_path, list(FILES))
-    assert {path.name for path in tmp_path.iterdir()} == set(FILES.values()) - {"results.json"}
-
-
 def test_markdown_renders_every_element() -> None:
-    text = (Code("a_b"), " ", Code("a`b"), Remark("*r*"), Link("[1]", "x"), TrustMark(""), Drawing("<svg/>", "bar"))
+    text = (
+        doc.Code("a_b"), " ", doc.Code("a`b"), doc.Remark("*r*"), doc.Link("[1]", "x"), doc.TrustMark(""),
+        doc.Drawing("<svg/>", "bar"),
+    )  # fmt: skip
     blocks = (
-        Paragraph(text),
-        CodeBlock("x = 1\n[t]"),
-        BulletList(("one_",)),
-        NumberedList("Sources", ("first", "second"), "x"),
-        Facts((("Suite", "1.0"),), times=(("Started", "now"),)),
-        Figures((Figure("<svg/>", "a line", "caption"),)),
+        doc.Paragraph(text),
+        doc.CodeBlock("x = 1\n[t]"),
+        doc.BulletList(("one_",)),
+        doc.NumberedList("Sources", ("first", "second"), "x"),
+        doc.Facts((("Suite", "1.0"),), times=(("Started", "now"),)),
+        doc.Figures((doc.Figure("<svg/>", "a line", "caption"),)),
     )
-    document = Document(
-        "t",
-        PlainHeader("Heading", "Result."),
-        (
-            Section(
-                "Part",
-                (*blocks, Section("Deeper", ())),
-            ),
-        ),
+    document = doc.Document(
+        "t", doc.PlainHeader("Heading", "Result."), (doc.Section("Part", (*blocks, doc.Section("Deeper", ()))),)
     )
     assert render_markdown(document).split("\n\n") == [
-        "# Heading",
-        "Result.",
-        "## Part",
-        r"`a_b` a\`b\*r\*\[1\]–bar",
-        "    x = 1\n    [t]",
-        r"* one\_",
-        "1. first\n2. second",
-        "* Suite: 1.0\n* Started: now",
-        "* a line",
-        "### Deeper\n",
-    ]
+        "# Heading", "Result.", "## Part", r"`a_b` a\`b\*r\*\[1\]–bar", "    x = 1\n    [t]", r"* one\_",
+        "1. first\n2. second", "* Suite: 1.0\n* Started: now", "* a line", "### Deeper\n",
+    ]  # fmt: skip

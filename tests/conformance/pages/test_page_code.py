@@ -18,7 +18,7 @@ TEMPLATES = Path(__file__).parents[3] / "templates"
 LIBRARY = TEMPLATES / "uplot"
 
 
-def test_library_for_plots_is_the_released_one() -> None:
+def test_library_for_plots_is_the_released_one_with_its_licence(page_text: str) -> None:
     release = tomllib.loads((LIBRARY / "release.toml").read_text("utf-8"))
     digests = {name: hashlib.sha256((LIBRARY / name).read_bytes()).hexdigest() for name in release["sha256"]}
     assert digests == release["sha256"]
@@ -26,36 +26,27 @@ def test_library_for_plots_is_the_released_one() -> None:
     script = (LIBRARY / "uPlot.iife.min.js").read_text("utf-8")
     assert script.startswith(f"/*! https://github.com/leeoniya/uPlot (v{release['version']}) */")
     assert script in read_results_code().scripts
-
-
-def test_page_with_the_library_holds_its_licence(page_text: str) -> None:
-    """The licence has to stand in every copy, and every page is a copy; a comment must not end inside of it."""
+    # The licence has to stand in every copy, and every page is a copy; a comment must not end inside of it.
     licence = (LIBRARY / "LICENSE").read_text("utf-8")
     assert "--" not in licence
     assert page_text.count(f"<!-- uPlot: {licence}-->") == 1
     assert "Leon Sorokin" not in render_html(Document("Title", PlainHeader("Heading", "Headline"), ()))
 
 
-def test_every_part_of_the_script_is_used_once() -> None:
+def test_every_part_of_the_script_is_used_once_and_packed() -> None:
     parts = [f"{name}.js" for name in (*TABLE_SCRIPTS, *CURVE_SCRIPTS)]
     assert sorted(parts) == sorted(path.name for path in (TEMPLATES / "scripts").iterdir())
-
-
-def test_script_cannot_end_its_element() -> None:
-    for code in (read_plain_code(), read_results_code()):
-        assert not [text for text in (*code.scripts, *code.styles) if re.search("</(?:script|style)|<!--", text, re.I)]
-
-
-def test_script_makes_no_markup_from_text() -> None:
-    """Texts of results enter the page as text nodes; code is not made from text."""
-    own = read_results_code().scripts[-1]
-    assert not re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|srcdoc", own)
-    assert not re.findall(r"\bfetch\(|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bimport\(", own)
-
-
-def test_package_holds_every_template() -> None:
     project = tomllib.loads((TEMPLATES.parent / "pyproject.toml").read_text("utf-8"))
     patterns = project["tool"]["setuptools"]["package-data"]["pantocheck.templates"]
     packed = {path for pattern in patterns for path in TEMPLATES.glob(pattern) if path.is_file()}
     files = {path for path in TEMPLATES.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
     assert files <= packed
+
+
+def test_script_cannot_end_its_element_and_makes_no_markup_from_text() -> None:
+    for code in (read_plain_code(), read_results_code()):
+        assert not [text for text in (*code.scripts, *code.styles) if re.search("</(?:script|style)|<!--", text, re.I)]
+    # Texts of results enter the page as text nodes; code is not made from text.
+    own = read_results_code().scripts[-1]
+    assert not re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|srcdoc", own)
+    assert not re.findall(r"\bfetch\(|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bimport\(", own)

@@ -2,7 +2,6 @@
 
 from xml.etree import ElementTree
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,20 +17,7 @@ def test_clean_text_fits_any_format(raw: str) -> None:
     assert len(shown) <= text.LONGEST
 
 
-@pytest.mark.parametrize(
-    ("value", "shown"),
-    [
-        (119.71234, "119.7"),
-        (-0.000123456, "−0.0001235"),
-        (0.0, "0"),
-        (1234.5, "1234"),
-        (8e-9, "8.000e−09"),
-        (None, "–"),
-    ],
-)
-def test_format_value(value: float | None, shown: str) -> None:
-    assert text.format_value(value) == shown
-
-
-def test_value_and_limits_have_typographic_signs() -> None:
+def test_values_have_four_digits_and_typographic_signs() -> None:
+    values = (119.71234, -0.000123456, 0.0, 1234.5, 8e-9, None)
+    assert [text.format_value(value) for value in values] == ["119.7", "−0.0001235", "0", "1234", "8.000e−09", "–"]
     assert text.format_beside_limits(-5.5891, -14.17312345, 3.644) == ("−5.589", "−14.17 to 3.644")

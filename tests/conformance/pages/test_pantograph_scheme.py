@@ -27,7 +27,7 @@ def case_with(*groups: dict[str, Any]) -> CaseResult:
     return build_ungraded(case, "skip", "not run").model_copy(update={"inputs": inputs})
 
 
-def test_scheme_has_the_values_of_a_library_case() -> None:
+def test_scheme_has_the_values_of_its_chain() -> None:
     [case] = select_cases(["en50318-2002/250"])
     content = build_ungraded(case, "skip", "not run")
     [figure] = scheme_figures(content, ())
@@ -35,31 +35,22 @@ def test_scheme_has_the_values_of_a_library_case() -> None:
         assert f">{text}<" in figure.svg
     assert figure.caption == "Pantograph 1: masses, springs and dampers, from base to head."
     assert figure.alternative.endswith("frame 15 kg, head 7.2 kg.")
-
-
-def test_equal_chains_are_drawn_once() -> None:
     [figure] = scheme_figures(chain_case(), ())
     assert figure.caption.startswith("Pantographs 1 and 2: ")
     assert scheme_figures(chain_case(), (chain_case(),)) == ()
     assert len(scheme_figures(chain_case(masses_kg=[6.0, 5.0]), (chain_case(),))) == 1
-
-
-def test_missing_spring_and_damper_are_left_out() -> None:
-    [figure] = scheme_figures(chain_case(), ())
     assert ">0 N/m<" not in figure.svg
     assert ">0 N s/m<" not in figure.svg
 
 
 def test_uplift_force_acts_on_the_stated_mass() -> None:
     """The arrow stands at the height of the label, and moves with the mass: one level is 0.62 in, 44.64 points."""
-    heights = [_label_height(lifted) for lifted in (0, 1)]
+    heights = []
+    for lifted in (0, 1):
+        chain = DrawnChain((6.0, 5.5), (100.0, 7000.0), (60.0, 0.0), ("frame", "head"), lifted, 50000.0)
+        [text] = [text for text in draw_chain.__wrapped__(chain).axes[0].texts if text.get_text() == "uplift force"]
+        heights.append(72 * float(text.get_position()[1]))
     assert abs(heights[1] - heights[0] - 44.64) < 1e-3
-
-
-def _label_height(lifted: int) -> float:
-    chain = DrawnChain((6.0, 5.5), (100.0, 7000.0), (60.0, 0.0), ("frame", "head"), lifted, 50000.0)
-    [text] = [text for text in draw_chain.__wrapped__(chain).axes[0].texts if text.get_text() == "uplift force"]
-    return 72 * float(text.get_position()[1])
 
 
 def test_values_that_are_no_chain_give_no_scheme() -> None:
@@ -68,9 +59,6 @@ def test_values_that_are_no_chain_give_no_scheme() -> None:
     for masses in (stored_range, [6.0], ["6", "5"], []):
         assert scheme_figures(chain_case(masses_kg=masses), ()) == ()
     assert scheme_figures(case_with(group("pantograph 1.chain")), ()) == ()
-
-
-def test_single_mass_and_named_point_of_the_force() -> None:
     values = {"masses_kg": 9.0, "stiffness_N_m": 50.0, "damping_N_s_m": 30.0}
     [figure] = scheme_figures(chain_case(**values), ())
     assert ">mass 1 9 kg<" in figure.svg

@@ -105,7 +105,7 @@ def test_page_states_agreement_variability_and_outliers(document: Document) -> N
     assert "40 kg" in text
 
 
-def test_outliers_are_dots_on_their_group() -> None:
+def test_outliers_are_dots_and_many_tests_have_numbers() -> None:
     """One outlier of the rope in each group; the joint median is a line over the width of its box."""
     population = build_population(4)
     axes = paint(draw_test_boxes, population.groups, population.records)
@@ -113,10 +113,7 @@ def test_outliers_are_dots_on_their_group() -> None:
     assert [tuple(line.get_xydata()[0]) for line in dots] == [(1, pytest.approx(0.80)), (2, pytest.approx(0.45))]
     joint = [line for line in axes.lines if line.get_linestyle() == "--"]
     assert [float(np.mean(line.get_ydata())) for line in joint] == [pytest.approx(0.505)]
-
-
-def test_many_tests_have_numbers_and_different_markers() -> None:
-    """Twelve tests with long names: numbers in the legend, which leaves the axes their size."""
+    # Twelve tests with long names: numbers in the legend, which leaves the axes their size.
     population = build_population(12)
     axes = paint(draw_test_ratios, population.records)
     styles = {(line.get_marker(), line.get_color()) for line in axes.lines}

@@ -29,7 +29,7 @@ def case(passing: dict[str, Any]) -> dict[str, Any]:
     return first
 
 
-def test_criteria_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
+def test_criteria_and_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
     result = CaseResult.model_validate(case)
     table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[0]
     assert isinstance(table, doc.Table)
@@ -37,18 +37,6 @@ def test_criteria_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
     expected = 1.01 * case["criteria"][0]["value"]
     assert float(str(table.rows[0][4])) == pytest.approx(expected, rel=1e-3)
     assert {len(row) for row in table.rows} == {len(table.columns)}
-
-
-def test_item_of_a_list_is_found_by_its_number(case: dict[str, Any]) -> None:
-    case["reference"]["quantities"]["0"]["presag_mm"] = [10.0, 20.0]
-    result = CaseResult.model_validate(case)
-    row = result.criteria[0].model_copy(update={"quantity": "presag_mm", "pantograph": 0, "item": 2})
-    assert find_reference(result, row) == 20.0
-    assert find_reference(result, row.model_copy(update={"item": 3})) is None
-    assert find_reference(result, row.model_copy(update={"quantity": "elasticity_mm_N", "item": None})) is None
-
-
-def test_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
     table = build_quantity_table(CaseResult.model_validate(case))
     headings = [column.heading for column in table.columns]
     assert headings[2:4] == ["Pantograph 1", "Reference, pantograph 1"]
@@ -56,7 +44,13 @@ def test_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None
     assert str(mean[3]).endswith("± 0.50")
 
 
-def test_force_of_the_reference_is_drawn_behind(case: dict[str, Any]) -> None:
+def test_items_and_forces_of_the_reference_are_found(case: dict[str, Any]) -> None:
+    case["reference"]["quantities"]["0"]["presag_mm"] = [10.0, 20.0]
+    result = CaseResult.model_validate(case)
+    row = result.criteria[0].model_copy(update={"quantity": "presag_mm", "pantograph": 0, "item": 2})
+    assert find_reference(result, row) == 20.0
+    assert find_reference(result, row.model_copy(update={"item": 3})) is None
+    assert find_reference(result, row.model_copy(update={"quantity": "elasticity_mm_N", "item": None})) is None
     trace, force = Traces.model_validate(case["traces"]["1"]), case["reference"]["force_20_N"]["1"]
     for reference, count in ((force, 1), ([], 0)):
         figure = draw_force.__wrapped__(trace, [], reference)  # type: ignore[attr-defined]

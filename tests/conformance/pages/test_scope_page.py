@@ -45,21 +45,22 @@ def test_modified_copy_is_named_in_every_format(copied: dict[str, Any], capsys: 
     suites = ElementTree.fromstring(render_junit(Results.model_validate(copied)))
     assert suites[0].attrib["name"] == suites[0].findall("testcase")[0].attrib["classname"] == COPY
     print_output(build_results_output(Results.model_validate(copied), [], 0), "run")
-    for text in (
-        shown_certificate(copied),
-        summarise(copied),
-        capsys.readouterr().out,
-    ):
+    for text in (shown_certificate(copied), summarise(copied), capsys.readouterr().out):
         assert text.count("en50318-2002/250") == text.count(COPY) > 0
     assert copied["cases"][0]["library"] == "modified"
     assert "Modified copies of the library: 1." in build_headline(Results.model_validate(copied))
 
 
-def test_page_1_names_modified_copy_and_weakened_limit(copied: dict[str, Any]) -> None:
+def test_page_1_names_modified_copy_weakened_limits_and_scope(copied: dict[str, Any], results: dict[str, Any]) -> None:
     page = " ".join(PdfReader(BytesIO(print_certificate(copied))).pages[0].extract_text().split())
     assert f"The {COPY} has other inputs, limits or sources than the library case." in page
     assert f"The limits file changes limits of {COPY}." in page
     assert "lowered from secondary to provisional" in page
+    page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
+    assert "self-declared conformance report, in the style of EN 50318" in page
+    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
+    assert all(step in " ".join(page.split()) for step in steps)
+    assert "superseded by EN 50318:2018" in " ".join(page.split())
 
 
 def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,19 +68,12 @@ def test_weakened_limit_is_named_in_every_format(results: dict[str, Any], capsys
     print_output(build_results_output(Results.model_validate(changed), [], 0), "run")
     weakened = "The limits file weakens limits or changes their trust in 1 case."
     assert build_headline(Results.model_validate(changed)).endswith(weakened)
-    raised = describe(
-        results, limit_changes=["std_force_N: the trust of the limit is raised from secondary to primary"]
-    )
-    assert build_headline(Results.model_validate(raised)).endswith(
-        "The limits file raises the trust of limits in 1 case."
-    )
-    texts = [
-        shown_certificate(changed),
-        capsys.readouterr().out,
-        render_junit(Results.model_validate(changed)).decode(),
-    ]
-    texts.append(summarise(changed).replace("\\_", "_"))
-    assert all(CHANGE in " ".join(text.split()) for text in texts)
+    change = "std_force_N: the trust of the limit is raised from secondary to primary"
+    headline = build_headline(Results.model_validate(describe(results, limit_changes=[change])))
+    assert headline.endswith("The limits file raises the trust of limits in 1 case.")
+    junit, summary = render_junit(Results.model_validate(changed)).decode(), summarise(changed).replace("\\_", "_")
+    for text in (shown_certificate(changed), capsys.readouterr().out, junit, summary):
+        assert CHANGE in " ".join(text.split())
 
 
 def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, Any]) -> None:
@@ -87,9 +81,6 @@ def test_page_1_shows_a_few_weakened_limits_and_their_number(results: dict[str, 
     [warning] = list_identity_warnings(Results.model_validate(describe(results, limit_changes=changes)))
     assert f"dropper_length_m[{CHANGES_SHOWN}]" in warning
     assert warning.endswith(f"and {9 - CHANGES_SHOWN} more.")
-
-
-def test_library_case_needs_no_warning(results: dict[str, Any]) -> None:
     document = certify(describe(results))
     assert not summarise_identity(Results.model_validate(describe(results)))
     assert not [block for block in document.blocks if isinstance(block, WarningBox)]
@@ -113,11 +104,16 @@ def test_origin_states_the_edition_of_library_cases_only(
     assert describe_origin(CaseResult.model_validate(results["cases"][0] | changes)) == text
 
 
-def test_origin_of_a_profile_is_named(results: dict[str, Any]) -> None:
+def test_certificate_states_all_digests_and_the_origin_of_a_profile(results: dict[str, Any]) -> None:
     facts = {"library": "identical", "edition": None, "superseded_by": None, "profile": "line-test"}
     case = CaseResult.model_validate(results["cases"][0] | facts)
     assert describe_origin(case) == "library profile"
     assert describe_origin(case.model_copy(update={"library": "own"})) == "own profile"
+    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
+    changed["suite"]["digest"] = "sha256:" + "c" * 64
+    page = shown_certificate(changed)
+    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
+    assert changed["cases"][0]["input_digest"] in page
 
 
 def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
@@ -132,41 +128,16 @@ def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
         "Not done (no case, or none with a complete result): pantograph model, static check of the line model, line "
         "test, limits of validity. Cases outside"
     )
-
-
-def test_scope_without_a_step_is_one_paragraph(results: dict[str, Any]) -> None:
-    """An own case belongs to no step: five rows would say so on the first half of page 1."""
+    # An own case belongs to no step: five rows would say so on the first half of page 1.
     [scope] = build_scope_section(Results.model_validate(describe(results, steps=[])), {})
     [rest] = scope.blocks
     assert "pantograph model, static check of the line model, reference models, line test" in rest.text
-
-
-def test_verdict_of_a_case_does_not_stand_beside_an_informative_step(results: dict[str, Any]) -> None:
-    """The static case passes by its dropper lengths; its apparent mass has no limit."""
+    assert results["scope"] == []
+    assert "Limits of validity" not in shown_certificate(results)
+    # The static case passes by its dropper lengths; its apparent mass has no limit.
     static = describe(results, steps=["pantograph_model", "static_check"])
     [scope] = build_scope_section(Results.model_validate(static), {})
     table = scope.blocks[0]
     assert isinstance(table, Table)
     assert table.rows[0][1:] == ("informative", ("", "en50318-2002/250"))
     assert VerdictMark("pass") in table.rows[1][2]
-
-
-def test_scope_is_on_page_1_of_the_pdf(results: dict[str, Any]) -> None:
-    page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
-    assert "self-declared conformance report, in the style of EN 50318" in page
-    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
-    assert all(step in " ".join(page.split()) for step in steps)
-    assert "superseded by EN 50318:2018" in " ".join(page.split())
-
-
-def test_results_without_steps_have_no_scope(results: dict[str, Any]) -> None:
-    assert results["scope"] == []
-    assert "Limits of validity" not in shown_certificate(results)
-
-
-def test_certificate_states_all_digests(results: dict[str, Any]) -> None:
-    changed = describe(results, limits_digest="sha256:" + "a" * 64, stated_limits_digest="sha256:" + "b" * 64)
-    changed["suite"]["digest"] = "sha256:" + "c" * 64
-    page = shown_certificate(changed)
-    assert all(f"sha256:{letter * 64}" in page for letter in "abc")
-    assert changed["cases"][0]["input_digest"] in page

@@ -65,6 +65,16 @@ def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     alone = build_headline(Results.model_validate(decide(failing, "verification")))
     assert "(1 of 1 counted criteria outside their limits)" in alone
     assert "EN 50318 criteria: PASS (for information); Verification up to 50 Hz: FAIL." in alone
+    assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
+    assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
+    assert summarise_verdict(Results.model_validate(decide(failing, "verification"))) == "fail 0/1"
+    # A value that the verification fails is not called informative beside it.
+    (row,) = (
+        row
+        for row in build_band_table(CaseResult.model_validate(decide(failing)["cases"][0])).rows
+        if Code(BAND) in row[0]
+    )
+    assert str(row[2]).endswith("(no published limit; verification FAIL)")
 
 
 def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str, Any]) -> None:
@@ -78,18 +88,12 @@ def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str,
     assert find_discrepancies(Results.model_validate(results)) == []
 
 
-def test_band_table_shows_the_verification_where_no_limit_is_published(failing: Results) -> None:
-    """A value that the verification fails is not called informative beside it."""
-    (row,) = (
-        row
-        for row in build_band_table(CaseResult.model_validate(decide(failing)["cases"][0])).rows
-        if Code(BAND) in row[0]
-    )
-    assert str(row[2]).endswith("(no published limit; verification FAIL)")
-
-
 def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any]) -> None:
     assert "Verification" not in build_headline(Results.model_validate(passing))
+    # Trust `computed` in the list of the EN 50318 criteria is a forgery.
+    forged = copy.deepcopy(passing)
+    forged["cases"][0]["criteria"][0]["trust"] = "computed"
+    assert any("'info' follows" in text for text in find_discrepancies(Results.model_validate(forged)))
 
 
 @pytest.mark.parametrize("build", [build_certificate, build_summary])
@@ -111,13 +115,10 @@ def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -
     assert "0 of 1 case passes." in text  # the verification fails
 
 
-def test_certificate_lists_what_is_not_confirmed(failing: Results) -> None:
+def test_certificate_lists_what_is_not_confirmed_and_failures_that_decide(failing: Results) -> None:
     text = shown_certificate(decide(failing, *BOTH))
     assert "min_force_N of pantograph 1: the formulations differ" in text
     assert "Without a confirmed value" in text
-
-
-def test_reasons_name_the_failed_verification_only_where_it_decides(failing: Results) -> None:
     shown, decided = (summarise(decide(failing, *names)) for names in (("criteria",), BOTH))
     assert "## Failed" in decided
     assert ", verification: " in decided
@@ -134,12 +135,6 @@ def test_junit_skips_the_verdict_that_does_not_decide(
     root = ElementTree.fromstring(render_junit(Results.model_validate(decide(failing, *requested))))
     assert (int(root.get("failures", "")), int(root.get("skipped", ""))) == (failures, skipped)
     assert any(test.get("name", "").startswith(f"verification: {BAND}") for test in root.iter("testcase"))
-
-
-def test_badge_counts_the_criteria_that_decide(failing: Results) -> None:
-    assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
-    assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
-    assert summarise_verdict(Results.model_validate(decide(failing, "verification"))) == "fail 0/1"
 
 
 @pytest.mark.parametrize("requested", [("criteria",), BOTH, ("verification",)])
@@ -172,10 +167,3 @@ def test_changed_verification_is_found(failing: Results) -> None:
             case "verification of the run":
                 forged["verification_verdict"] = "pass"
         assert find_discrepancies(Results.model_validate(forged)), change
-
-
-def test_computed_limit_among_the_criteria_does_not_count(passing: dict[str, Any]) -> None:
-    """Trust `computed` in the list of the EN 50318 criteria is a forgery."""
-    forged = copy.deepcopy(passing)
-    forged["cases"][0]["criteria"][0]["trust"] = "computed"
-    assert any("'info' follows" in text for text in find_discrepancies(Results.model_validate(forged)))

@@ -51,10 +51,7 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     assert table.rows[-1][1:] == ("line", "mm", "0.50*", "0.50", "–", "–", "–")
     cells = {row[0][1]: row for row in build_quantity_table(CaseResult.model_validate(case)).rows}
     assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
-
-
-def test_long_list_is_drawn_with_its_range(passing: dict[str, Any]) -> None:
-    """The curve of 3 points spans the height of the drawing inside its margins of 2; equal values lie at one height."""
+    # The curve of 3 points spans the height of the drawing inside its margins of 2; equal values lie at one height.
     assert 'points="2.00,16.00 50.00,2.00 98.00,9.00"' in draw_spark_line([1.0, 3.0, 2.0])
     assert 'points="2.00,16.00 98.00,16.00"' in draw_spark_line([1.0, 1.0])
     case = passing["cases"][0]

@@ -6,18 +6,7 @@ from typing import Any
 import pytest
 
 from helpers.shown_page import certify
-from pantocheck.conformance.pages.document import (
-    BulletList,
-    Code,
-    CodeBlock,
-    Document,
-    Figure,
-    Figures,
-    Paragraph,
-    PlainHeader,
-    Remark,
-    to_plain,
-)
+from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.words import bind_page_units, bind_units
 
@@ -40,18 +29,15 @@ def test_only_a_number_before_a_unit_is_bound(text: str, bound: str) -> None:
 
 def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
     blocks = (
-        Paragraph(("at 5 m", Code("5 m"), Remark("of 6 N"))),
-        CodeBlock("# 5 m"),
-        BulletList(("<7 N>",)),
-        Figures((Figure("<path d='M 1 m 5 s'/>", "8 N", "9 N"),)),
+        doc.Paragraph(("at 5 m", doc.Code("5 m"), doc.Remark("of 6 N"))),
+        doc.CodeBlock("# 5 m"),
+        doc.BulletList(("<7 N>",)),
+        doc.Figures((doc.Figure("<path d='M 1 m 5 s'/>", "8 N", "9 N"),)),
     )
-    page = bind_page_units(to_plain(Document("10 N", PlainHeader("Head", "11 N"), blocks)))
+    page = bind_page_units(doc.to_plain(doc.Document("10 N", doc.PlainHeader("Head", "11 N"), blocks)))
     paragraph, code, bullets, figures = page["blocks"]
-    assert [part if isinstance(part, str) else part["text"] for part in paragraph["text"]] == [
-        f"at 5{GAP}m",
-        "5 m",
-        f"of 6{GAP}N",
-    ]
+    texts = [part if isinstance(part, str) else part["text"] for part in paragraph["text"]]
+    assert texts == [f"at 5{GAP}m", "5 m", f"of 6{GAP}N"]
     assert code["code"] == "# 5 m"
     assert bullets["items"] == [f"<7{GAP}N>"]
     assert figures["figures"][0]["svg"] == "<path d='M 1 m 5 s'/>"
@@ -61,6 +47,6 @@ def test_lines_to_be_copied_names_and_drawings_keep_their_spaces() -> None:
 
 def test_page_binds_escaped_text_too(passing: dict[str, Any]) -> None:
     document = certify(passing)
-    first = Paragraph("<b> 31 N & 32 m")
+    first = doc.Paragraph("<b> 31 N & 32 m")
     page = render_html(replace(document, blocks=(first, *document.blocks)))
     assert f"&lt;b&gt; 31{GAP}N &amp; 32{GAP}m" in page

@@ -114,10 +114,7 @@ def test_page_and_warning_name_the_modes_that_are_left_out(results: DampingResul
     document = build_damping_document(results, "")
     assert f"fitted to {len(results.pairs) - len(overlapping)} modes" in document.header.headline
     assert str(document).count("no: overlaps another mode") == len(overlapping)
-
-
-def test_warning_counts_the_modes_with_noticeable_stated_damping(results: DampingResults) -> None:
-    """The droppers give more than 1 % of some ratios: the text names the rule, the number and the subtraction."""
+    # The droppers give more than 1 % of some ratios: the text names the rule, the number and the subtraction.
     warning = results.warnings[2]
     assert "is subtracted from the measured damping ratios. It is more than 1 % of the damping ratio of " in warning
 

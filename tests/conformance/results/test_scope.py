@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import pytest
-
 from pantocheck.conformance.results.results_format import STEPS, CaseResult, Results
 from pantocheck.conformance.results.scope import build_scope
 
@@ -19,30 +17,19 @@ def states(*cases: CaseResult) -> dict[str, str]:
     return {step.step: step.state for step in build_scope(cases)}
 
 
-def test_every_step_is_listed_in_the_order_of_the_procedure() -> None:
-    assert [(step.step, step.state, step.cases) for step in build_scope([])] == [
-        ("pantograph_model", "not done", []),
-        ("static_check", "not done", []),
-        ("reference_models", "not done", []),
-        ("line_test", "not done", []),
-        ("limits_of_validity", "not done", []),
-    ]
-
-
-def test_graded_reference_case_does_its_step_only(results: dict[str, Any]) -> None:
+def test_every_step_is_listed_in_order_and_a_graded_case_does_its_step_only(results: dict[str, Any]) -> None:
+    steps = ("pantograph_model", "static_check", "reference_models", "line_test", "limits_of_validity")
+    found = [(step.step, step.state, step.cases) for step in build_scope([])]
+    assert found == [(step, "not done", []) for step in steps]
     assert states(make_case(results)) == dict.fromkeys(STEPS, "not done") | {"reference_models": "done"}
 
 
-@pytest.mark.parametrize("change", [{"library": "modified"}, {"criteria": [], "verdict": "info"}])
-def test_step_without_a_counted_limit_of_the_library_is_informative(
-    results: dict[str, Any], change: dict[str, Any]
-) -> None:
-    assert states(make_case(results, **change))["reference_models"] == "informative"
-
-
-@pytest.mark.parametrize("verdict", ["skip", "error"])
-def test_step_without_a_complete_case_is_not_done(results: dict[str, Any], verdict: str) -> None:
-    assert states(make_case(results, verdict=verdict))["reference_models"] == "not done"
+def test_step_needs_a_complete_case_with_a_counted_limit_of_the_library(results: dict[str, Any]) -> None:
+    changes: tuple[dict[str, Any], ...] = ({"library": "modified"}, {"criteria": [], "verdict": "info"})
+    for change in changes:
+        assert states(make_case(results, **change))["reference_models"] == "informative"
+    for verdict in ("skip", "error"):
+        assert states(make_case(results, verdict=verdict))["reference_models"] == "not done"
 
 
 def test_step_is_as_good_as_its_best_case_and_names_all(results: dict[str, Any]) -> None:

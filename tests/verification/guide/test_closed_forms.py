@@ -64,15 +64,12 @@ def test_elements_of_twice_the_bending_stiffness_are_noticed(monkeypatch: pytest
     assert _disagreeing(TOPICS["wire-elasticity"]()) == {"at-15m", "at-22.37m", "at-30m", "at-41.13m"}
 
 
-def test_comparison_states_its_deviation_in_both_kinds() -> None:
+def test_comparisons_and_orders_state_their_agreement() -> None:
     relative = compare_relative("a", "length", "m", (101.0, 100.0), 0.02, "")
     assert (relative.deviation, relative.agrees) == (pytest.approx(0.01), True)
     absolute = compare_absolute("a", "length", "m", (-101.0, -100.0), 0.5, "")
     assert (absolute.deviation, absolute.agrees) == (-1.0, False)
-
-
-def test_order_of_a_study_follows_from_its_last_two_errors() -> None:
-    """Errors 4 h^2, then 2 h^4: the last order is not the theoretical one."""
+    # Errors 4 h^2, then 2 h^4: the last order is not the theoretical one.
     study = build_study("a", "error", "h", [(1.0, 4.0), (0.5, 1.0), (0.25, 0.25)], (2.0, 0.1), "")
     assert (study.orders, study.agrees) == ([2.0, 2.0], True)
     assert not build_study("a", "error", "h", [(1.0, 4.0), (0.5, 1.0), (0.25, 0.5)], (2.0, 0.1), "").agrees
@@ -89,9 +86,6 @@ def test_closed_forms_solve_their_equations() -> None:
     assert np.abs(w[[0, -1]]).max() < 1e-15
     place = np.array([3.0, 10.0])
     assert point_flexibility(place, 20.0, 20e3, 1e-12) == pytest.approx(place * (20 - place) / 20 / 20e3, rel=1e-6)
-
-
-def test_bent_wire_has_the_sag_of_its_elements() -> None:
     line = discretise(wire_at_rest.build_wire(20.0), 0.125)
     exact = wire_sag(line.mesh.position, 20.0, 20e3, 1.35, 195.0)
     np.testing.assert_allclose(line.state.deflection[0, :, 0], exact, atol=2e-5 * np.abs(exact).max())

@@ -57,7 +57,7 @@ def test_guide_is_written_and_a_second_run_computes_nothing(
     assert again.model_copy(update={"created": guide.created}) == guide
 
 
-def test_part_that_fails_ends_with_1_and_is_named(
+def test_part_that_fails_ends_with_1_and_a_folder_that_cannot_be_written_with_2(
     tmp_path: Path, tasks: list[GuideTask], capsys: pytest.CaptureFixture[str]
 ) -> None:
     tasks[1] = replace(tasks[1], compute=_fail)
@@ -65,6 +65,8 @@ def test_part_that_fails_ends_with_1_and_is_named(
     assert code == 1
     assert "1 results outside their tolerance, or not computed\n  verification/wire-frequencies" in output
     assert "ValueError: no value" in (tmp_path / "guide.html").read_text("utf-8")
+    (tmp_path / "file").write_text("", "utf-8")
+    assert _run(tmp_path / "file", capsys)[0] == 2
 
 
 def test_interrupted_command_keeps_finished_parts(
@@ -76,10 +78,3 @@ def test_interrupted_command_keeps_finished_parts(
     assert not (tmp_path / "guide.json").exists()
     tasks[:] = [replace(tasks[0], compute=_fail), last]
     assert _run(tmp_path, capsys)[0] == 0
-
-
-def test_folder_that_cannot_be_written_is_wrong_input(
-    tmp_path: Path, tasks: list[GuideTask], capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "file").write_text("", "utf-8")
-    assert _run(tmp_path / "file", capsys)[0] == 2

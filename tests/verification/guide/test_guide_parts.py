@@ -21,12 +21,18 @@ from verification.guide.peers.subspace_modes import KNOWN_MODES, build_known_dro
 ROOT = Path(__file__).parents[3]
 
 
-def test_peer_that_is_not_installed_is_not_run() -> None:
+def test_peers_are_imported_when_they_are_compared_and_run_where_they_are_installed() -> None:
     def fail() -> list[object]:
         raise AssertionError("run without its package")
 
     result = run_peer(Peer("pantocheck-no-such-package", "title", "setting", fail))  # type: ignore[arg-type]
     assert (result.version, result.comparisons) == (None, [])
+    for path in Path(peers.__file__).parent.glob("*.py"):
+        if path.name != "exudyn_engine.py":
+            lines = path.read_text("utf-8").splitlines()
+            assert not [
+                line for line in lines if line.startswith(("import skfem", "from skfem", "from SALib", "from pyoma2"))
+            ]
 
 
 @pytest.mark.parametrize(
@@ -40,27 +46,15 @@ def test_peer_agrees_where_it_is_installed(name: str, module: str) -> None:
     assert [(row.key, row.deviation) for row in result.comparisons if not row.agrees] == []
 
 
-def test_synthetic_drop_has_its_known_modes() -> None:
+def test_known_modes_and_points_of_the_peers() -> None:
     """The suite alone, as in the comparison with pyOMA-2: within 1e-5 in frequency and 1e-3 in damping."""
     (found,) = identify_modes((build_known_drop(),))
     values = np.array([(mode.frequency_Hz, mode.damping_ratio) for mode in found.modes])
     np.testing.assert_allclose(values[:, 0], list(KNOWN_MODES), rtol=1e-5)
     np.testing.assert_allclose(values[:, 1], list(KNOWN_MODES.values()), rtol=1e-3)
-
-
-def test_ishigami_function_at_known_points() -> None:
-    """sin x1 = 1, sin^2 x2 = 1, x3 = 2: 1 + 7 + 0.1 * 16."""
+    # sin x1 = 1, sin^2 x2 = 1, x3 = 2: 1 + 7 + 0.1 * 16.
     points = np.array([[np.pi / 2, np.pi / 2, 2.0], [0.0, 0.0, 3.0]])
     assert evaluate_ishigami(points) == pytest.approx([9.6, 0.0])
-
-
-def test_packages_of_peers_are_imported_when_they_are_compared() -> None:
-    for path in Path(peers.__file__).parent.glob("*.py"):
-        if path.name != "exudyn_engine.py":
-            lines = path.read_text("utf-8").splitlines()
-            assert not [
-                line for line in lines if line.startswith(("import skfem", "from skfem", "from SALib", "from pyoma2"))
-            ]
 
 
 def _mutant_result(number: int, verdict: Verdict, detected: bool, optional: bool = False) -> MutantResult:
@@ -102,12 +96,9 @@ def test_limitations_have_one_home_to_which_the_documentation_leads() -> None:
         assert LIMITATIONS_FILE in (ROOT / page).read_text("utf-8")
 
 
-def test_effects_of_the_exact_model_are_those_of_the_library() -> None:
+def test_effects_of_the_exact_model_and_long_parts_exist() -> None:
     free, fixed = list_effects()
     assert (free.relative_pct["max_uplift_at_support_mm"], free.absolute["min_force_N"]) == (2.5, 4.6)
     assert (fixed.relative_pct["max_uplift_at_support_mm"], fixed.absolute["min_force_N"]) == (4.3, 1.4)
-
-
-def test_long_parts_of_the_guide_are_parts() -> None:
-    """A duration of a part that is renamed would be lost."""
+    # A duration of a part that is renamed would be lost.
     assert DURATIONS_S.keys() <= {task.name for task in (*list_tasks(), *list_timings())}

@@ -16,17 +16,9 @@ from verification.guide.pages.guide_page import build_guide_page
 
 def _converged(quantity: str, value: float, discretisation: float, pantograph: int = 1) -> dict[str, Any]:
     return {
-        "quantity": quantity,
-        "pantograph": pantograph,
-        "value": value,
-        "discretisation": discretisation,
-        "first": 20.0,
-        "second": 20.0,
-        "half_width": 0.1,
-        "lower": 19.0,
-        "upper": 21.0,
-        "inside": 19.0 <= value <= 21.0,
-    }
+        "quantity": quantity, "pantograph": pantograph, "value": value, "discretisation": discretisation, "first": 20.0,
+        "second": 20.0, "half_width": 0.1, "lower": 19.0, "upper": 21.0, "inside": 19.0 <= value <= 21.0,
+    }  # fmt: skip
 
 
 def _published(value: float | None, role: str | None = None) -> dict[str, Any]:
@@ -51,18 +43,13 @@ def data(guide: Guide) -> dict[str, Any]:
     content = guide.model_dump(mode="json", by_alias=True)
     content["library"] = [
         {
-            "case": "own/twin",
-            "title": "Two pantographs",
-            "edition": None,
-            "superseded_by": None,
-            "input_digest": "sha256:0",
-            "quantities": {"1": {"std_force_N": 20.3}, "2": {"std_force_N": 18.0}},
+            "case": "own/twin", "title": "Two pantographs", "edition": None, "superseded_by": None,
+            "input_digest": "sha256:0", "quantities": {"1": {"std_force_N": 20.3}, "2": {"std_force_N": 18.0}},
             "published": [_published(20.3), _published(31.0), _published(None, "held_out")],
             "converged": [_converged("std_force_N", 20.3, 0.4), _converged("std_force_N", 18.0, 0.5, 2)],
-            "simulated_s": 10.0,
-            "wall_s": 1.0,
-        }
-    ]
+            "simulated_s": 10.0, "wall_s": 1.0,
+        },
+    ]  # fmt: skip
     content["peers"] = [
         {"package": "exudyn", "version": None, "title": "Exudyn", "setting": "A line.", "comparisons": []}
     ]
@@ -94,11 +81,8 @@ def test_page_states_the_numbers_of_every_section(data: dict[str, Any]) -> None:
     assert "| own/twin | 2 | 10.0 | 0.500 | 0.050 |" in text
 
 
-def test_every_deviation_of_a_section_is_listed(data: dict[str, Any]) -> None:
+def test_values_counts_and_deviations_are_those_of_the_sections(data: dict[str, Any]) -> None:
     assert list_deviations(Guide.model_validate(data)) == ["library/own/twin/2/std_force_N", "self-test/delay/a/b"]
-
-
-def test_values_and_counts_are_those_of_the_sections(data: dict[str, Any]) -> None:
     guide = Guide.model_validate(data)
     counts = count_results(guide)
     expected = {"published_agreeing": 1, "published": 3, "contained_agreeing": 1, "contained": 2, "faults_records": 2}

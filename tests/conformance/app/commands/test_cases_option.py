@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +13,9 @@ from pantocheck.conformance import grade_cases
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.campaigns.campaign_preparation import prepare_campaign
 from pantocheck.conformance.cases.catalogue import LIBRARY, open_catalogue
+from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.documents.library_check import check_outside_cases
+from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.execution.plan import read_plan
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_format import Results
@@ -33,15 +34,9 @@ def folder(tmp_path: Path) -> Path:
 @pytest.fixture
 def records(folder: Path, tmp_path: Path) -> Path:
     """Record of the case from outside with known quantities."""
-    (case,) = (case for case in _select(folder) if case.id == NAME)
+    (case,) = (case for case in select_cases(["own/*"], (), open_catalogue([folder])) if case.id == NAME)
     write_record(tmp_path / "records" / "fast.csv", Wave().record(case), case.id, further={"case_digest": case.digest})
     return tmp_path / "records"
-
-
-def _select(folder: Path) -> Any:
-    from pantocheck.conformance.cases.library import select_cases
-
-    return select_cases(["own/*"], (), open_catalogue([folder]))
 
 
 @pytest.fixture
@@ -65,7 +60,7 @@ def test_run_states_the_source_of_a_case_on_page_1(folder: Path, records: Path, 
     assert str(folder) not in (out / "certificate.html").read_text("utf-8")  # no path of this machine
 
 
-def test_commands_find_the_cases_of_a_folder(folder: Path, tmp_path: Path) -> None:
+def test_commands_find_the_cases_of_a_folder_but_not_ids_of_the_library(folder: Path, tmp_path: Path) -> None:
     listed = pantocheck("cases", "--cases", folder)
     assert listed.exit_code == 0
     assert NAME in listed.output
@@ -78,9 +73,6 @@ def test_commands_find_the_cases_of_a_folder(folder: Path, tmp_path: Path) -> No
     assert f"valid case {NAME}" in checked.output
     simulated = pantocheck("simulate", NAME, "--cases", tmp_path / "none", "--out", tmp_path / "run.csv")
     assert "there is no such folder" in simulated.stderr
-
-
-def test_check_refuses_ids_of_the_library(folder: Path) -> None:
     write_case(folder / "copy.toml", "en50318-2002/300")
     done = pantocheck("check", "--cases", folder)
     assert "is the id of the library file" in done.stderr
@@ -94,13 +86,10 @@ def test_a_broken_distribution_does_not_hide_the_cases(site: Path) -> None:
     assert "cases 'x' of broken 2.0" in done.stderr
 
 
-def test_a_plan_names_folders_relative_to_its_file(folder: Path) -> None:
+def test_plans_and_campaigns_name_folders_relative_to_their_files(folder: Path) -> None:
     plan = folder.parent / "plan.toml"
     plan.write_text('system = "builtin"\ncases = ["own/*"]\ncase_folders = ["lines"]\n')
     assert read_plan(plan).case_folders == (str(folder),)
-
-
-def test_a_campaign_names_folders_and_states_the_source(folder: Path) -> None:
     file = CampaignFile.model_validate({"cases": ["own/*"], "case_folders": ["lines"]})
     prepared = prepare_campaign(file, folder.parent)
     assert prepared.origins[NAME].text == "folder lines"
@@ -115,14 +104,17 @@ def test_verify_compares_with_the_folder_if_it_is_given(results: Results, folder
     (same,) = check_outside_cases(results, open_catalogue([folder]))
     assert same.outcome == "proved"
     assert "as its author states them" in same.statement
-
-
-def test_verify_contradicts_other_limits_than_those_of_the_folder(results: Results, folder: Path) -> None:
     content = results.to_dict()
     content["cases"][0]["criteria"][0]["lower"] -= 5.0
     (check,) = check_outside_cases(Results.model_validate(content), open_catalogue([folder]))
     assert check.outcome == "contradicted"
     assert "folder lines" in check.details[0]
+    # The verdict of a document without the key is decided by the same numbers.
+    content = results.to_dict()
+    before = [*find_discrepancies(Results.model_validate(content))]
+    del content["cases"][0]["origin"]
+    assert [*find_discrepancies(Results.model_validate(content))] == before == []
+    assert Results.model_validate(content).verdict == results.verdict
 
 
 def test_verify_names_another_version_of_a_distribution(site: Path) -> None:
@@ -137,14 +129,3 @@ def test_verify_names_another_version_of_a_distribution(site: Path) -> None:
     content["cases"][0]["origin"]["version"] = "1.0"
     (other,) = check_outside_cases(Results.model_validate(content), LIBRARY)
     assert (other.outcome, "version 1.1 is installed" in other.statement) == ("open", True)
-
-
-def test_removing_the_source_changes_no_verdict(results: Results) -> None:
-    """The verdict of a document without the key is decided by the same numbers."""
-    from pantocheck.conformance.documents.recomputation import find_discrepancies
-
-    content = results.to_dict()
-    before = [*find_discrepancies(Results.model_validate(content))]
-    del content["cases"][0]["origin"]
-    assert [*find_discrepancies(Results.model_validate(content))] == before == []
-    assert Results.model_validate(content).verdict == results.verdict

@@ -15,7 +15,7 @@ import typer
 
 from helpers.case_fixtures import EditedCase
 from helpers.command_line import SKIPPER, pantocheck
-from pantocheck.conformance.app.commands import line_file_command, run_command, system_self_test_command
+from pantocheck.conformance.app.commands import run_command, system_self_test_command
 from pantocheck.conformance.app.commands.command_list import COMMANDS
 from pantocheck.conformance.app.commands.guard import guard_command
 from pantocheck.conformance.app.schemas import build_schema
@@ -107,7 +107,7 @@ def test_option_of_the_command_line_replaces_that_of_the_plan(records: Path, len
         (["schema", "cases"], "schema 'cases': there is no such format.\n  Did you mean case ?"),
         (
             ["simulate", "en50318-2002/*", "--out", "a.csv"],
-            "expected one case with a train, found en50318-2002/250, en50318-2002/300",
+            "case with a train, found en50318-2002/250, en50318-2002/300",
         ),
         (["simulate", "en50318-2002/250", "--out", "a.xls"], "has the unknown suffix '.xls'"),
     ],
@@ -123,15 +123,12 @@ def test_bad_input_ends_with_one_message_and_exit_code_2(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_self_test_needs_a_case_with_a_train() -> None:
-    """A static case has no mutants: 0 of 0 detected must not pass."""
+def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both speeds by default. A static case has no mutants, and 0 of 0 detected must not pass: it is left out."""
     result = pantocheck("system", "self-test", "en50318-2018/ac-simple/static")
     assert result.exit_code == 2
     assert "no case with a train is selected" in result.output
-
-
-def test_self_test_tests_every_selected_case_with_a_train(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both speeds by default; the static case of a selection is left out."""
+    # Both speeds by default; the static case of a selection is left out.
     tested: list[list[str]] = []
 
     def run(cases: list[Case], _: object) -> SelfTest:
@@ -215,6 +212,10 @@ def test_folder_that_cannot_be_written_is_noticed_before_anything_is_computed(
     result = pantocheck("run", "--system", f"record:{records}", "--out", tmp_path / "file" / "out")
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr
+    monkeypatch.setattr(line_file_command, "discretise", lambda *_: pytest.fail("drawn"))
+    result = pantocheck("line", "draw", "en50318-2002/250", "--out", tmp_path / "file" / "line.svg")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
 
 
 def test_interrupted_run_writes_the_finished_cases(
@@ -249,20 +250,21 @@ def test_simulate_writes_a_record_that_can_be_graded(records: Path, tmp_path: Pa
     assert sidecar.line.span_m == 60
 
 
-def test_cases_and_show_state_trust_and_source() -> None:
+def test_every_case_of_the_library_is_listed_with_trust_source_and_forces() -> None:
     listed = pantocheck("cases").output
     assert "en50318-2002/250" in listed
     assert "8 secondary" in listed
     shown = pantocheck("show", "en50318-2002/250").output
     for text in ("provisional", "Wang, Liu, Mu", "max_uplift_at_support_mm", "masses_kg", "15.0, 7.2", "sha256:"):
         assert text in shown
-
-
-def test_show_states_the_forces_of_a_force_law_and_their_sources() -> None:
     shown = " ".join(pantocheck("show", "force-law/300").output.split())
     assert "force law of pantograph 1: applied forces of 155.81 N: static force 70.00 N, aerodynamic" in shown
     assert "pantograph 1.force_law.aerodynamic_force source: wang2016 constant_N -0.2 secondary" in shown
     assert "force law" not in pantocheck("show", "en50318-2002/250").output
+    # One row per case; a case without limits has none.
+    rows = {line.split()[0]: line for line in pantocheck("cases").output.splitlines()[1:] if line.strip()}
+    assert set(list_library(library_folder())) <= set(rows)
+    assert rows["en50318-2002/300"].split()[-2:] == ["8", "secondary"]
 
 
 def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> None:
@@ -270,24 +272,6 @@ def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> Non
     code = "import sys; from pantocheck.conformance.app.commands import cases_command; print(*sys.modules)"
     output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
     assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
-
-
-def test_every_case_of_the_library_is_listed() -> None:
-    """One row per case; a case without limits has none."""
-    rows = {line.split()[0]: line for line in pantocheck("cases").output.splitlines()[1:] if line.strip()}
-    assert set(list_library(library_folder())) <= set(rows)
-    assert rows["en50318-2002/300"].split()[-2:] == ["8", "secondary"]
-
-
-def test_show_leaves_out_required_cases_only() -> None:
-    """An exact id is shown alone, even if other cases require it; a glob shows the cases that it selects."""
-
-    def shown(pattern: str) -> list[str]:
-        return re.findall(r"^(en50318-\S+) ", pantocheck("show", pattern).output, re.MULTILINE)
-
-    assert shown("en50318-2018/ac-simple/static") == ["en50318-2018/ac-simple/static"]
-    assert shown("en50318-2002/*") == ["en50318-2002/250", "en50318-2002/300"]
-    assert shown("en50318-2018/ac-stitched/*") == ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"]
 
 
 def test_show_states_requirements_start_and_section() -> None:
@@ -303,6 +287,14 @@ def test_show_states_requirements_start_and_section() -> None:
     assert "requires" not in static
     assert "start of" not in static
 
+    # An exact id is shown alone, even if other cases require it; a glob shows the cases that it selects.
+    def shown(pattern: str) -> list[str]:
+        return re.findall(r"^(en50318-\S+) ", pantocheck("show", pattern).output, re.MULTILINE)
+
+    assert shown("en50318-2018/ac-simple/static") == ["en50318-2018/ac-simple/static"]
+    assert shown("en50318-2002/*") == ["en50318-2002/250", "en50318-2002/300"]
+    assert shown("en50318-2018/ac-stitched/*") == ["en50318-2018/ac-stitched/275", "en50318-2018/ac-stitched/320"]
+
 
 def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
     """Only cases that no name selects are added, and the line precedes the results."""
@@ -315,20 +307,6 @@ def test_run_states_the_cases_that_it_adds(tmp_path: Path) -> None:
     assert "cases added" not in pantocheck("-q", "run", name, *out).stderr
 
 
-def write_refusal(folder: Path) -> Path:
-    """Program that skips every case."""
-
-
-def test_drawing_in_a_folder_that_cannot_be_made_is_noticed_before_it_is_drawn(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "file").write_text("")
-    monkeypatch.setattr(line_file_command, "discretise", lambda *_: pytest.fail("drawn"))
-    result = pantocheck("line", "draw", "en50318-2002/250", "--out", tmp_path / "file" / "line.svg")
-    assert result.exit_code == 2
-    assert "cannot be written" in result.stderr
-
-
 def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: EditedCase) -> None:
     path = edited_case("250.toml", {"title": "\x1b[31m[bold]EN 50318"})
     shown = pantocheck("show", path).output
@@ -336,22 +314,25 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(edited_case: Edi
     assert "[31m[bold]EN" in shown
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_help_of_a_command_fits_80_columns(name: str) -> None:
+def test_help_of_every_command_fits_80_columns() -> None:
     """It takes the options of the output, and refers to the help of `pantocheck`, which lists them."""
-    result = pantocheck(*name.split(), "-q", "--json", "--no-color", "--help")
-    assert (result.exit_code, "see `pantocheck --help`" in result.stdout) == (0, True)
-    assert max(map(len, result.output.splitlines())) <= 80
-    assert COMMANDS[name] in " ".join(result.output.split()), "the summary is the first line of the docstring"
-    assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), "an example on one line"
+    for name, summary in COMMANDS.items():
+        result = pantocheck(*name.split(), "-q", "--json", "--no-color", "--help")
+        assert (result.exit_code, "see `pantocheck --help`" in result.stdout) == (0, True), name
+        assert max(map(len, result.output.splitlines())) <= 80, name
+        assert summary in " ".join(result.output.split()), "the summary is the first line of the docstring"
+        assert re.search(r"^ +(Example: )?pantocheck " + name, result.output, re.MULTILINE), f"{name}: example"
 
 
-def test_root_help_fits_60_lines_of_80_columns_and_names_every_command_in_one_line() -> None:
+def test_root_help_fits_60_lines_and_an_unknown_command_suggests_a_known_one() -> None:
     lines = pantocheck("--help", COLUMNS="80").output.splitlines()
     assert len(lines) <= 60
     assert max(map(len, lines)) <= 80
     listed = [line.split("  ")[1] for line in lines if line.startswith("  ") and line.split("  ")[1] in COMMANDS]
     assert sorted(listed) == sorted(COMMANDS)
+    result = pantocheck("simulat")
+    assert result.exit_code == 2
+    assert "Did you mean 'simulate'?" in result.output
 
 
 def test_help_imports_no_command_and_nothing_heavy() -> None:
@@ -364,12 +345,6 @@ def test_help_imports_no_command_and_nothing_heavy() -> None:
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
     assert result.stdout.splitlines()[-1] == "[] []"
-
-
-def test_unknown_command_suggests_a_known_one() -> None:
-    result = pantocheck("simulat")
-    assert result.exit_code == 2
-    assert "Did you mean 'simulate'?" in result.output
 
 
 @pytest.mark.parametrize(

@@ -66,16 +66,13 @@ def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
         assert values["std_force_N"] == pytest.approx(30 / np.sqrt(2), abs=0.05)
 
 
-def test_sidecar_is_never_overwritten(logger: Path) -> None:
+def test_ambiguous_table_names_the_options_and_no_sidecar_is_overwritten(logger: Path, tmp_path: Path) -> None:
     sidecar = logger.with_suffix(".toml")
     sidecar.write_text("mine")
     result = describe(logger, "--out", sidecar)
     assert result.exit_code == 2
     assert "exists already" in result.output
     assert sidecar.read_text() == "mine"
-
-
-def test_ambiguous_table_names_the_options(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("0,1\n2,3\n4,5\n")
     result = describe(tmp_path / "a.csv")
     assert result.exit_code == 2
@@ -113,42 +110,23 @@ def test_force_record_of_every_format_is_described(name: str, tmp_path: Path) ->
     assert re.search(r'force_2_N = \{ column = "(daq/)?Kraft_2" \}   # COMPLETE: unit', draft)
 
 
-@pytest.mark.parametrize(
-    ("unit", "texts"),
-    [
-        # A signal needs a scale.
-        (
-            "V",
-            (
-                '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V',
-                "the sum of several sensors",
-            ),
-        ),
-        # Two sensors of one pantograph have the same units as the forces of two pantographs.
-        ("N", ('force_2_N = { column = "Kraft rechts", unit = "N" }', "[columns.force_1_N] with sum = [...]")),
-    ],
-)
-def test_draft_of_several_force_sensors_points_to_scale_and_sum(
-    unit: str, texts: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_draft_of_several_force_sensors_points_to_scale_and_sum(tmp_path: Path) -> None:
+    """A signal in volts needs a scale; two sensors have the same units as the forces of two pantographs."""
+    scaled = '# force_2_N = { column = "Kraft rechts", unit = "N", scale = 1.0 }   # COMPLETE: N per V'
+    plain = 'force_2_N = { column = "Kraft rechts", unit = "N" }'
     rows = "\n".join(f"{t:.3f};{a:.4f};{a / 2:.4f}" for t, a in zip(TIME, 60 + np.sin(PLACE), strict=True))
-    (tmp_path / "a.csv").write_text(f"Zeit;Kraft links;Kraft rechts\ns;{unit};{unit}\n{rows}")
-    describe(tmp_path / "a.csv", "--sidecar", tmp_path / "a.toml")
-    draft = (tmp_path / "a.toml").read_text()
-    assert [text for text in texts if text not in draft] == []
+    sums = {"V": (scaled, "the sum of several sensors"), "N": (plain, "[columns.force_1_N] with sum = [...]")}
+    for unit, texts in sums.items():
+        (tmp_path / f"{unit}.csv").write_text(f"Zeit;Kraft links;Kraft rechts\ns;{unit};{unit}\n{rows}")
+        describe(tmp_path / f"{unit}.csv", "--sidecar", tmp_path / f"{unit}.toml")
+        draft = (tmp_path / f"{unit}.toml").read_text()
+        assert [text for text in texts if text not in draft] == []
 
 
-def test_suspicious_contents_are_named() -> None:
-    values = np.column_stack(
-        [
-            np.sin(PLACE),
-            np.sin(PLACE),
-            np.clip(np.sin(PLACE), -0.5, 0.5),
-            np.repeat(np.sin(PLACE), 4)[: TIME.size],
-            0 * TIME,
-            np.round(200 + TIME / TIME[-1], 1),
-        ]
-    )
+def test_suspicious_contents_gaps_and_repetitions_are_named() -> None:
+    sine = np.sin(PLACE)
+    held, speed = np.repeat(sine, 4)[: TIME.size], np.round(200 + TIME / TIME[-1], 1)
+    values = np.column_stack([sine, sine, np.clip(sine, -0.5, 0.5), held, 0 * TIME, speed])
     table = MeasuredTable("a.csv", values, tuple(TableColumn(name) for name in "abcdef"))
     remarks = [fact.remarks for fact in list_channel_facts(table)]
     assert remarks[0] == ()
@@ -158,10 +136,7 @@ def test_suspicious_contents_are_named() -> None:
     assert remarks[4] == ("constant",)
     # A speed with a resolution of 0.1 km/h is no dead channel.
     assert remarks[5][0].startswith(f"changes seldom: 11 different values in {TIME.size} samples, at least 0.1 apart. ")
-
-
-def test_gaps_and_repetitions_of_the_time_are_named() -> None:
-    """Samples 100 to 149 are missing, sample 500 is repeated."""
+    # Samples 100 to 149 are missing, sample 500 is repeated.
     time = np.r_[np.arange(100), np.arange(150, 500), 499, np.arange(500, 900)] / 100
     facts = describe_time("t", None, time)
     assert facts is not None

@@ -45,7 +45,7 @@ def test_layout_follows_the_width(table: FittedTable, width: int, lines: list[st
     assert shown(table, width) == lines
 
 
-def test_sentences_wrap_beside_whole_names() -> None:
+def test_sentences_wrap_beside_whole_names_and_a_row_without_cells_takes_one_line() -> None:
     table = build_table("case", "title", unbroken=("case",))
     table.add_row("en50318-2002/250", "EN 50318:2002 reference model, 250 km/h")
     assert shown(table, 45) == [
@@ -53,9 +53,6 @@ def test_sentences_wrap_beside_whole_names() -> None:
         "en50318-2002/250 EN 50318:2002 reference",
         "                 model, 250 km/h",
     ]
-
-
-def test_row_without_further_cells_takes_one_line() -> None:
     table = build_table("input", "value", unbroken=("input", "value"))
     table.add_row("line.damping", "")
     table.add_row("  tension_N", "20000.0")

@@ -37,9 +37,6 @@ def test_forms_of_keys(signers: Signers, tmp_path: Path) -> None:
         assert key.holder == "Ada Author"
         assert "PRIVATE" not in repr(key)
         assert "Ada" not in repr(key)
-
-
-def test_chain_of_a_pkcs12_file(signers: Signers, tmp_path: Path) -> None:
     key = read_signing_key(signers.author.write_pkcs12(tmp_path / "key.p12", b"secret"), None, lambda: b"secret")
     assert [certificate.subject.native["common_name"] for certificate in key.chain] == ["Test authority"]
 

@@ -29,7 +29,7 @@ run = partial(pantocheck, "run", "en50318-2002/250", *OPTIONS)
 
 
 @pytest.mark.usefixtures("records")
-def test_quiet_prints_the_verdict_line_or_the_error_alone() -> None:
+def test_verbose_prints_all_values_and_quiet_the_verdict_alone() -> None:
     done = run("-q")
     assert done.exit_code == 1
     assert done.stdout.startswith("FAIL ")
@@ -39,11 +39,7 @@ def test_quiet_prints_the_verdict_line_or_the_error_alone() -> None:
     failed = pantocheck("-q", "show", "none/250")
     assert (failed.exit_code, failed.stdout) == (2, "")
     assert "none/250" in failed.stderr
-
-
-@pytest.mark.usefixtures("records")
-def test_verbose_prints_all_values_and_the_log() -> None:
-    """The quantity has no limit. The log goes to standard error with the name of the module."""
+    # The quantity has no limit. The log goes to standard error with the name of the module.
     plain, verbose = run(), run("-v")
     assert "contact_height_range_mm" not in plain.stdout
     assert "contact_height_range_mm" in verbose.stdout
@@ -52,13 +48,20 @@ def test_verbose_prints_all_values_and_the_log() -> None:
 
 
 @pytest.mark.usefixtures("records")
-def test_json_is_one_object_and_nothing_else() -> None:
+def test_json_is_one_object_for_results_and_failures() -> None:
     done = run("--json")
     content = json.loads(done.stdout)
     assert (content["schema"], content["command"], content["exit_code"]) == ("pantocheck.output/1", "run", 1)
     assert done.exit_code == 1
     assert content["result"] == json.loads(Path("out", "results.json").read_text())
     assert content["files"] == [str(Path("out", "results.json"))]
+    # The message stays on standard error.
+    Path("line.toml").write_text("geometry = 3\n")
+    done = pantocheck("line", "export", "line.toml", "--out", "tables", "--json")
+    content = json.loads(done.stdout)
+    assert (done.exit_code, content["exit_code"]) == (2, 2)
+    assert content["problems"][0].keys() == {"where", "found", "hint"}
+    assert content["problems"][0]["where"] in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -85,36 +88,20 @@ def test_every_command_gives_its_result_as_json(command: list[str]) -> None:
     assert content["result"]
 
 
-@pytest.mark.usefixtures("records")
-def test_failure_is_json_too() -> None:
-    """The message stays on standard error."""
-    Path("line.toml").write_text("geometry = 3\n")
-    done = pantocheck("line", "export", "line.toml", "--out", "tables", "--json")
-    content = json.loads(done.stdout)
-    assert (done.exit_code, content["exit_code"]) == (2, 2)
-    assert content["problems"][0].keys() == {"where", "found", "hint"}
-    assert content["problems"][0]["where"] in done.stderr
-
-
-@pytest.mark.parametrize("arguments", [["--json", "cases"], ["cases", "--json"], ["--json", "cases", "--json"]])
-def test_options_count_before_and_after_the_command(arguments: list[str]) -> None:
-    assert json.loads(pantocheck(*arguments).stdout)["command"] == "cases"
-
-
-def test_more_and_less_output_at_once_is_refused() -> None:
+def test_options_count_before_and_after_the_command_and_must_agree() -> None:
+    for arguments in (["--json", "cases"], ["cases", "--json"], ["--json", "cases", "--json"]):
+        assert json.loads(pantocheck(*arguments).stdout)["command"] == "cases"
     done = pantocheck("-v", "cases", "-q")
     assert done.exit_code == 2
     assert "contradict" in done.stderr
 
 
-@pytest.mark.parametrize("form", ["text", "json"])
-def test_texts_of_a_file_stay_escaped(form: str, edited_case: EditedCase) -> None:
+def test_texts_of_a_file_stay_escaped(edited_case: EditedCase) -> None:
     """Neither a control sequence of a terminal, nor a mark that reverses text, reaches standard output."""
     path = edited_case("250.toml", {"title": "\x1b[31m\u202egpj.exe"})
-    done = pantocheck("show", str(path), *(["--json"] if form == "json" else []))
-    assert "\x1b" not in done.stdout
-    assert "\u202e" not in done.stdout
-    assert "gpj.exe" in done.stdout
+    for form in ((), ("--json",)):
+        text = pantocheck("show", path, *form).stdout
+        assert ("\x1b" in text, "\u202e" in text, "gpj.exe" in text) == (False, False, True)
 
 
 def test_no_color_leaves_no_bold_text(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -126,12 +113,11 @@ def test_no_color_leaves_no_bold_text(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "\x1b" not in pantocheck("cases").stdout
 
 
-def test_library_is_silent_without_a_handler(capfd: pytest.CaptureFixture[str]) -> None:
+def test_library_is_silent_without_a_handler_and_settings_hold_while_a_command_runs(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
     logging.getLogger("pantocheck.conformance.execution.runner").warning("a step")
     assert capfd.readouterr() == ("", "")
-
-
-def test_settings_hold_while_a_command_runs() -> None:
     settings = combine_flags({"quiet", "no_color"})
     assert settings == OutputSettings(detail="quiet", colour="none")
     with use_settings(settings):

@@ -8,15 +8,8 @@ from pathlib import Path
 import pytest
 from jsonschema import validate
 
+from helpers import response_records as rig
 from helpers.command_line import pantocheck
-from helpers.response_records import (
-    add_noise,
-    apparent_mass_columns,
-    chain_stiffness,
-    read_pantograph,
-    scale_head,
-    write_response,
-)
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.line.library_folder import library_folder
 
@@ -45,10 +38,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Working folder with a response of the pantograph, one of a heavier head, and limits."""
     monkeypatch.chdir(tmp_path)
     shutil.copy(library_folder() / "en50318-2018" / "pantograph.toml", "pantograph.toml")
-    pantograph = read_pantograph()
+    pantograph = rig.read_pantograph()
     for name, factor in (("right", 1.0), ("heavy", 1.05)):
-        stiffness = add_noise(chain_stiffness(scale_head(pantograph, factor)), seed=3)
-        write_response(tmp_path, apparent_mass_columns(stiffness), name)
+        stiffness = rig.add_noise(rig.chain_stiffness(rig.scale_head(pantograph, factor)), seed=3)
+        rig.write_response(tmp_path, rig.apparent_mass_columns(stiffness), name)
     Path("limits.toml").write_text(LIMITS, encoding="utf-8")
     return tmp_path
 
@@ -88,16 +81,13 @@ def test_wrong_limit_is_named_with_its_file_and_key(folder: Path, old: str, new:
     assert "limits 'limits.toml', " + message in done.output
 
 
-def test_missing_sidecar_is_named(folder: Path) -> None:
-    (folder / "right.toml").unlink()
-    done = run("right.csv")
-    assert done.exit_code == 2, done.output
-    assert "sidecar 'right.toml'" in done.output
-
-
-def test_response_is_checked(folder: Path) -> None:
+def test_response_is_checked_and_a_missing_sidecar_named(folder: Path) -> None:
     done = pantocheck("check", "right.csv", "right.toml", "limits.toml", COLUMNS="140")
     assert done.exit_code == 0, done.output
     valid = "valid response record: apparent mass at 120 frequencies, 0.5 to 50 Hz, in right.csv"
     _, *lines = done.output.splitlines()
     assert [line.split(": ", 1)[1] for line in lines] == [valid, valid, "valid comparison-limits file"]
+    (folder / "right.toml").unlink()
+    done = run("right.csv")
+    assert done.exit_code == 2, done.output
+    assert "sidecar 'right.toml'" in done.output

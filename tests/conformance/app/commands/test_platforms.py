@@ -83,28 +83,31 @@ def test_all_modules_and_a_run_without_the_functions_of_posix(tmp_path: Path) ->
         assert b"\r" not in (tmp_path / "report" / name).read_bytes()
 
 
-def list_text_calls() -> Iterator[tuple[str, str, set[str | None]]]:
+@pytest.fixture(scope="module")
+def calls() -> list[tuple[Path, ast.Call]]:
+    """Calls in the files of the product."""
+    paths = sorted(path for folder in ("conformance", "model") for path in (ROOT / folder).rglob("*.py"))
+    trees = {path: ast.walk(ast.parse(path.read_text(encoding="utf-8"))) for path in paths}
+    return [(path, node) for path, nodes in trees.items() for node in nodes if isinstance(node, ast.Call)]
+
+
+def list_text_calls(calls: list[tuple[Path, ast.Call]]) -> Iterator[tuple[str, str, set[str | None]]]:
     """Calls that open text files: place, name and keywords."""
-    for folder in ("conformance", "model"):
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if not isinstance(node, ast.Call):
-                    continue
-                if not isinstance(node.func, ast.Attribute):
-                    continue  # `read_text` of this project reads UTF-8 always
-                name = node.func.attr
-                constants = [value.value for value in node.args if isinstance(value, ast.Constant)]
-                keywords = {keyword.arg for keyword in node.keywords}
-                if name == "open" and "w" in constants:
-                    name = "write_text"
-                if name in ("read_text", "write_text") and (name == "write_text" or not constants):
-                    yield f"{path.relative_to(ROOT)}:{node.lineno}", name, keywords
+    for path, node in calls:
+        if not isinstance(node.func, ast.Attribute):
+            continue  # `read_text` of this project reads UTF-8 always
+        name = node.func.attr
+        constants = [value.value for value in node.args if isinstance(value, ast.Constant)]
+        if name == "open" and "w" in constants:
+            name = "write_text"
+        if name in ("read_text", "write_text") and (name == "write_text" or not constants):
+            yield f"{path.relative_to(ROOT)}:{node.lineno}", name, {keyword.arg for keyword in node.keywords}
 
 
-def test_text_files_state_their_encoding_and_line_ends() -> None:
+def test_text_files_state_their_encoding_and_line_ends(calls: list[tuple[Path, ast.Call]]) -> None:
     """Windows writes other line ends and reads another encoding by default: outputs would differ by system."""
     own = {"read_text": {"encoding"}, "write_text": {"encoding", "newline"}}
-    faults = [place for place, name, keywords in list_text_calls() if not own[name] <= keywords]
+    faults = [place for place, name, keywords in list_text_calls(calls) if not own[name] <= keywords]
     assert faults == []
 
 
@@ -122,9 +125,10 @@ def test_names_in_the_repository_are_valid_everywhere() -> None:
         assert len(name) <= 150, name  # of 260 characters, some belong to the folder of the user
 
 
-def test_checkout_has_the_same_bytes_on_every_system() -> None:
+def test_checkout_has_the_same_bytes_and_valid_names_on_every_system() -> None:
     """The digest of the suite is that of its files; Windows would check out other line ends."""
     assert "* text=auto eol=lf" in (ROOT / ".gitattributes").read_text(encoding="utf-8").splitlines()
+    assert not [path for path in library_folder().rglob("*.toml") if b"\r" in path.read_bytes()]
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp850"])
@@ -182,12 +186,9 @@ def test_program_is_ended_with_its_children_by_taskkill(tmp_path: Path, monkeypa
     assert running._process.returncode is not None
 
 
-@pytest.mark.parametrize("name", ["C:table.csv", "d:x", "a\\b.csv", "../t.csv", "\\\\host\\share\\t.csv"])
-def test_table_of_a_record_is_no_path_on_any_system(name: str) -> None:
-    assert [*find_table_name_problems(name)]
-
-
-def test_table_of_a_record_may_have_a_colon() -> None:
+def test_table_of_a_record_is_no_path_on_any_system() -> None:
+    for name in ("C:table.csv", "d:x", "a\\b.csv", "../t.csv", "\\\\host\\share\\t.csv"):
+        assert [*find_table_name_problems(name)], name
     assert [*find_table_name_problems("run 12:30.csv")] == []
 
 
@@ -198,21 +199,14 @@ def test_backslashes_in_texts_are_explained(tmp_path: Path) -> None:
         read_toml(path, "plan")
 
 
-def test_library_files_have_line_feeds_only() -> None:
-    assert not [path for path in library_folder().rglob("*.toml") if b"\r" in path.read_bytes()]
-
-
-def test_worker_processes_start_as_on_windows() -> None:
+def test_worker_processes_start_as_on_windows(calls: list[tuple[Path, ast.Call]]) -> None:
     """Without a stated method, Linux would fork and the other systems would spawn: two behaviours for one command."""
     methods = []
-    for path in sorted((ROOT / "conformance").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.Call):
-                continue
-            text = ast.unparse(node.func)
-            assert text not in ("multiprocessing.Process", "multiprocessing.Pool", "os.fork"), path
-            if text == "multiprocessing.get_context":
-                methods += [ast.literal_eval(argument) for argument in node.args] or [None]
-            if text == "ProcessPoolExecutor":
-                assert "get_context" in ast.unparse(node), path
+    for path, node in calls:
+        text = ast.unparse(node.func)
+        assert text not in ("multiprocessing.Process", "multiprocessing.Pool", "os.fork"), path
+        if text == "multiprocessing.get_context":
+            methods += [ast.literal_eval(argument) for argument in node.args] or [None]
+        if text == "ProcessPoolExecutor":
+            assert "get_context" in ast.unparse(node), path
     assert set(methods) == {"spawn"}

@@ -39,7 +39,7 @@ def follow(progress: TaskProgress) -> Iterator[None]:
         LOGGER.removeHandler(progress)
 
 
-def test_line_names_case_step_share_and_remaining_time() -> None:
+def test_remaining_time_follows_the_finished_share() -> None:
     """One of two cases and half of the first of two equal steps take 50 s: 62.5 %, so 30 s remain."""
     clock = Clock()
     progress = TaskProgress("running cases", 2, clock)
@@ -52,6 +52,16 @@ def test_line_names_case_step_share_and_remaining_time() -> None:
     assert progress.describe() == (
         "running cases: 1 of 2 finished, en50318-2002/300: mesh of the case, 62 %, about 0:00:30 remaining"
     )
+    # An earlier run has done 20 %; 30 % more take 60 s, so the other half takes 100 s, of which 40 s pass.
+    clock = Clock()
+    progress = TaskProgress("guide", 4, clock)
+    progress.reach("", 1, 0.2)
+    clock.now = 60.0
+    progress.reach("library/long", 2, 0.5)
+    clock.now = 100.0
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, about 0:01:00 remaining"
+    clock.now = 160.0  # the estimate is over, but not the work
+    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
 
 
 def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
@@ -62,16 +72,23 @@ def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
     assert progress.describe() == (
         "identification: 0 of 5 finished, T1: release and linear decay, 0 %, 0:01:15 elapsed"
     )
-
-
-def test_begin_of_a_task_ends_the_task_before_it() -> None:
+    progress = TaskProgress("guide", 4, clock := Clock())
+    progress.reach("", 0, 0.0)
+    clock.now = 10.0
+    progress.reach("library/short", 1, 0.09)
+    assert progress.describe() == "guide: 1 of 4 finished, library/short, 9 %, 0:00:10 elapsed"
     progress = TaskProgress("self-test", 4, Clock())
     progress.begin_task("zero force")
     progress.begin_task("late force")
     assert progress.describe().startswith("self-test: 1 of 4 finished, late force, 25 %")
 
 
-def test_cases_of_several_processes_are_all_named(caplog: pytest.LogCaptureFixture) -> None:
+def test_cases_and_steps_that_are_running_are_named(caplog: pytest.LogCaptureFixture) -> None:
+    progress = TaskProgress("running cases", 1, Clock())
+    assert progress.describe() == "running cases, 0:00:00 elapsed"
+    with follow(progress), caplog.at_level(logging.DEBUG, "pantocheck"):
+        StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
+    assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
     caplog.set_level(logging.INFO, LOGGER.name)
     progress = TaskProgress("running cases", 4, Clock())
     with follow(progress):
@@ -81,6 +98,13 @@ def test_cases_of_several_processes_are_all_named(caplog: pytest.LogCaptureFixtu
     assert progress.describe().startswith(
         "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own, 25 %"
     )
+    # A part such as the self-test runs many cases, which end without a message.
+    progress = TaskProgress("guide", 4, Clock())
+    progress.reach("", 0, 0.0)
+    with follow(progress):
+        for case in ("line/250", "line/300"):
+            StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
+    assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"
 
 
 def test_parts_of_a_study_continue_the_share_of_their_case(caplog: pytest.LogCaptureFixture) -> None:
@@ -129,19 +153,8 @@ def test_long_lines_of_a_log_stay_whole(
     assert f"line/250: {text}" in printed
 
 
-def test_single_task_shows_the_share_of_its_steps_or_none(caplog: pytest.LogCaptureFixture) -> None:
-    progress = TaskProgress("running cases", 1, Clock())
-    assert progress.describe() == "running cases, 0:00:00 elapsed"
-    with follow(progress), caplog.at_level(logging.DEBUG, "pantocheck"):
-        StepSequence(LOGGER, "line/250", {"mesh of the case": 1.0}).begin("mesh of the case")(0.5)
-    assert progress.describe().startswith("running cases, line/250: mesh of the case, 50 %")
-
-
-def test_line_is_redrawn_a_few_times_a_second() -> None:
-    assert 2 <= REDRAWS_PER_S <= 4
-
-
 def test_levels_and_handlers_are_restored() -> None:
+    assert 2 <= REDRAWS_PER_S <= 4
     root = logging.getLogger("pantocheck")
     before = root.level, list(root.handlers)
     with follow_steps("anything"):
@@ -162,35 +175,3 @@ def test_reference_simulator_reports_its_steps(caplog: pytest.LogCaptureFixture)
     assert completed == sorted(completed)
     assert completed[-1] <= 1
     assert len({step.completed for step in steps if step.name == OWN_MESH}) > 3
-
-
-def test_remaining_time_follows_the_durations_of_the_parts_of_this_run() -> None:
-    """An earlier run has done 20 %; 30 % more take 60 s, so the other half takes 100 s, of which 40 s pass."""
-    clock = Clock()
-    progress = TaskProgress("guide", 4, clock)
-    progress.reach("", 1, 0.2)
-    clock.now = 60.0
-    progress.reach("library/long", 2, 0.5)
-    clock.now = 100.0
-    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, about 0:01:00 remaining"
-    clock.now = 160.0  # the estimate is over, but not the work
-    assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
-
-
-def test_no_remaining_time_before_a_tenth_is_done() -> None:
-    progress = TaskProgress("guide", 4, clock := Clock())
-    progress.reach("", 0, 0.0)
-    clock.now = 10.0
-    progress.reach("library/short", 1, 0.09)
-    assert progress.describe() == "guide: 1 of 4 finished, library/short, 9 %, 0:00:10 elapsed"
-
-
-def test_steps_within_a_part_add_no_share_and_only_the_latest_is_named(caplog: pytest.LogCaptureFixture) -> None:
-    """A part such as the self-test runs many cases, which end without a message."""
-    caplog.set_level(logging.INFO, LOGGER.name)
-    progress = TaskProgress("guide", 4, Clock())
-    progress.reach("", 0, 0.0)
-    with follow(progress):
-        for case in ("line/250", "line/300"):
-            StepSequence(LOGGER, case, {"mesh of the case": 1.0, "mesh halved": 1.0}).begin("mesh halved")
-    assert progress.describe() == "guide: 0 of 4 finished, line/300: mesh halved, 0 %, 0:00:00 elapsed"

@@ -41,19 +41,8 @@ def test_error_is_the_uncertainty_where_it_is_known(
     """Four digits of the value, two of its errors. An uncertainty that lacks a component is marked."""
     rear |= {"discretisation_error": 0.01234, "spread": 0.5678, "uncertainty": None}
     expected = [
-        "std_force_N,",
-        "pantograph",
-        "2",
-        "28.12",
-        "0.012",
-        "0.57",
-        "22",
-        "to",
-        "31",
-        "+0.64",
-        "PASS",
-        "secondary",
-    ]
+        "std_force_N,", "pantograph", "2", "28.12", "0.012", "0.57", *("22", "to", "31"), "+0.64", "PASS", "secondary",
+    ]  # fmt: skip
     assert rows(printed(passing, capsys), "std_force_N, pantograph 2") == [expected]
     rear |= {"uncertainty": 0.98765, "spread": None}
     expected[4:6] = ["0.99*", "-"]
@@ -71,31 +60,17 @@ def test_error_is_the_uncertainty_where_it_is_known(
     assert "Uncertainty without" not in text
 
 
-@pytest.mark.parametrize(
-    ("lower", "upper", "cells"),
-    [
-        (22.0, 31.0, ["22", "to", "31"]),
-        (22.0, None, [">=", "22"]),
-        (None, 31.0, ["<=", "31"]),
-        (0.0, 0.0, ["=", "0"]),
-        (None, None, ["none"]),
-        (22.12641234, 31.12641234, ["22.13", "to", "31.13"]),
-        (22.12641234, None, [">=", "22.13"]),
-        (None, 31.12641234, ["<=", "31.13"]),
-    ],
-)
 def test_computed_limits_are_printed_with_four_digits(
-    passing: dict[str, Any],
-    rear: dict[str, Any],
-    capsys: pytest.CaptureFixture[str],
-    lower: float | None,
-    upper: float | None,
-    cells: list[str],
+    passing: dict[str, Any], rear: dict[str, Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    rear |= {"lower": lower, "upper": upper, "margin": None, "spread": None, "uncertainty": None}
-    rear |= {"discretisation_error": None}
-    (row,) = rows(printed(passing, capsys), "std_force_N, pantograph 2")
-    assert row[3:] == ["28.12", "-", "-", *cells, "-", "PASS", "secondary"]
+    rear |= {"margin": None, "spread": None, "uncertainty": None, "discretisation_error": None}
+    for lower, upper, cells in (
+        (22.0, 31.0, "22 to 31"), (22.0, None, ">= 22"), (None, 31.0, "<= 31"), (0.0, 0.0, "= 0"), (None, None, "none"),
+        (22.12641234, 31.12641234, "22.13 to 31.13"), (22.12641234, None, ">= 22.13"), (None, 31.12641234, "<= 31.13"),
+    ):  # fmt: skip
+        rear |= {"lower": lower, "upper": upper}
+        (row,) = rows(printed(passing, capsys), "std_force_N, pantograph 2")
+        assert row[3:] == ["28.12", "-", "-", *cells.split(), "-", "PASS", "secondary"]
 
 
 def test_value_outside_a_limit_is_not_printed_on_it(
@@ -107,12 +82,18 @@ def test_value_outside_a_limit_is_not_printed_on_it(
     assert (row[3], row[6:9], row[9]) == ("31.0004", ["22", "to", "31"], "-0.0001")
 
 
-def test_columns_of_the_table_are_one_space_apart(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+def test_first_pantograph_and_line_are_not_named(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     """So that the table of a common case fits into 80 columns; there is no empty line below the headings."""
     lines = printed(passing, capsys).splitlines()
     heading = next(i for i, line in enumerate(lines) if line.startswith("criterion"))
     assert lines[heading].rstrip().endswith("margin verdict trust")
     assert lines[heading + 1].startswith("mean_force_N ")
+    criteria = passing["cases"][0]["criteria"]
+    criteria[0] |= {"quantity": "dropper_length_m", "pantograph": 0, "item": 3}
+    text = printed(passing, capsys)
+    assert len(rows(text, "dropper_length_m[3] ")) == 1
+    assert len(rows(text, "mean_force_N, pantograph 2")) == 1
+    assert len(rows(text, "std_force_N ")) == 1
 
 
 def test_remark_of_every_case_is_printed_once(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
@@ -128,15 +109,6 @@ def test_remark_of_every_case_is_printed_once(passing: dict[str, Any], capsys: p
         f"[2] {band}",
     ]
     assert [line.split()[-2:] for line in lines if line.startswith("PASS another/300")] == [["[1]", "[2]"]]
-
-
-def test_first_pantograph_and_line_are_not_named(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
-    criteria = passing["cases"][0]["criteria"]
-    criteria[0] |= {"quantity": "dropper_length_m", "pantograph": 0, "item": 3}
-    text = printed(passing, capsys)
-    assert len(rows(text, "dropper_length_m[3] ")) == 1
-    assert len(rows(text, "mean_force_N, pantograph 2")) == 1
-    assert len(rows(text, "std_force_N ")) == 1
 
 
 def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:

@@ -55,13 +55,8 @@ def write_results(folder: Path, contents: dict[str, str]) -> Path:
 def site(tmp_path_factory: pytest.TempPathFactory, contents: dict[str, str]) -> Path:
     """Site of the results, with a hostile title."""
     folder = tmp_path_factory.mktemp("site")
-    done = build(
-        write_results(folder / "results", contents),
-        "--out",
-        str(folder / "site"),
-        "--title",
-        "<script>alert(1)</script>",
-    )
+    results = write_results(folder / "results", contents)
+    done = build(results, "--out", folder / "site", "--title", "<script>alert(1)</script>")
     assert done.exit_code == 0, done.output
     return folder / "site"
 
@@ -74,28 +69,21 @@ def read_text(page: Path) -> str:
     return " ".join(re.sub(r"<[^>]+>", " ", page.read_text("utf-8").split("<main>")[1]).split())
 
 
-def test_matrix_shows_the_latest_version_of_each_system(site: Path) -> None:
+def test_matrix_and_case_page_show_every_version_and_links_to_files(site: Path) -> None:
     text = read_text(site / "index.html")
     assert "2 systems, 1 case, 3 runs." in text
     matrix = text.split("Systems and cases")[1].split("Runs")[0]
     assert "wave" in matrix
     assert re.search(r"en50318-2002/250 .* 2\b", matrix)  # version 2, not version 1
     runs = text.split("All runs, the latest first")[1]
-    assert [runs.index(date) for date in ("2026-02-05", "2026-01-20", "2026-01-05")] == sorted(
-        runs.index(date) for date in ("2026-02-05", "2026-01-20", "2026-01-05")
-    )
-
-
-def test_every_link_leads_to_a_file_of_the_site(site: Path) -> None:
+    places = [runs.index(date) for date in ("2026-02-05", "2026-01-20", "2026-01-05")]
+    assert places == sorted(places)
     pages = [site / "index.html", *(site / "cases").iterdir()]
     links = [(page, link) for page in pages for link in re.findall(r'href="([^"#]+)"', page.read_text("utf-8"))]
     assert len(links) >= 8
     for page, link in links:
         assert (page.parent / link).resolve().is_relative_to(site.resolve())
         assert (page.parent / link).is_file(), link
-
-
-def test_case_page_shows_the_values_of_every_version_and_hostile_names_are_escaped(site: Path) -> None:
     (page,) = (site / "cases").iterdir()
     text = read_text(page)
     for sigma in (SIGMA, 1.3 * SIGMA):
@@ -122,6 +110,7 @@ def test_results_that_contradict_themselves_are_shown_as_errors(results: Path, t
     assert "0 of 1" in row
 
 
+@pytest.mark.usefixtures("fresh_figures")
 def test_repeated_site_gives_the_same_bytes_and_ignores_itself(
     results: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -145,16 +134,13 @@ def test_a_folder_without_results_is_named(tmp_path: Path, make: bool) -> None:
     assert ("no results.json in it" if make else "not a folder") in " ".join(done.output.split())
 
 
-def test_several_folders_give_the_site_of_all_their_results(results: Path, tmp_path: Path) -> None:
+def test_several_folders_give_the_site_of_all_their_results_once(results: Path, tmp_path: Path) -> None:
     """A folder inside another one adds nothing: each file is taken once."""
     one, two = tmp_path / "one", tmp_path / "two"
     first, *_ = sorted(results.iterdir())
     assert build(results, "--out", one).exit_code == 0
     assert build(first, str(results), str(first), "--out", two).exit_code == 0
     assert read_text(two / "index.html") == read_text(one / "index.html")
-
-
-def test_links_and_folders_named_as_results_are_left_out(results: Path, tmp_path: Path) -> None:
     (results / "copy").mkdir()
     (results / "copy" / "results.json").symlink_to(results / "old" / "results.json")
     (results / "folder" / "results.json").mkdir(parents=True)

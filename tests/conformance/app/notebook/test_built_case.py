@@ -29,20 +29,11 @@ def test_parts_given_as_dictionaries_are_written(tmp_path: Path) -> None:
     """Two pantographs: one of the library, and a chain of one mass."""
     own = {"chain": {"masses_kg": [10.0], "stiffness_N_m": [4000.0], "damping_N_s_m": [0.0]}, "title": "Own"}
     line = open_case("en50318-2002/250").inputs["line"] | {"title": "Own line"}
-    case = build_case(
-        tmp_path / "new" / "case",
-        line,
-        [PANTOGRAPH, own | {"contact": {"stiffness_N_m": 50e3}}],
-        speed_km_h=200,
-        evaluated_spans=[5, 6],
-        spacing_m=[60],
-        uplift_force_N=110.0,
-    )
-    assert sorted(path.name for path in (tmp_path / "new" / "case").iterdir()) == [
-        "case.toml",
-        "line.toml",
-        "pantograph-2.toml",
-    ]
+    pantographs = [PANTOGRAPH, own | {"contact": {"stiffness_N_m": 50e3}}]
+    keys: dict[str, Any] = {"speed_km_h": 200, "evaluated_spans": [5, 6], "spacing_m": [60], "uplift_force_N": 110.0}
+    case = build_case(tmp_path / "new" / "case", line, pantographs, **keys)
+    written = sorted(path.name for path in (tmp_path / "new" / "case").iterdir())
+    assert written == ["case.toml", "line.toml", "pantograph-2.toml"]
     assert [pantograph.title for pantograph in case.case.pantographs][1] == "Own"
     assert case.case.line.title == "Own line"
     # One mass on a spring: f = sqrt(k / m) / 2 pi = 3.1831 Hz; its apparent mass at f0 / 2 is m (1 - 4) = -3 m.
@@ -51,10 +42,14 @@ def test_parts_given_as_dictionaries_are_written(tmp_path: Path) -> None:
     assert pantograph.apparent_mass_kg(3.18310 / 2) == pytest.approx([-30.0], rel=1e-4)
 
 
-def test_line_of_a_file_is_that_of_its_cases() -> None:
+def test_line_and_pantograph_of_a_file_are_those_of_its_cases() -> None:
     line, same = open_line(LINE), open_case("en50318-2002/250").line
     assert line.file == same.file
     assert np.array_equal(line.span_limits, same.span_limits)
+    pantograph = open_pantograph(PANTOGRAPH)
+    frequency_Hz = np.array([1.0, 5.0])
+    (curve,) = pantograph.plot(frequency_Hz).lines
+    assert curve.get_ydata() == pytest.approx(np.abs(pantograph.apparent_mass_kg(frequency_Hz)))
 
 
 @pytest.mark.parametrize(
@@ -71,10 +66,3 @@ def test_line_of_a_file_is_that_of_its_cases() -> None:
 def test_wrong_parts_are_named(tmp_path: Path, build: Any, message: str) -> None:
     with pytest.raises(InputError, match=message):
         build(tmp_path)
-
-
-def test_figure_of_a_pantograph_has_the_apparent_mass() -> None:
-    pantograph = open_pantograph(PANTOGRAPH)
-    frequency_Hz = np.array([1.0, 5.0])
-    (curve,) = pantograph.plot(frequency_Hz).lines
-    assert curve.get_ydata() == pytest.approx(np.abs(pantograph.apparent_mass_kg(frequency_Hz)))

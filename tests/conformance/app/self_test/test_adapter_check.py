@@ -185,15 +185,12 @@ def test_answer_to_two_pantographs(delivered: Delivered, twin: Delivered, name: 
     assert (found.state, text in found.text) == (state, True), found
 
 
-def test_further_messages_follow_no_error(delivered: Delivered) -> None:
+def test_errors_end_the_check_and_other_values_are_a_note(delivered: Delivered) -> None:
     """An adapter that fails on the short case is corrected first; one that refuses it receives the others too."""
     assert [finding.subject for finding in check_adapter(Adapter(Errored("diverged"))).findings] == ["short case"]
     subjects = [finding.subject for finding in check_adapter(Adapter(Skipped("tuned only"))).findings]
     assert subjects == ["short case", "line at rest", "two pantographs"]
-
-
-def test_other_values_are_a_note(delivered: Delivered) -> None:
-    """A value far from the reference simulator is no fault of an adapter."""
+    # A value far from the reference simulator is no fault of an adapter.
     larger = change_record(force=lambda f: f + 40 * np.sin(2 * np.pi * 40 * np.arange(f.size) / 1000))
     check: AdapterCheck = check_adapter(Adapter(larger(delivered)))
     assert any("rms_20_50_N" in finding.text for finding in check.findings if finding.subject == "values")
