@@ -9,6 +9,7 @@ import argparse
 import ast
 import contextlib
 import difflib
+import filecmp
 import hashlib
 import json
 import math
@@ -48,8 +49,6 @@ SLOWER, EXTRA_S = 3.0, 30.0
 """A mutant whose tests need more than this multiple of their processor time, and this time [s], counts as killed."""
 IDLE = 20.0
 """A mutant whose tests take this multiple of their largest processor time waits for ever, and counts as killed."""
-TOGETHER = 4
-"""Number of test files of one run of pytest; the next ones run if these pass."""
 NOT_FOR_TESTS = re.compile(r"\s*(@dataclass\(|if TYPE_CHECKING:)")
 """Lines for the type checker, which finds a wrong import and an assignment to a frozen field."""
 OPERATORS = tuple(
@@ -122,20 +121,14 @@ class Worker:
             start_new_session=True,
         )  # fmt: skip
         resource.prlimit(process.pid, resource.RLIMIT_CPU, (math.ceil(limit_s), math.ceil(limit_s) + 5))
-        end = time.monotonic() + IDLE * limit_s
-        try:
-            while time.monotonic() < end:
-                ended, status, usage = os.wait4(process.pid, os.WNOHANG)
-                if ended:
-                    process.returncode = os.waitstatus_to_exitcode(status)
-                    stopped = process.returncode in {-signal.SIGXCPU, -signal.SIGKILL}
-                    return None if stopped else process.returncode, usage.ru_utime + usage.ru_stime
-                time.sleep(0.05)
-            return None, limit_s
-        finally:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+        clock = threading.Timer(IDLE * limit_s, process.kill)
+        clock.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        clock.cancel()
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.returncode = code = os.waitstatus_to_exitcode(status)
+        return None if code in {-signal.SIGXCPU, -signal.SIGKILL} else code, usage.ru_utime + usage.ru_stime
 
     def write(self, file: str, source: str) -> None:
         """Write a source, and remove its compiled files, which Python compares by the second only."""
@@ -159,15 +152,7 @@ class RelatedTests:
         self.texts = {name: (root / name).read_text("utf-8") for name in tests if name.startswith(TESTED)}
 
     def select(self, file: str, names: list[str]) -> list[str]:
-        """Test files that import a file.
-
-        The order is: the file of the same name, files that name the changed definition, short chains of imports, the
-        same folder.
-
-        Args:
-            file: Changed file.
-            names: Names of the changed definition.
-        """
+        """Test files that import a file: the one of its name, those with a name of the definition, the nearest."""
         distance, waiting = {file: 0}, deque([file])
         while waiting:
             name = waiting.popleft()
@@ -177,9 +162,8 @@ class RelatedTests:
         path, mention = Path(file), re.compile(rf"\b({'|'.join(names)})\b")
 
         def rank(test: str) -> tuple[bool, bool, int, bool, str]:
-            folder = test.startswith(f"tests/{path.parent.as_posix()}/")
-            mentioned = bool(names) and mention.search(self.texts[test]) is not None
-            return Path(test).name != f"test_{path.name}", not mentioned, distance[test], not folder, test
+            named, mentioned = Path(test).name == f"test_{path.name}", mention.search(self.texts[test]) is not None
+            return not named, not mentioned, distance[test], Path(test).parent != "tests" / path.parent, test
 
         return sorted(self.texts.keys() & distance.keys(), key=rank)
 
@@ -204,8 +188,7 @@ def _list_imports(path: Path) -> Iterator[str]:
 
 def name_definitions(source: str, line: int) -> list[str]:
     """Name of the public function or class at a line; elsewhere those of all public ones of the file."""
-    found = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
-    public = [node for node in found if not node.name.startswith("_")]
+    public = [n for n in ast.parse(source).body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
     changed = [node.name for node in public if node.lineno <= line <= (node.end_lineno or 0)]
     return changed or [node.name for node in public]
 
@@ -236,22 +219,20 @@ def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
 
 def draw_sample(root: Path, files: list[str], size: int, known: list[dict[str, str]]) -> list[Mutant]:
     """First mutants of a folder in the order of their digests, without those that are listed as equivalent."""
-    listed = {item["file"] for item in known}
 
     def is_equivalent(mutant: Mutant) -> bool:
-        if mutant.file not in listed:
-            return False
-        source = (root / mutant.file).read_text("utf-8")
-        diff = list_changes(source, mutant.mutate(source))
-        old, new = ([line[1:].strip() for line in diff if line.startswith(sign)] for sign in "-+")
-        return any(([item["line"]], [item["mutant"]], item["file"]) == (old, new, mutant.file) for item in known)
+        listed = [[f"-{item['line']}", f"+{item['mutant']}"] for item in known if item["file"] == mutant.file]
+        changes = list_changes(root, mutant)[1:] if listed else []
+        return [line[0] + line[1:].strip() for line in changes] in listed
 
     mutants = sorted((m for file in files for m in list_mutants(root, file)), key=lambda mutant: mutant.order)
     return list(islice((mutant for mutant in mutants if not is_equivalent(mutant)), size))
 
 
-def list_changes(source: str, changed: str) -> list[str]:
-    """Changed lines with the line of each number that begins them."""
+def list_changes(root: Path, mutant: Mutant) -> list[str]:
+    """Number of the changed line, the line, and the changed one."""
+    source = (root / mutant.file).read_text("utf-8")
+    changed = mutant.mutate(source)
     lines = difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
     return [line for line in lines if not line.startswith(("---", "+++"))]
 
@@ -304,39 +285,30 @@ class Run:
     def _forget(self) -> None:
         """Remove the copies of the checkout and the outcomes that new sources or tests may change."""
         rows = _read_rows(self.out / "outcomes.jsonl")
-        rows = [row for row in rows if row["outcome"] == "killed" and self._is_as_before(row["file"])]
+        same = filecmp.cmpfiles(self.snapshot, CHECKOUT, {row["file"] for row in rows}, shallow=False)[0]
+        rows = [row for row in rows if row["outcome"] == "killed" and row["file"] in same]
         (self.out / "outcomes.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows), "utf-8")
         (self.out / "tests.jsonl").unlink(missing_ok=True)
         for folder in (self.snapshot, *self.out.glob("worker-*")):
             shutil.rmtree(folder, ignore_errors=True)
 
-    def _is_as_before(self, file: str) -> bool:
-        old, new = self.snapshot / file, CHECKOUT / file
-        return old.exists() and new.exists() and old.read_bytes() == new.read_bytes()
-
     def judge(self, mutant: Mutant, worker: Worker) -> None:
         """Run the related tests of a mutant, and store its outcome."""
         source = (self.snapshot / mutant.file).read_text("utf-8")
-        changed = mutant.mutate(source)
-        diff = list_changes(source, changed)
+        diff = list_changes(self.snapshot, mutant)
         tests: dict[str, float] = {}
-        for file in self.related.select(mutant.file, name_definitions(source, int(diff[0].split()[1].strip("-,")))):
+        for file in self.related.select(mutant.file, name_definitions(source, int(re.findall(r"\d+", diff[0])[0]))):
             seconds = self._time_tests(file, worker)
             if seconds is not None and sum(tests.values()) + seconds <= self.budget_s:
                 tests[file] = seconds
             if len(tests) == self.tests:
                 break
-        outcome = "survived" if tests else "untested"
-        worker.write(mutant.file, changed)
+        worker.write(mutant.file, mutant.mutate(source))
         try:
-            for begin in range(0, len(tests), TOGETHER):
-                files = list(tests)[begin : begin + TOGETHER]
-                code, _ = worker.run_tests(files, SLOWER * sum(tests[file] for file in files) + EXTRA_S)
-                if code != 0:
-                    outcome = "timeout" if code is None else "killed"
-                    break
+            code, _ = worker.run_tests([*tests], SLOWER * sum(tests.values()) + EXTRA_S) if tests else (0, 0.0)
         finally:
             worker.write(mutant.file, source)
+        outcome = "untested" if not tests else "timeout" if code is None else "survived" if code == 0 else "killed"
         row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": list(tests)}
         with self.lock:
             self.outcomes[mutant.order] = row
@@ -387,8 +359,8 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=60, help="size of the sample of each folder")
     parser.add_argument("--folders", nargs="*", help="default: all")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--tests", type=int, default=12, help="largest number of test files of a mutant")
-    parser.add_argument("--budget", type=float, default=90.0, help="largest processor time of these [s]")
+    parser.add_argument("--tests", type=int, default=8, help="largest number of test files of a mutant")
+    parser.add_argument("--budget", type=float, default=60.0, help="largest processor time of these [s]")
     parser.add_argument("--renew", action="store_true", help="copy the checkout anew, and judge what it may change")
     parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
     options = parser.parse_args()

@@ -111,6 +111,12 @@ def test_a_required_step_that_is_missing_prevents_a_pass() -> None:
         assert judge_procedure(decided.steps) == verdict
 
 
+def test_every_claim_is_decided() -> None:
+    claims = [claim("line", name) for name in "AB"]
+    decided = decide_procedure(build_procedure().model_copy(update={"claims": claims}), [], accepted=False)
+    assert [(item.name, item.verdict) for item in decided.claims] == [("A", "skip"), ("B", "skip")]
+
+
 def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClaim:
     """Claim on a line with a passed run, after five steps with these verdicts; without one, a step passes."""
     steps = [
