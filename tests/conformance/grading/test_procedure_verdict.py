@@ -74,6 +74,11 @@ def test_runs_on_other_lines_do_not_verify_a_line() -> None:
     assert judge_claim(line, [line], [run(1, 160, "A")]).evidence == ["pair/1"]
 
 
+def test_run_without_a_verdict_verifies_nothing() -> None:
+    unjudged = Evidence(id="1", line="A", pantographs=["P"], speed_km_h=160, spacing_m=[], inputs={})
+    assert judge_claim(claim("line", "A"), [], [unjudged]).verdict == "skip"
+
+
 def test_spacing_and_changed_inputs_need_runs_that_have_them() -> None:
     spacing = claim("spacing", claimed=(85.0, 200.0))
     single = [run(1, 160)]
