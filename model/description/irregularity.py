@@ -63,4 +63,4 @@ def realise_irregularity(spectrum: SpectralDensity, length: float, seed: int) ->
 
 def point_count(spectrum: SpectralDensity, length: float) -> int:
     """Number of intervals between the points of a realised irregularity over a length [m]; even."""
-    return 2 * max(2, int(np.ceil(POINTS_PER_WAVELENGTH * spectrum.frequency[-1] * length / 2)))
+    return 2 * int(np.ceil(POINTS_PER_WAVELENGTH * spectrum.frequency[-1] * length / 2))

@@ -25,8 +25,6 @@ def worn_stiffness_share(wear_share: float) -> float:
     Returns:
         Share of the bending stiffness [-].
     """
-    if wear_share == 0.0:
-        return 1.0
     angle = float(brentq(lambda a: a - math.sin(a) * math.cos(a) - math.pi * wear_share, 0.0, math.pi, xtol=1e-14))
     missing = angle - math.sin(angle) * math.cos(angle)
     second_moment = (missing + 2 * math.sin(angle) ** 3 * math.cos(angle)) / 4

@@ -29,6 +29,7 @@ def test_private_folder_is_provided_once(
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     assert folder.stat().st_uid == os.getuid()
     assert capsys.readouterr().err.count("kernels are compiled for this run only") == 1
+    kernel_cache._remove(str(tmp_path / "gone"), os.getpid())  # no error at the exit if the user removed it
 
 
 def test_folder_of_the_user_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

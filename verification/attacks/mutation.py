@@ -9,11 +9,14 @@ import argparse
 import ast
 import contextlib
 import difflib
+import filecmp
 import hashlib
 import json
 import math
 import os
 import queue
+import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -25,6 +28,7 @@ from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +46,11 @@ SUFFICIENT = 0.9
 """Share of killed mutants that every folder needs."""
 Z_95 = 1.959964
 SLOWER, EXTRA_S = 3.0, 30.0
-"""A mutant whose tests take longer than this multiple of their time, and this time [s], counts as killed."""
+"""A mutant whose tests need more than this multiple of their processor time, and this time [s], counts as killed."""
+IDLE = 20.0
+"""A mutant whose tests take this multiple of their largest processor time waits for ever, and counts as killed."""
+NOT_FOR_TESTS = re.compile(r"\s*(@dataclass\(|if TYPE_CHECKING:)")
+"""Lines for the type checker, which finds a wrong import and an assignment to a frozen field."""
 OPERATORS = tuple(
     f"core/{name}"
     for name in (
@@ -102,21 +110,25 @@ class Worker:
         settings = {"PYTHONPATH": path, "HYPOTHESIS_STORAGE_DIRECTORY": str(place / ".hypothesis")}
         return cls(place, {**os.environ, **settings})
 
-    def run_tests(self, files: list[str], limit_s: float | None) -> int | None:
-        """Exit code of pytest on test files; None if it takes longer than the limit [s]."""
+    def run_tests(self, files: list[str], limit_s: float) -> tuple[int | None, float]:
+        """Exit code of pytest on test files, and its processor time [s], which other programs hardly change.
+
+        The code is None if a process needs more time than the limit [s], or if the tests wait for ever.
+        """
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
         process = subprocess.Popen(
             command, cwd=self.place, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             start_new_session=True,
         )  # fmt: skip
-        try:
-            return process.wait(limit_s)
-        except subprocess.TimeoutExpired:
-            return None
-        finally:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+        resource.prlimit(process.pid, resource.RLIMIT_CPU, (math.ceil(limit_s), math.ceil(limit_s) + 5))
+        clock = threading.Timer(IDLE * limit_s, process.kill)
+        clock.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        clock.cancel()
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.returncode = code = os.waitstatus_to_exitcode(status)
+        return None if code in {-signal.SIGXCPU, -signal.SIGKILL} else code, usage.ru_utime + usage.ru_stime
 
     def write(self, file: str, source: str) -> None:
         """Write a source, and remove its compiled files, which Python compares by the second only."""
@@ -136,17 +148,24 @@ class RelatedTests:
         for path in files:
             for name in names.keys() & set(_list_imports(path)):
                 self.importers.setdefault(names[name], set()).add(path.relative_to(root).as_posix())
+        tests = [path.relative_to(root).as_posix() for path in files if path.name.startswith("test_")]
+        self.texts = {name: (root / name).read_text("utf-8") for name in tests if name.startswith(TESTED)}
 
-    def select(self, file: str) -> Iterator[str]:
-        """Test files that import a file, the nearest first, those of the same folder before others."""
-        seen, waiting = {file}, deque([file])
-        folder = f"tests/{Path(file).parent.as_posix()}"
+    def select(self, file: str, names: list[str]) -> list[str]:
+        """Test files that import a file: the one of its name, those with a name of the definition, the nearest."""
+        distance, waiting = {file: 0}, deque([file])
         while waiting:
-            level = [importer for name in waiting for importer in self.importers.get(name, ()) if importer not in seen]
-            waiting = deque(dict.fromkeys(level))
-            seen.update(waiting)
-            tests = [name for name in waiting if name.startswith(TESTED) and Path(name).name.startswith("test_")]
-            yield from sorted(tests, key=lambda name: (not name.startswith(folder), name))
+            name = waiting.popleft()
+            for importer in self.importers.get(name, set()) - distance.keys():
+                distance[importer] = distance[name] + 1
+                waiting.append(importer)
+        path, mention = Path(file), re.compile(rf"\b({'|'.join(names)})\b")
+
+        def rank(test: str) -> tuple[bool, bool, int, bool, str]:
+            named, mentioned = Path(test).name == f"test_{path.name}", mention.search(self.texts[test]) is not None
+            return not named, not mentioned, distance[test], Path(test).parent != "tests" / path.parent, test
+
+        return sorted(self.texts.keys() & distance.keys(), key=rank)
 
 
 def _module_name(path: Path) -> str:
@@ -167,6 +186,13 @@ def _list_imports(path: Path) -> Iterator[str]:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
+def name_definitions(source: str, line: int) -> list[str]:
+    """Name of the public function or class at a line; elsewhere those of all public ones of the file."""
+    public = [n for n in ast.parse(source).body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
+    changed = [node.name for node in public if node.lineno <= line <= (node.end_lineno or 0)]
+    return changed or [node.name for node in public]
+
+
 def list_folders(root: Path) -> dict[str, list[str]]:
     """Files with code of every folder below `model` and `conformance`, subfolders included; no compiled kernels."""
     folders: dict[str, list[str]] = {}
@@ -181,17 +207,34 @@ def list_folders(root: Path) -> dict[str, list[str]]:
 
 def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
     """All mutants of a file; annotations of types hold none of these operators but numbers of a literal."""
-    nodes = list(ast_nodes(get_ast((root / file).read_text("utf-8"))))
+    source = (root / file).read_text("utf-8")
+    lines, nodes = source.splitlines(), list(ast_nodes(get_ast(source)))
     for name in OPERATORS:
         operator = get_operator(name)()
-        places = sum(len(list(operator.mutation_positions(node))) for node in nodes)
-        yield from (Mutant(file, name, occurrence) for occurrence in range(places))
+        places = [begin for node in nodes for begin, _ in operator.mutation_positions(node)]
+        for occurrence, (line, _) in enumerate(places):
+            if NOT_FOR_TESTS.match(lines[line - 1]) is None:
+                yield Mutant(file, name, occurrence)
 
 
-def draw_sample(root: Path, files: list[str], size: int) -> list[Mutant]:
-    """Mutants of a folder in the order of their digests."""
-    mutants = (mutant for file in files for mutant in list_mutants(root, file))
-    return sorted(mutants, key=lambda mutant: mutant.order)[:size]
+def draw_sample(root: Path, files: list[str], size: int, known: list[dict[str, str]]) -> list[Mutant]:
+    """First mutants of a folder in the order of their digests, without those that are listed as equivalent."""
+
+    def is_equivalent(mutant: Mutant) -> bool:
+        listed = [[f"-{item['line']}", f"+{item['mutant']}"] for item in known if item["file"] == mutant.file]
+        changes = list_changes(root, mutant)[1:] if listed else []
+        return [line[0] + line[1:].strip() for line in changes] in listed
+
+    mutants = sorted((m for file in files for m in list_mutants(root, file)), key=lambda mutant: mutant.order)
+    return list(islice((mutant for mutant in mutants if not is_equivalent(mutant)), size))
+
+
+def list_changes(root: Path, mutant: Mutant) -> list[str]:
+    """Number of the changed line, the line, and the changed one."""
+    source = (root / mutant.file).read_text("utf-8")
+    changed = mutant.mutate(source)
+    lines = difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
+    return [line for line in lines if not line.startswith(("---", "+++"))]
 
 
 def wilson_interval(killed: int, total: int) -> tuple[float, float]:
@@ -216,9 +259,13 @@ class Run:
     out: Path
     tests: int
     budget_s: float
+    renewed: bool = False
+    """Whether the checkout is copied anew; only mutants that were killed in files that are as before are kept."""
 
     def __post_init__(self) -> None:
         self.snapshot = self.out / "snapshot"
+        if self.renewed:
+            self._forget()
         if not self.snapshot.exists():
             partial = self.out / "snapshot.partial"
             shutil.rmtree(partial, ignore_errors=True)
@@ -235,40 +282,43 @@ class Run:
         self.times = {row["file"]: row for row in _read_rows(self.out / "tests.jsonl")}
         self.outcomes = {row["order"]: row for row in _read_rows(self.out / "outcomes.jsonl")}
 
+    def _forget(self) -> None:
+        """Remove the copies of the checkout and the outcomes that new sources or tests may change."""
+        rows = _read_rows(self.out / "outcomes.jsonl")
+        same = filecmp.cmpfiles(self.snapshot, CHECKOUT, {row["file"] for row in rows}, shallow=False)[0]
+        rows = [row for row in rows if row["outcome"] == "killed" and row["file"] in same]
+        (self.out / "outcomes.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows), "utf-8")
+        (self.out / "tests.jsonl").unlink(missing_ok=True)
+        for folder in (self.snapshot, *self.out.glob("worker-*")):
+            shutil.rmtree(folder, ignore_errors=True)
+
     def judge(self, mutant: Mutant, worker: Worker) -> None:
         """Run the related tests of a mutant, and store its outcome."""
-        tests, spent = [], 0.0
-        for file in self.related.select(mutant.file):
+        source = (self.snapshot / mutant.file).read_text("utf-8")
+        diff = list_changes(self.snapshot, mutant)
+        tests: dict[str, float] = {}
+        for file in self.related.select(mutant.file, name_definitions(source, int(re.findall(r"\d+", diff[0])[0]))):
             seconds = self._time_tests(file, worker)
-            if seconds is not None and spent + seconds <= self.budget_s:
-                tests.append(file)
-                spent += seconds
+            if seconds is not None and sum(tests.values()) + seconds <= self.budget_s:
+                tests[file] = seconds
             if len(tests) == self.tests:
                 break
-        source = (self.snapshot / mutant.file).read_text("utf-8")
-        changed = mutant.mutate(source)
-        worker.write(mutant.file, changed)
+        worker.write(mutant.file, mutant.mutate(source))
         try:
-            code = worker.run_tests(tests, SLOWER * spent + EXTRA_S) if tests else 0
+            code, _ = worker.run_tests([*tests], SLOWER * sum(tests.values()) + EXTRA_S) if tests else (0, 0.0)
         finally:
             worker.write(mutant.file, source)
-        diff = [
-            line
-            for line in difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
-            if not line.startswith(("---", "+++"))
-        ]
         outcome = "untested" if not tests else "timeout" if code is None else "survived" if code == 0 else "killed"
-        row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": tests}
+        row = {"order": mutant.order, **vars(mutant), "outcome": outcome, "diff": diff, "tests": list(tests)}
         with self.lock:
             self.outcomes[mutant.order] = row
             _append_row(self.out / "outcomes.jsonl", row)
 
     def _time_tests(self, file: str, worker: Worker) -> float | None:
-        """Time of a test file without a mutant [s]; None if it fails, has no test, or exceeds the budget."""
+        """Processor time of a test file without a mutant [s]; None if it fails, has no test, or exceeds the budget."""
         if file not in self.times:
-            begin = time.perf_counter()
-            code = worker.run_tests([file], 2 * self.budget_s + EXTRA_S)
-            row = {"file": file, "seconds": time.perf_counter() - begin, "passed": code == 0}
+            code, seconds = worker.run_tests([file], 2 * self.budget_s + EXTRA_S)
+            row = {"file": file, "seconds": seconds, "passed": code == 0}
             with self.lock:
                 self.times[file] = row
                 _append_row(self.out / "tests.jsonl", row)
@@ -287,12 +337,6 @@ def _read_rows(path: Path) -> list[dict[str, Any]]:
 def _append_row(path: Path, row: dict[str, Any]) -> None:
     with path.open("a", encoding="utf-8") as file:
         file.write(f"{json.dumps(row)}\n")
-
-
-def is_equivalent(row: dict[str, Any], known: list[dict[str, str]]) -> bool:
-    """Whether a survivor is listed as a change that no test can notice."""
-    old, new = ([line[1:].strip() for line in row["diff"] if line.startswith(sign)] for sign in "-+")
-    return any([item["line"]] == old and [item["mutant"]] == new and item["file"] == row["file"] for item in known)
 
 
 def report(folder: str, rows: list[dict[str, Any]]) -> bool:
@@ -315,12 +359,13 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=60, help="size of the sample of each folder")
     parser.add_argument("--folders", nargs="*", help="default: all")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--tests", type=int, default=4, help="largest number of test files of a mutant")
-    parser.add_argument("--budget", type=float, default=45.0, help="largest time of the tests of a mutant [s]")
+    parser.add_argument("--tests", type=int, default=8, help="largest number of test files of a mutant")
+    parser.add_argument("--budget", type=float, default=60.0, help="largest processor time of these [s]")
+    parser.add_argument("--renew", action="store_true", help="copy the checkout anew, and judge what it may change")
     parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    run = Run(options.out.resolve(), options.tests, options.budget)
+    run = Run(options.out.resolve(), options.tests, options.budget, options.renew)
     known = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text("utf-8"))["equivalent"]
     workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     for number in range(options.jobs):
@@ -339,11 +384,10 @@ def main() -> int:
     for folder, files in list_folders(run.snapshot).items():
         if options.folders and folder not in options.folders:
             continue
-        sample = draw_sample(run.snapshot, files, options.mutants)
+        sample = draw_sample(run.snapshot, files, options.mutants, known)
         with ThreadPoolExecutor(options.jobs) as pool:
             list(pool.map(judge, sample))
         rows = [run.outcomes[mutant.order] for mutant in sample if mutant.order in run.outcomes]
-        rows = [row for row in rows if not is_equivalent(row, known)]
         sufficient = (not rows or report(folder, rows)) and sufficient
     return 0 if sufficient else 1
 

@@ -50,6 +50,10 @@ def test_quantities_follow_from_the_graded_record_and_no_other(case_250: Case, r
     assert (quantities.outcome, digest.outcome) == ("proved", "proved")
     assert "largest relative difference 0.0e+00" in quantities.statement
     assert "wave.h5 is the graded record" in digest.statement
+    content = results.to_dict()
+    content["cases"][0]["record"]["state"] = "contradicted"
+    changed, _ = check_record_quantities(Results.model_validate(content), record_file)
+    assert "state of the record 'contradicted' stated" in changed.details[0]
     other = Wave(mean=118.0).record(case_250)
     write_record(record_file, other, case=case_250.id, system={"name": "wave", "version": "1"}, run={})
     quantities, digest = check_record_quantities(results, record_file)
@@ -85,7 +89,11 @@ def test_rerun_repeats_every_number(static_results: Results) -> None:
     [changed] = check_rerun(change_quantity(static_results, "elasticity_mm_N", 1 + 1e-12))
     assert changed.outcome == "contradicted"
     assert "quantities, 0, elasticity_mm_N" in changed.details[0]
-    platform = static_results.platform.model_copy(update={"machine": "aarch64"})
+
+
+@pytest.mark.parametrize("key", ["machine", "numba"])
+def test_rerun_elsewhere_is_compared_within_rounding(static_results: Results, key: str) -> None:
+    platform = static_results.platform.model_copy(update={key: "another"})
     elsewhere = change_quantity(static_results.model_copy(update={"platform": platform}), "elasticity_mm_N", 1 + 1e-8)
     [near], [far] = check_rerun(elsewhere), check_rerun(change_quantity(elsewhere, "elasticity_mm_N", 1 + 1e-5))
     assert (near.outcome, far.outcome) == ("proved", "contradicted")

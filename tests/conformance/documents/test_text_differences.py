@@ -1,6 +1,11 @@
 """Quotations of two different texts show their first difference."""
 
-from pantocheck.conformance.documents.authenticity_check import QUOTED_CHARACTERS, compare_lines, quote_difference
+from pantocheck.conformance.documents.authenticity_check import (
+    QUOTED_CHARACTERS,
+    compare_lines,
+    quote_difference,
+    shorten_details,
+)
 
 LONG = (
     "This is a self-declared conformance report, in the style of EN 50318. It is not a certification by a third party."
@@ -20,3 +25,8 @@ def test_texts_are_quoted_around_their_difference() -> None:
     first, second = quote_difference("a" * 200 + "b" * 200, "a" * 200 + "c" * 200)
     assert first != second
     assert max(map(len, (first, second))) <= QUOTED_CHARACTERS + len("'…'…")
+
+
+def test_rest_of_a_long_list_is_counted() -> None:
+    for count, last in ((12, "11"), (15, "and 3 more")):
+        assert shorten_details([*map(str, range(count))])[-1] == last

@@ -71,6 +71,8 @@ def test_claims_on_lines_spacing_and_inputs_need_runs_that_have_them() -> None:
     line = claim("line", "A")
     assert judge_claim(line, [line], [run(1, 160, "B")]).verdict == "skip"
     assert judge_claim(line, [line], [run(1, 160, "A")]).evidence == ["pair/1"]
+    unjudged = Evidence(id="1", line="A", pantographs=["P"], speed_km_h=160, spacing_m=[], inputs={})
+    assert judge_claim(claim("line", "A"), [], [unjudged]).verdict == "skip"
     spacing = claim("spacing", claimed=(85.0, 200.0))
     single = [run(1, 160)]
     assert judge_claim(spacing, [spacing], single).verdict == "skip"
@@ -111,6 +113,12 @@ def test_missing_steps_prevent_a_pass_and_informative_ones_decide_nothing() -> N
     ]
     assert judge_procedure(steps) == "pass"
     assert judge_procedure(steps[:1]) == "info"
+
+
+def test_every_claim_is_decided() -> None:
+    claims = [claim("line", name) for name in "AB"]
+    decided = decide_procedure(build_procedure().model_copy(update={"claims": claims}), [], accepted=False)
+    assert [(item.name, item.verdict) for item in decided.claims] == [("A", "skip"), ("B", "skip")]
 
 
 def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClaim:

@@ -35,8 +35,9 @@ def document_facts(results: dict[str, Any]) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("", "Give at least one of report_number, issuer"),
+        ("", r"key report_number: no key is given[\s\S]*Give at least one of report_number, issuer"),
         ('issuer = ""', "at least 1 character"),
+        ('remarks = ""', "at least 1 character"),
         (f'issuer = "{"x" * 201}"', "at most 200 characters"),
         (f'remarks = "{"x" * 2001}"', "at most 2000 characters"),
         (r'contact = "a\u202eb"', "key contact: found the character U\\+202E"),

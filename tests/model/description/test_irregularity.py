@@ -39,6 +39,7 @@ def test_spectrum_of_realised_heights_is_the_requested_one() -> None:
     length = 500.0
     irregularity = realise_irregularity(SPECTRUM, length, seed=7)
     heights, points = np.array(irregularity.height[:-1]), len(irregularity.height) - 1
+    assert points == 16 * 0.5 * length  # of the shortest wavelength of 2 m
     frequency, density = periodogram(heights, points / length, detrend=False)
     inside = (frequency > 0.0201) & (frequency < 0.4999)
     requested = np.exp(np.interp(np.log(frequency[inside]), np.log(SPECTRUM.frequency), np.log(SPECTRUM.density)))

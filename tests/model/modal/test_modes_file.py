@@ -24,9 +24,25 @@ def test_rounded_mode_equals_the_mode_of_the_file(tmp_path: Path) -> None:
     assert mode.frequency_Hz == 1.3333333
 
 
-@pytest.mark.parametrize("value", ["NaN", "Infinity"])
-def test_values_that_are_not_finite_are_refused(tmp_path: Path, value: str) -> None:
-    text = '[{"frequency_Hz": %s, "damping_ratio": 0.005, "damping_ratio_std": 0.0, "sensor_shape": []}]'
-    (tmp_path / "modes.json").write_text(text % value, encoding="utf-8")
-    with pytest.raises(InputError, match="frequency_Hz"):
-        read_modes(tmp_path / "modes.json")
+STATED = {"frequency_Hz": "0.5", "damping_ratio": "0.9", "damping_ratio_std": "0.0", "sensor_shape": "[]"}
+
+
+def read_values(path: Path, values: dict[str, str]) -> Mode:
+    text = ", ".join(f'"{key}": {value}' for key, value in values.items())
+    path.write_text("[{" + text + "}]", encoding="utf-8")
+    return read_modes(path)[0]
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        *(("frequency_Hz", value) for value in ("NaN", "Infinity", "0.0")),
+        *(("damping_ratio", value) for value in ("0.0", "1.0")),
+        ("damping_ratio_std", "-1e-9"),
+        ("line", '{"spans_m": [NaN]}'),
+    ],
+)
+def test_values_that_no_decay_has_are_refused(tmp_path: Path, key: str, value: str) -> None:
+    assert read_values(tmp_path / "modes.json", STATED).certain
+    with pytest.raises(InputError, match=key):
+        read_values(tmp_path / "modes.json", STATED | {key: value})

@@ -15,7 +15,7 @@ import typer
 
 from helpers.case_fixtures import EditedCase
 from helpers.command_line import SKIPPER, pantocheck
-from pantocheck.conformance.app.commands import run_command, system_self_test_command
+from pantocheck.conformance.app.commands import line_file_command, run_command, system_self_test_command
 from pantocheck.conformance.app.commands.command_list import COMMANDS
 from pantocheck.conformance.app.commands.guard import guard_command
 from pantocheck.conformance.app.schemas import build_schema
