@@ -194,7 +194,8 @@ class IdentifiedLines:
         axes = provide_axes(axes)
         certain = [mode for mode in self.modes if mode.certain and not mode.lateral]
         keys = ("frequency_Hz", "damping_ratio", "damping_ratio_std")
-        _draw_intervals(axes, *([getattr(mode, key) for mode in certain] for key in keys), capsize=2)
+        frequency, ratio, std = ([getattr(mode, key) for mode in certain] for key in keys)
+        _draw_intervals(axes, frequency, ratio, std, capsize=2)
         axes.set(xlabel="frequency [Hz]", ylabel="damping ratio [%]")
         axes.legend()
         return axes
