@@ -144,9 +144,6 @@ def test_products_of_remainders_are_those_of_householder(condition: float, toler
 # Local fit around a frequency, and the trial poles and contributions that it gives.
 
 
-DT = 0.05
-
-
 def build_data(poles: ComplexArray, duration: float, channels: int = 2, seed: int = 1) -> DataBlock:
     """Block of decays without noise."""
     random = np.random.default_rng(seed)

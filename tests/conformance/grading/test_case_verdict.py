@@ -253,14 +253,14 @@ def test_baseline_never_improves_a_verdict(
 # Selection: requested verdicts by system, and the cases of a run without a list of cases.
 
 
-TWIN, PUBLISHED = "en50318-2018/ac-simple/320-twin", "en50318-2002/250"
+TWIN, PRINTED = "en50318-2018/ac-simple/320-twin", "en50318-2002/250"
 BOTH = ("criteria", "verification")
 
 
 @pytest.fixture
 def verifiable(state_converged: StateConverged, case_250: Case) -> None:
     """Converged values for a case with published limits and for one without any."""
-    for name in (PUBLISHED, TWIN):
+    for name in (PRINTED, TWIN):
         renamed = case_250.file.model_copy(update={"id": name})
         state_converged(Case(renamed, case_250.line, case_250.pantographs, ()), {})
 
@@ -268,13 +268,13 @@ def verifiable(state_converged: StateConverged, case_250: Case) -> None:
 @pytest.mark.parametrize(
     ("choice", "system", "cases", "expected"),
     [
-        (None, "builtin", [PUBLISHED], ("criteria",)),
-        (None, "record:folder", [PUBLISHED], BOTH),
-        (None, "command:program", ["own", PUBLISHED], BOTH),
+        (None, "builtin", [PRINTED], ("criteria",)),
+        (None, "record:folder", [PRINTED], BOTH),
+        (None, "command:program", ["own", PRINTED], BOTH),
         (None, "record:folder", ["own"], ("criteria",)),
         ("both", "builtin", ["own"], BOTH),
-        ("verification", "builtin", [PUBLISHED], ("verification",)),
-        ("criteria", "record:folder", [PUBLISHED], ("criteria",)),
+        ("verification", "builtin", [PRINTED], ("verification",)),
+        ("criteria", "record:folder", [PRINTED], ("criteria",)),
     ],
 )
 @pytest.mark.usefixtures("verifiable")
@@ -303,7 +303,7 @@ def test_default_run_of_another_system_takes_the_cases_with_converged_values() -
 def test_verification_takes_no_other_case_than_required_or_named_ones() -> None:
     """The static check that the twin requires has no converged values here: it is shown for information."""
     prepared = prepare_plan(Plan(verdicts="verification"))
-    assert ids(prepared) == {PUBLISHED, TWIN, "en50318-2018/ac-simple/static"}
+    assert ids(prepared) == {PRINTED, TWIN, "en50318-2018/ac-simple/static"}
     assert prepared.participation.information == ("en50318-2018/ac-simple/static",)
     # A case that the user names has no limit that counts: the criteria stay informative.
     assert prepare_plan(Plan(cases=(TWIN,), verdicts="both")).participation.verification_only == ()

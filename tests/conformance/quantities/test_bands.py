@@ -62,6 +62,7 @@ def test_band_scales_with_the_force_and_ignores_its_mean(seed: int, scale: float
         (124.0, 2000, (20, 50), None, "record has 124 samples per second; a band up to 50 Hz needs at least 125"),
         (RATE, 400, (0, 5), None, None),  # 5 Hz times 0.8 s: four spectral lines
         (RATE, 399, (0, 5), None, "a band of 5 Hz needs at least"),
+        (RATE, 60, (20, 50), None, "a band of 30 Hz needs at least"),
         (RATE, 300, (0, 5), None, r"the analysis section lasts 0\.6 s; a band of 5 Hz needs at least 0\.8 s"),
         (RATE, 2000, (5, 20), 20.0, None),
         (RATE, 2000, (5, 20), (1 - CUTOFF_TOLERANCE) * 20, None),  # a thousandth for printed numbers

@@ -30,6 +30,7 @@ def change(
 FAULTS: dict[str, tuple[str, Callable[[Record, int], Record]]] = {
     "starts inside the section": ("coverage", lambda record, row: change(record, "position", row, lambda x: x + 400.0)),
     "too fast": ("motion", lambda record, row: change(record, "position", row, lambda x: x[0] + 1.01 * (x - x[0]))),
+    "too slow": ("motion", lambda record, row: change(record, "position", row, lambda x: x[0] + 0.992 * (x - x[0]))),
     "shifted": ("support passing", lambda record, row: change(record, "position", row, lambda x: x + 10.0)),
     "not filtered": (
         "roll-off",
