@@ -16,7 +16,7 @@ from helpers.cheap_campaign import speed_design
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, check_variation, parse_variation
 from pantocheck.conformance.campaigns.campaign_preparation import PreparedCampaign, prepare_campaign
-from pantocheck.conformance.campaigns.distributions import TruncatedNormal
+from pantocheck.conformance.campaigns.distributions import Normal, TruncatedNormal
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import validate_model
 
@@ -119,6 +119,13 @@ def test_truncated_quantiles_are_exact_in_both_tails(lower: float, upper: float)
     tail = TruncatedNormal(kind="truncated-normal", mean=mean, std=std, lower=lower, upper=upper)
     exact = stats.truncnorm.ppf(probability, (lower - mean) / std, (upper - mean) / std, mean, std)
     assert_allclose(tail.quantiles(probability), exact, rtol=1e-9)
+
+
+def test_normal_quantiles_rise_and_stay_finite() -> None:
+    """97.5 % of the values lie below the mean plus 1.96 standard deviations."""
+    values = Normal(kind="normal", mean=10.0, std=2.0).quantiles(np.array([0.025, 0.975, 1.0]))
+    assert_allclose(values[:2], [10 - 2 * 1.95996, 10 + 2 * 1.95996], rtol=1e-5)
+    assert values[1] < values[2] < np.inf
 
 
 def test_plan_of_a_hundred_thousand_runs_is_computed_run_by_run() -> None:

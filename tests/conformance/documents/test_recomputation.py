@@ -145,6 +145,26 @@ def test_record_of_a_passage_has_a_state(ungraded: dict[str, Any], changes: dict
     assert any("the state of the record is missing" in text for text in gaps) is found
 
 
+@pytest.mark.parametrize(("start", "key"), [("differs", "warnings"), ("not stated", "notes")])
+def test_remark_on_the_start_stands_at_its_place(ungraded: dict[str, Any], start: str, key: str) -> None:
+    """A start that differs is a warning; a reader of the warnings alone must not miss it."""
+    case = ungraded["cases"][0]
+    case["record"] |= {"start": start, "start_text": "Another start."}
+    for texts, missing in (([], True), (["Another start."], False)):
+        case[key] = texts
+        gaps = find_gaps(Results.model_validate(ungraded))
+        assert any("the remark on the start of the record is missing" in text for text in gaps) is missing
+
+
+def test_extremes_of_a_long_record_state_no_mean(ungraded: dict[str, Any]) -> None:
+    """Samples above the mean alone, at uneven places: a curve of extremes has another mean than its record."""
+    trace = ungraded["cases"][0]["traces"]["2"]
+    kept = [n for n, force in enumerate(trace["force_20_N"]) if force > trace["mean_N"]]
+    trace |= {key: [trace[key][n] for n in kept] for key in ("position_m", "force_N", "force_20_N")}
+    trace["histogram"] = None
+    assert recompute(ungraded) == []
+
+
 def test_results_without_cases_lack_the_verdict_of_the_criteria(ungraded: dict[str, Any]) -> None:
     """It may be absent only if every case, and there is one, takes part in the verification alone."""
     ungraded["criteria_verdict"] = None

@@ -1,5 +1,6 @@
 """Quotations of two different texts show their first difference."""
 
+from pantocheck.conformance.documents.authenticity_check import shorten_details
 from pantocheck.conformance.documents.number_comparison import QUOTED_CHARACTERS, compare_lines, quote_difference
 
 LONG = (
@@ -26,3 +27,8 @@ def test_a_longer_text_is_cut_behind_its_difference() -> None:
     first, second = quote_difference("a" * 200 + "b" * 200, "a" * 200 + "c" * 200)
     assert first != second
     assert max(map(len, (first, second))) <= QUOTED_CHARACTERS + len("'…'…")
+
+
+def test_rest_of_a_long_list_is_counted() -> None:
+    for count, last in ((12, "11"), (15, "and 3 more")):
+        assert shorten_details([*map(str, range(count))])[-1] == last

@@ -39,6 +39,12 @@ def test_counter_gives_the_distance_within_one_sample(direction: int) -> None:
     assert (np.diff(distance[known]) > 0).all()
 
 
+def test_standing_train_has_no_distance() -> None:
+    """One pulse per sample between two stands: one sample is extrapolated at each end."""
+    distance = count_distance(np.r_[np.zeros(50), np.arange(1.0, 80.0), np.full(50, 79.0)], 0.4)
+    assert np.flatnonzero(np.isfinite(distance)).tolist() == [*range(49, 130)]
+
+
 def test_pulse_train_gives_the_distance_within_a_part_of_a_sample() -> None:
     """A sensor of 5 V with noise of 0.2 V, and a wave of 1 m: edges are interpolated, so that 2 cm are left."""
     noise = 0.2 * np.random.default_rng(2).standard_normal(TIME.size)

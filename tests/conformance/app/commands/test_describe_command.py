@@ -56,6 +56,8 @@ def test_facts_and_sidecar_of_a_logger_file(logger: Path) -> None:
     for text in ("encoding Windows-1252", "separator semicolon", "decimal comma", "| Strecke;Süd", "500 Hz", "text or"):
         assert text in result.output
     assert "constant" in result.output
+    (unused,) = [line for line in sidecar.read_text("utf-8").splitlines() if line.startswith("# not used")]
+    assert ("Temperatur" in unused, "Kraft" in unused) == (True, False)
     decided = {"speed_km_h": "252.0", "filter_applied_Hz": '"none"', "evaluated_m": "[300.0, 1380.0]"}
     complete(sidecar, {**decided, "spacing_m": "[200.0]", "zero_km": "87.25", "kilometres": '"decreasing"'})
     assessed = load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
@@ -158,6 +160,12 @@ def test_suspicious_contents_are_named() -> None:
     assert remarks[4] == ("constant",)
     # A speed with a resolution of 0.1 km/h is no dead channel.
     assert remarks[5][0].startswith(f"changes seldom: 11 different values in {TIME.size} samples, at least 0.1 apart. ")
+
+
+def test_only_monotone_channels_have_a_trend() -> None:
+    values = np.column_stack([TIME, -TIME, 0 * TIME, np.sin(PLACE)])
+    facts = list_channel_facts(MeasuredTable("a.csv", values, tuple(TableColumn(name) for name in "abcd")))
+    assert [fact.trend for fact in facts] == [1, -1, 0, 0]
 
 
 def test_gaps_and_repetitions_of_the_time_are_named() -> None:
