@@ -49,8 +49,8 @@ SLOWER, EXTRA_S = 3.0, 30.0
 """A mutant whose tests need more than this multiple of their processor time, and this time [s], counts as killed."""
 IDLE = 20.0
 """A mutant whose tests take this multiple of their largest processor time waits for ever, and counts as killed."""
-NOT_FOR_TESTS = re.compile(r"\s*(@dataclass\(|if TYPE_CHECKING:)")
-"""Lines for the type checker, which finds a wrong import and an assignment to a frozen field."""
+NOT_FOR_TESTS, ASSERTION = re.compile(r"\s*@dataclass\(|if TYPE_CHECKING:"), re.compile(r"\bzip\(.*\bstrict=$")
+"""Lines for the type checker, which finds assignments to frozen fields; text before an assertion of equal lengths."""
 OPERATORS = tuple(
     f"core/{name}"
     for name in (
@@ -212,8 +212,9 @@ def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
     for name in OPERATORS:
         operator = get_operator(name)()
         places = [begin for node in nodes for begin, _ in operator.mutation_positions(node)]
-        for occurrence, (line, _) in enumerate(places):
-            if NOT_FOR_TESTS.match(lines[line - 1]) is None:
+        for occurrence, (line, column) in enumerate(places):
+            text = lines[line - 1]
+            if not NOT_FOR_TESTS.match(text) and not ASSERTION.search(text[:column]):
                 yield Mutant(file, name, occurrence)
 
 

@@ -7,6 +7,7 @@ from pydantic import ValidationError
 
 from helpers.example_results import example
 from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import Results
 
 
@@ -29,3 +30,12 @@ def test_case_without_a_fact_of_its_run_is_refused(key: str) -> None:
     del results["cases"][0]["run"][key]
     with pytest.raises(ValidationError, match=key):
         Results.model_validate(results)
+
+
+@pytest.mark.parametrize(("key", "wrong"), [("drift_pct", 0.0), ("values", -1), ("drifted", -1)])
+def test_impossible_comparison_with_a_baseline_is_refused(key: str, wrong: float) -> None:
+    """A drift of half a percent may be accepted, but not one of zero: every rounding would be a drift."""
+    stated = {"verdict": "info", "name": "b.json", "drift_pct": 0.5, "values": 0, "drifted": 0}
+    assert BaselineComparison.model_validate(stated).drift_pct == 0.5
+    with pytest.raises(ValidationError, match=key):
+        BaselineComparison.model_validate(stated | {key: wrong})

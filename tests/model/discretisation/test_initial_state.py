@@ -125,6 +125,14 @@ def test_wire_is_level_at_an_arm_that_carries_its_share_and_sags_at_one_that_doe
     assert -1.35 * GRAVITY * 10.0**2 / (8 * 20e3) < at_arm[1] < -6e-3
 
 
+def test_dropper_is_as_stiff_as_stated() -> None:
+    """EA over its length, or the stated stiffness; without either it only carries its preload."""
+    dropper = Dropper(10.0, "messenger", "contact", axial_stiffness=200e3)
+    assert dropper.taut_stiffness(0.5) == 400e3
+    assert replace(dropper, stiffness=1e5).taut_stiffness(0.5) == 1e5
+    assert replace(dropper, axial_stiffness=None).taut_stiffness(0.5) == 0.0
+
+
 def string_statics(heights: Array) -> Array:
     """Dropper lengths of one of many equal spans, by the statics of loaded strings [m]."""
     x, span = PLACES_2018, 55.0
