@@ -14,14 +14,16 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 67_320,
+    ("model", "conformance"): 66_750,
     ("templates",): 1_550,
     ("verification",): 14_000,
-    ("tests",): 50_850,
+    ("tests",): 47_460,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
-A lower number replaces these whenever it is reached.
+A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
+commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
+`verification/`.
 """
 
 MOST_WORDS = 62_000
