@@ -9,6 +9,7 @@ from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents import repetition_check
 from pantocheck.conformance.documents.authenticity_check import compare_numbers
 from pantocheck.conformance.documents.repetition_check import check_record_quantities, check_rerun
 from pantocheck.conformance.execution.runner import run_cases
@@ -86,12 +87,23 @@ def test_rerun_repeats_every_number(static_results: Results) -> None:
     [check] = check_rerun(static_results)
     assert check.outcome == "proved"
     assert "bit for bit" in check.statement
+
+
+@pytest.fixture
+def remembered_run(static_results: Results, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Gives the run of the results instead of a new one, which has the same bits by the test above."""
+    monkeypatch.setattr(repetition_check, "run_case", lambda *_: static_results.cases[0])
+
+
+@pytest.mark.usefixtures("remembered_run")
+def test_rerun_finds_a_change_of_one_bit(static_results: Results) -> None:
     [changed] = check_rerun(change_quantity(static_results, "elasticity_mm_N", 1 + 1e-12))
     assert changed.outcome == "contradicted"
     assert "quantities, 0, elasticity_mm_N" in changed.details[0]
 
 
 @pytest.mark.parametrize("key", ["machine", "numba"])
+@pytest.mark.usefixtures("remembered_run")
 def test_rerun_elsewhere_is_compared_within_rounding(static_results: Results, key: str) -> None:
     platform = static_results.platform.model_copy(update={key: "another"})
     elsewhere = change_quantity(static_results.model_copy(update={"platform": platform}), "elasticity_mm_N", 1 + 1e-8)
