@@ -38,6 +38,15 @@ def find_kernel_cache() -> Path | None:
     return next(filter(_is_writable, (Path(__file__).parent / "__pycache__", home)), None)
 
 
+def has_kept_kernels() -> bool:
+    """Whether an earlier run has kept its compiled kernels; each cache has them in folders of their own."""
+    folder = find_kernel_cache()
+    if folder is None:
+        return False
+    beside = folder.parent if folder.name == "__pycache__" else folder
+    return any(file for depth in ("*", "*/*") for file in beside.glob(f"{depth}/recording.*.nbi"))
+
+
 def _is_writable(folder: Path) -> bool:
     """Whether a folder, or the nearest existing folder above it, can be written."""
     existing = next(path for path in (folder, *folder.parents) if os.path.exists(path))

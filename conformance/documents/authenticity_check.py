@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from itertools import zip_longest
 from typing import Literal, TypeAlias
 
@@ -153,13 +154,19 @@ CHARACTERS_BEFORE = 30
 """Number of characters quoted before the first difference of two long texts."""
 
 
+ALIGNED_LINES = 100
+"""Number of lines from the first difference within which equal lines are searched."""
+
+
 def compare_lines(stated: Sequence[str], expected: Sequence[str]) -> Iterator[str]:
-    """First line of a text that differs from the expected text."""
-    for line, other in zip_longest(stated, expected):
-        if line != other:
-            printed, follows = quote_difference(line, other)
-            yield f"{printed} is printed, {follows} follows from the results"
-            return
+    """First line of a text that differs from the expected text, is missing, or is additional."""
+    pairs = enumerate(zip_longest(stated, expected))
+    first = next((number for number, (line, other) in pairs if line != other), None)
+    if first is not None:
+        lines, others = (list(text[first : first + ALIGNED_LINES]) for text in (stated, expected))
+        _, i, i_end, j, j_end = SequenceMatcher(None, lines, others, autojunk=False).get_opcodes()[0]
+        printed, follows = quote_difference(lines[i] if i < i_end else None, others[j] if j < j_end else None)
+        yield f"{printed} is printed, {follows} follows from the results"
 
 
 def quote_difference(text: str | None, other: str | None) -> tuple[str, str]:

@@ -1,6 +1,6 @@
 """Drawings of the inputs of a case: its line at rest, in side and plan view, and the schemes of its pantographs."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -11,7 +11,6 @@ from matplotlib.lines import Line2D
 
 from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, LineShape
 from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, marker_style, render_svg
-from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.words import format_plain
@@ -169,8 +168,9 @@ def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc
     if shape is None or _find_equal(case, earlier) is not None:
         return ()
     views = "side view" if shape.plan is None else "side view and plan view"
-    masses = sum(point.symbol == "mass" for point in shape.side.points)
-    parts = f" {count_noun(masses, 'point mass', 'point masses')}." if masses else ""
+    labelled = Counter(point.symbol for point in shape.side.points if point.text)
+    numbers = ", ".join(f"{symbol} ({number})" for symbol, number in labelled.items())
+    parts = f" With texts: {numbers}." if labelled else ""
     section = case.run.evaluated_m
     ground = "" if section is None else " Grey ground: analysis section."
     caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}{ground}"

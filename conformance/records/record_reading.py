@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.measured_table import (
     EVERY_CHANNEL,
@@ -62,7 +63,8 @@ def open_record(path: Path) -> RecordSidecar | RecordSummary:
             no sidecar.
     """
     table, path = path, path.with_suffix(".toml")
-    if table != path and table.is_file() and not path.exists():
+    if table != path and not path.exists():
+        check_file(table, f"record '{table.name}'", MAX_FILE_BYTES)
         raise InputError(
             f"record '{table.name}'",
             f"its sidecar {path.name} is missing",

@@ -17,6 +17,7 @@ from typing import IO
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import KILL, adopt_orphans, end_with_parent
+from pantocheck.conformance.core.texts import DocumentationPage
 
 LONGEST_LINE = 1_000_000
 """Largest size of an answer [bytes]; numbers belong in record files."""
@@ -151,9 +152,12 @@ class Program:
 
     def _quote_errors(self) -> str:
         self._readers[1].join(0.5)
-        text = " ".join(self._errors.decode("utf-8", "replace").split())
-        shown = "".join(c if c.isprintable() else "?" for c in text)
-        return f"; end of its standard error: {shown[-300:]}" if shown else ""
+        lines = [" ".join(line.split()) for line in self._errors.decode("utf-8", "replace").splitlines()]
+        shown = ["".join(c if c.isprintable() else "?" for c in line) for line in lines if line]
+        if not shown:
+            return ""
+        before = f"; before it: {' '.join(shown[:-1])[-300:]}" if shown[1:] else ""
+        return f"; end of its standard error: {shown[-1][-300:]}{before}"
 
     def _end(self) -> None:
         if os.name == "posix":
@@ -220,6 +224,8 @@ def _keep_tail(stream: IO[bytes], tail: bytearray) -> None:
 # Argument list of a program from the text after `command:`, without a shell.
 ESCAPE = "" if os.name == "nt" else "\\"
 """Character that takes the meaning from the next one; on Windows backslashes separate folders."""
+INTERPRETERS = {".py": "python", ".m": "octave", ".jl": "julia"}
+"""Beginning of the name of the interpreter of each kind of script. Other programs may find a script elsewhere."""
 
 
 def split_arguments(text: str, base: Path) -> tuple[str, ...]:
@@ -232,7 +238,7 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
         base: Base folder of relative file names.
 
     Raises:
-        InputError: There is no command, a quote is not closed, or there is no such program.
+        InputError: There is no command, a quote is not closed, or there is no such program or script.
     """
     where, hint = f"system 'command:{text}'", "Write e.g. --system 'command:python3 adapter.py'."
     try:
@@ -248,6 +254,11 @@ def split_arguments(text: str, base: Path) -> tuple[str, ...]:
     program = shutil.which((base / parts[0]).resolve() if has_folder and _is_file(base / parts[0]) else parts[0])
     if program is None:
         raise InputError(where, f"there is no executable program {parts[0]!r}", hint)
+    script = next((Path(part) for part in parts[1:] if not part.startswith("-")), Path())
+    interpreter = INTERPRETERS.get(script.suffix)
+    if interpreter and Path(program).name.startswith(interpreter) and not _is_file(base / script):
+        hint = f"Check the path; {DocumentationPage.SYSTEMS} shows adapters to start from."
+        raise InputError(where, f"there is no file {script.name} in {(base / script).resolve().parent}", hint)
     # Links are kept: a virtual environment depends on the link to its interpreter.
     return (
         os.path.abspath(program),

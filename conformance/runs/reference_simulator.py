@@ -18,11 +18,14 @@ from pantocheck.conformance.runs.resolution import list_model_uncertainty, resol
 from pantocheck.conformance.runs.static_quantities import compute_quantities_along_line, compute_static_quantities
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model.description.failures import SimulationError
+from pantocheck.model.kernel_cache import has_kept_kernels
 
 _LOGGER = logging.getLogger(__name__)
 
 OWN_MESH, FINE_MESH, COARSE_MESH = "mesh of the case", "mesh halved", "mesh doubled"
 """Steps of a case."""
+COMPILATION = "compiling the simulator (first run only)"
+"""Step of the first run after an installation."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class ReferenceSimulator:
     def run(self, case: Case) -> Delivered:
         """Run a case, with element length and time step halved and doubled, and from other starts."""
         discretisation, steps = case.file.discretisation, _plan_steps(case)
-        delivered, uplift_forces = _deliver(case, discretisation, progress=steps.begin(OWN_MESH))
+        delivered, uplift_forces = _deliver(case, discretisation, progress=_begin_run(case, steps))
         line = discretise_line(case.line, discretisation.element_m)
         shape = build_line_shape(case.line, case.analysed_spans, line)
         refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces, steps.begin(FINE_MESH))
@@ -53,8 +56,8 @@ class ReferenceSimulator:
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
-        steps = StepSequence(_LOGGER, case.id, {OWN_MESH: 1.0})
-        return _deliver(case, case.file.discretisation, progress=steps.begin(OWN_MESH))[0]
+        steps = StepSequence(_LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 1.0})
+        return _deliver(case, case.file.discretisation, progress=_begin_run(case, steps))[0]
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,17 @@ def _plan_steps(case: Case) -> StepSequence:
     """Steps of a case, with their estimated durations in passages on the mesh of the case."""
     other_starts = () if case.is_static else list_other_starts(case)
     starts = {f"start {number}": 1.0 for number, _ in enumerate(other_starts, 1)}
-    return StepSequence(_LOGGER, case.id, {OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts})
+    return StepSequence(
+        _LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts}
+    )
+
+
+def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
+    """Begin the run on the mesh of the case; the first run of all shows its compilation until its time steps begin."""
+    progress = steps.begin(OWN_MESH)
+    if not case.is_static and not has_kept_kernels():
+        steps.begin(COMPILATION)
+    return progress
 
 
 def _run_other_starts(

@@ -135,4 +135,6 @@ def main(program):
 
 
 if __name__ == "__main__":
+    if not sys.argv[1:]:
+        sys.exit("usage: adapter.py PROGRAM [ARGUMENT ...], for example adapter.py pantocheck")
     main(sys.argv[1:])

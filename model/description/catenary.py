@@ -212,6 +212,8 @@ class PointMass:
     """Name of the wire."""
     mass: float
     """Mass [kg]."""
+    owner: str = ""
+    """Name of the element of the line that the mass belongs to."""
 
 
 @dataclass(frozen=True)
@@ -227,6 +229,8 @@ class Spring:
     """Stiffness [N/m]."""
     damping: float = 0.0
     """Damping [N s/m]."""
+    owner: str = ""
+    """Name of the element of the line that the spring belongs to."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,7 @@
-"""Trial element: insulators at the messenger supports, with a table at single supports and a symbol of its own."""
+"""Trial element: insulators at the messenger supports, with a table at single supports and a symbol of its own.
+
+Each is a mass beside a spring between the wires: model parts that elements of the suite have, too.
+"""
 
 import sys
 from collections.abc import Iterator
@@ -14,7 +17,8 @@ from pantocheck.conformance.core.features import Feature
 from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.sourced_table import SourcedTable, is_absent
 from pantocheck.conformance.line.elements.element import DrawnMark, Element
-from pantocheck.model import Catenary, Kind, PointMass
+from pantocheck.conformance.line.elements.wire import Wires
+from pantocheck.model import Catenary, Kind, PointMass, Spring
 
 REGISTRY = "pantocheck.conformance.line.elements.element_registry"
 
@@ -34,20 +38,25 @@ class Insulators(Element):
     insulator: Annotated[InsulatorTable | None, Field(exclude_if=is_absent), Feature("insulators")] = None
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
-        """Add a mass to every messenger wire at every support."""
+        """Add a mass to the messenger wire at every support, and a spring of 1 kN/m below it."""
+        places = [(support.limit.position, support) for support in self.line.layout.supports if self.insulator]
+        (upper,), (lower,) = map(self.part(Wires).wire_names, (Kind.MESSENGER_WIRE, Kind.CONTACT_WIRE))
         masses = (
-            PointMass(support.limit.position, wire.name, support.overlay("insulator", self.insulator).mass_kg)
-            for support in self.line.layout.supports
-            if self.insulator is not None
-            for wire in catenary.wires
-            if wire.kind is Kind.MESSENGER_WIRE
+            PointMass(x, upper, support.overlay("insulator", self.insulator).mass_kg, Insulators.__name__)
+            for x, support in places
         )
-        return replace(catenary, point_masses=(*catenary.point_masses, *masses))
+        springs = (Spring(x, upper, lower, 1e3, owner=Insulators.__name__) for x, _ in places)
+        return replace(
+            catenary,
+            point_masses=(*catenary.point_masses, *masses),
+            springs=(*catenary.springs, *springs),
+        )
 
     @classmethod
     def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Insulators without a text."""
-        return (DrawnMark(cls.symbol, part.wire, part.position) for part in catenary.point_masses)
+        own = (part for part in catenary.point_masses if part.owner == Insulators.__name__)
+        return (DrawnMark(cls.symbol, part.wire, part.position) for part in own)
 
 
 def register() -> None:

@@ -39,6 +39,17 @@ def test_folder_of_the_user_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert os.environ[kernel_cache.VARIABLE] == str(tmp_path)
 
 
+@pytest.mark.parametrize("folder", ["dynamics_1f", "numba/dynamics_1f"])
+def test_kernels_of_an_earlier_run_are_found(folder: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Only the outermost kernel counts: it is kept after all those that it calls."""
+    monkeypatch.setenv(kernel_cache.VARIABLE, str(tmp_path))
+    (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / folder / "vectors.dot-3.py311.nbi").touch()
+    assert not kernel_cache.has_kept_kernels()
+    (tmp_path / folder / "recording._advance-9.py311.nbi").touch()
+    assert kernel_cache.has_kept_kernels()
+
+
 @pytest.mark.parametrize(("path", "writable"), [("", True), ("a/b", True), ("program", False), ("program/a", False)])
 def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> None:
     (tmp_path / "program").touch(mode=0o755)

@@ -82,4 +82,4 @@ def schema_command(
     files = [out / f"{each}.schema.json" for each in schemas]
     for path, schema in zip(files, schemas.values(), strict=True):
         write_atomically(path, format_schema(schema).encode())
-    return CommandOutput(Text(f"{len(files)} schemas"), schemas, files=files)
+    return CommandOutput(Text(count_noun(len(files), "schema")), schemas, files=files)

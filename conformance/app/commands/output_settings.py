@@ -109,11 +109,8 @@ REPLACEMENTS = {
     "→": "->",
     "✓": "+",
     "✗": "x",
-    "\N{NO-BREAK SPACE}": " ",
-    "\N{NARROW NO-BREAK SPACE}": " ",
-    "\N{EN SPACE}": " ",
 }
-"""Symbols of the suite in ASCII; any other character becomes a question mark."""
+"""Symbols of the suite in ASCII; a space becomes a blank, any other character a question mark."""
 
 ERROR_HANDLER = "pantocheck.symbols"
 
@@ -123,7 +120,7 @@ def replace_symbols(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end]
-    return "".join(REPLACEMENTS.get(character, "?") for character in text), error.end
+    return "".join(REPLACEMENTS.get(character, " " if character.isspace() else "?") for character in text), error.end
 
 
 def accept_all_characters() -> None:

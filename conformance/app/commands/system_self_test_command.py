@@ -19,6 +19,7 @@ from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, MutantRe
 from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, NumericalResult, run_numerical_faults
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.runs.command_system import parse_command
 
 DEFAULT_CASES = ("en50318-2002/250", "en50318-2002/300")
@@ -140,7 +141,8 @@ def system_check_command(
     system = parse_command(command.removeprefix("command:"), Path.cwd(), timeout)
     check = check_adapter(system)
     gaps = sum(finding.state in ("missing", "wrong") for finding in check.findings)
-    text = "Nothing is missing." if check.passed else f"{gaps} of {len(check.findings)} findings need a correction."
+    share = f"{gaps} of {count_noun(len(check.findings), 'finding')}"
+    text = "Nothing is missing." if check.passed else f"{share} {'needs' if gaps == 1 else 'need'} a correction."
     started = f"{system.name} {system.version} started and answered."
     return CommandOutput(
         Text(text),
@@ -152,7 +154,7 @@ def system_check_command(
 
 def _build_check_tables(check: AdapterCheck) -> Iterator[RenderableType]:
     findings = ((finding.state, finding.subject, escape_text(finding.text)) for finding in check.findings)
-    yield build_table("", "subject", "finding", unbroken=("", "subject"), rows=findings)
+    yield build_table("state", "subject", "finding", unbroken=("state", "subject"), rows=findings)
     if check.values:
         numbers = ("adapter", "reference", "difference")
         values = (

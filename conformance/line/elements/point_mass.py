@@ -79,12 +79,12 @@ class PointMasses(Element):
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the masses, each to every parallel wire."""
         masses = (
-            PointMass(mass.x_m, wire.name, mass.mass_kg)
+            PointMass(mass.x_m, wire.name, mass.mass_kg, PointMasses.__name__)
             for mass in self.point_mass
             for wire in catenary.wires
             if wire.kind is KINDS[mass.wire] and wire.start < mass.x_m < wire.end
         )
-        return replace(catenary, point_masses=tuple(masses))
+        return replace(catenary, point_masses=(*catenary.point_masses, *masses))
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
         """Masses with the numbers of their wires."""
@@ -98,6 +98,7 @@ class PointMasses(Element):
                 mass_coefficient_1_s=catenary.rayleigh(kind).mass_coefficient,
             )
             for mass in catenary.point_masses
+            if mass.owner == PointMasses.__name__
             for kind in [catenary.wire(mass.wire).kind]
         )
         return {"point_masses": tuple(masses)}
@@ -105,4 +106,5 @@ class PointMasses(Element):
     @classmethod
     def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
         """Masses with their sizes."""
-        return (DrawnMark(cls.symbol, part.wire, part.position, f"{part.mass:g} kg") for part in catenary.point_masses)
+        own = (part for part in catenary.point_masses if part.owner == PointMasses.__name__)
+        return (DrawnMark(cls.symbol, part.wire, part.position, f"{part.mass:g} kg") for part in own)

@@ -79,7 +79,7 @@ class WireSprings(Element):
     def add_to_line(self, catenary: Catenary) -> Catenary:
         """Add the springs between the parallel wires at each position."""
         springs = (
-            Spring(table.x_m, upper, lower, table.stiffness_N_m, table.damping_N_s_m)
+            Spring(table.x_m, upper, lower, table.stiffness_N_m, table.damping_N_s_m, WireSprings.__name__)
             for table in self.wire_spring
             for upper, lower in _find_pairs(catenary, table.x_m)
         )
@@ -96,13 +96,15 @@ class WireSprings(Element):
                 damping_N_s_m=spring.damping,
             )
             for spring in section.line.catenary.springs
+            if spring.owner == WireSprings.__name__
         )
         return {"wire_springs": tuple(springs)}
 
     @staticmethod
     def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
         """Springs, drawn as droppers are."""
-        return (DrawnConnection(part.position, part.lower, part.upper) for part in catenary.springs)
+        own = (part for part in catenary.springs if part.owner == WireSprings.__name__)
+        return (DrawnConnection(part.position, part.lower, part.upper) for part in own)
 
 
 def _find_pairs(catenary: Catenary, position: float) -> Iterator[tuple[str, str]]:

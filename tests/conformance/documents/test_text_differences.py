@@ -27,6 +27,15 @@ def test_texts_are_quoted_around_their_difference() -> None:
     assert max(map(len, (first, second))) <= QUOTED_CHARACTERS + len("'…'…")
 
 
+def test_missing_or_additional_line_is_named_alone() -> None:
+    """Lines after it are equal, and no difference of the two texts."""
+    short, whole = ["mean", "std"], ["mean", "warning", "std"]
+    assert list(compare_lines(short, whole)) == ["nothing is printed, 'warning' follows from the results"]
+    assert list(compare_lines(whole, short)) == ["'warning' is printed, nothing follows from the results"]
+    assert list(compare_lines(whole, [*whole, "end"])) == ["nothing is printed, 'end' follows from the results"]
+    assert list(compare_lines(whole, whole)) == []
+
+
 def test_rest_of_a_long_list_is_counted() -> None:
     for count, last in ((12, "11"), (15, "and 3 more")):
         assert shorten_details([*map(str, range(count))])[-1] == last

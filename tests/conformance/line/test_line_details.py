@@ -12,6 +12,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.derived_line import build_derived_line
+from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.runs.static_quantities import first_modes
 from pantocheck.model import Irregularity, PointMass, SpectralDensity, discretise, realise_irregularity
@@ -43,7 +44,7 @@ def test_details_reach_the_model() -> None:
     assert properties(30.0) == [20e3, 1.35, 195.0]
     assert properties(80.0) == pytest.approx([20e3, 0.8 * 1.35, 0.49524 * 195.0], rel=1e-4)
     assert properties(100.2) == pytest.approx([19e3, 3.0, 900.0], rel=1e-12)
-    assert catenary.point_masses == (PointMass(92.0, "contact wire", 12.0),)
+    assert catenary.point_masses == (PointMass(92.0, "contact wire", 12.0, PointMasses.__name__),)
     assert catenary.contact_wires[0].irregularity == Irregularity((60.0, 90.0, 120.0), (0.0, 0.004, 0.001))
 
 

@@ -182,7 +182,7 @@ def test_masses_and_sensors_stand_on_their_wires_with_their_texts() -> None:
     """A section insulator of the line, and the sensors and drops of a case; neighbours share one text."""
     (case,) = select_cases(["vovan2015/mass-drop/printed"])
     catenary = build_catenary(case.line)
-    insulator = PointMass(100.0, catenary.contact_wires[0].name, 12.0)
+    insulator = PointMass(100.0, catenary.contact_wires[0].name, 12.0, PointMasses.__name__)
     line = discretise(replace(catenary, point_masses=(insulator,)), 2.0)
     marks = list_marks(case, line.catenary)
     assert marks[0] == DrawnMark(PointMasses.symbol, insulator.wire, 100.0, "12 kg")

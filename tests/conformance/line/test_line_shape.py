@@ -83,6 +83,11 @@ def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
     assert line_figures(second, (case,)) == ()
     [text] = line_reference(second, (case,))
     assert text.text == "Line: as drawn in first."
+    side = shape_250.side
+    points = [point.model_copy(update={"text": "12 kg"}) for point in side.points if point.symbol == "steady arm"]
+    marked = shape_250.model_copy(update={"side": side.model_copy(update={"points": points})})
+    [figure] = line_figures(drawn_case("marked", marked, None), ())
+    assert figure.caption.endswith(f"enlarged. With texts: steady arm ({len(points)}).")
     foreign = drawn_case("third", None, None)
     assert line_figures(foreign, (case, foreign)) == ()
     assert line_reference(foreign, (case, foreign)) == ()

@@ -242,6 +242,8 @@ def test_section_and_sidecar_of_a_table_are_those_of_its_files(written: Writer, 
     with pytest.raises(InputError, match=r"its sidecar run\.toml is missing") as error:
         open_record(path)
     assert f"pantocheck describe {path} --sidecar {path.with_suffix('.toml')}" in str(error.value)
+    with pytest.raises(InputError, match=r"record 'lost\.csv': cannot be read"):
+        open_record(tmp_path / "lost.csv")
 
 
 def test_truncated_empty_or_changed_table_is_refused(written: Writer) -> None:

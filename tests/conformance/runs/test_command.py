@@ -78,7 +78,7 @@ for line in sys.stdin:
         continue
     case, number = message["case"]["id"], message["id"]
     if how == "crash" and case.endswith("250"):
-        sys.exit("no licence\\nleft")
+        sys.exit("line 3\\nno licence left")
     if how == "abort":
         os.abort()
     if how == "hang":
@@ -261,7 +261,10 @@ def test_fault_is_the_verdict_of_its_case(program: Start, case_250: Case, how: s
 def test_record_must_name_its_case(program: Start, case_250: Case, tmp_path: Path, cases: list[Case]) -> None:
     """A record without a case may be of any run, although the program answers for this one."""
     first, second = run_cases(cases, program("crash")).cases
-    assert first.reason == "p: ended with exit code 1 before it answered; end of its standard error: no licence left"
+    assert (
+        first.reason
+        == "p: ended with exit code 1 before it answered; end of its standard error: no licence left; before it: line 3"
+    )
     assert second.reason == "p: the record is of case 'en50318-2002/250'; expected 'en50318-2002/300'"
     system = program("well")
     edit_toml(tmp_path / "record.toml", {"case": None})
@@ -383,6 +386,7 @@ def test_program_that_does_not_start_is_an_error(program: Start, cases: list[Cas
         ("no-such-program --x", "there is no executable program 'no-such-program'"),
         ("./missing.sh", "there is no executable program './missing.sh'"),
         ("sh\0", "the command is empty"),
+        ("python3 my_adapter.py --fast", "there is no file my_adapter.py in /"),
     ],
 )
 def test_invalid_command_is_refused(text: str, found: str, tmp_path: Path) -> None:

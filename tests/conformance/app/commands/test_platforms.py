@@ -137,10 +137,10 @@ def test_terminal_without_a_character_shows_a_replacement(encoding: str, monkeyp
     monkeypatch.setattr(sys, "stdout", output)
     monkeypatch.setattr(sys, "stderr", output)
     accept_all_characters()
-    print("≤ 5 − 鉄 Ω" + "".join(REPLACEMENTS), end="")
+    print("≤ 5 − 鉄 50\u2009Hz\N{NO-BREAK SPACE}Ω" + "".join(REPLACEMENTS), end="")
     output.flush()
     shown = output.buffer.getvalue().decode(encoding)  # type: ignore[attr-defined]
-    assert shown.startswith("<= 5 - ? ")
+    assert shown.replace("\N{NO-BREAK SPACE}", " ").startswith("<= 5 - ? 50 Hz ")
     assert "->" in shown
 
 
@@ -161,8 +161,8 @@ def test_command_with_windows_paths_is_split_at_blanks_only(tmp_path: Path, monk
     monkeypatch.setattr(program, "ESCAPE", "")
     monkeypatch.setattr(shutil, "which", lambda name: name)
     monkeypatch.setattr(os.path, "abspath", lambda name: name)
-    text = r'python.exe C:\work\adapter.py "D:\my files\line.toml" --drive E:\ --flag'
-    parts = ("python.exe", r"C:\work\adapter.py", r"D:\my files\line.toml", "--drive", "E:\\", "--flag")
+    text = r'simulator.exe C:\work\adapter.py "D:\my files\line.toml" --drive E:\ --flag'
+    parts = ("simulator.exe", r"C:\work\adapter.py", r"D:\my files\line.toml", "--drive", "E:\\", "--flag")
     assert program.split_arguments(text, tmp_path) == parts
     # A plan joins the arguments again, with quotes.
     assert program.split_arguments(shlex.join(parts), tmp_path) == parts

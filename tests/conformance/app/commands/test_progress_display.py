@@ -15,7 +15,14 @@ from pantocheck.conformance.app.commands.output_settings import OutputSettings, 
 from pantocheck.conformance.app.commands.progress_display import REDRAWS_PER_S, TaskProgress, follow_steps, show_line
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.step_log import StepSequence, report_remote, use_part
-from pantocheck.conformance.runs.reference_simulator import COARSE_MESH, FINE_MESH, OWN_MESH, ReferenceSimulator
+from pantocheck.conformance.runs import reference_simulator
+from pantocheck.conformance.runs.reference_simulator import (
+    COARSE_MESH,
+    COMPILATION,
+    FINE_MESH,
+    OWN_MESH,
+    ReferenceSimulator,
+)
 
 LOGGER = logging.getLogger("pantocheck.test")
 
@@ -162,14 +169,19 @@ def test_levels_and_handlers_are_restored() -> None:
     assert (root.level, root.handlers) == before
 
 
-def test_reference_simulator_reports_its_steps(caplog: pytest.LogCaptureFixture) -> None:
+@pytest.mark.parametrize("kept", [True, False])
+def test_reference_simulator_reports_its_steps(
+    kept: bool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The completed share never decreases, although the tuning of two uplift forces repeats the passage."""
+    monkeypatch.setattr(reference_simulator, "has_kept_kernels", lambda: kept)
     case = select_cases(["en50318-2018/ac-simple/275-twin"])[-1]
     short = shorten_case(case, 200.0, 0.5, 2)
     with caplog.at_level(logging.DEBUG, "pantocheck"):
         ReferenceSimulator().run(short)
     steps = [record.__dict__["step"] for record in caplog.records if "step" in record.__dict__]
-    assert list(dict.fromkeys(step.name for step in steps))[:3] == [OWN_MESH, FINE_MESH, COARSE_MESH]
+    names, first = list(dict.fromkeys(step.name for step in steps)), [] if kept else [COMPILATION]
+    assert names[: 3 + len(first)] == [OWN_MESH, *first, FINE_MESH, COARSE_MESH]
     assert {step.task for step in steps} == {case.id}
     completed = [step.completed for step in steps]
     assert completed == sorted(completed)

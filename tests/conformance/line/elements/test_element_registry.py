@@ -143,9 +143,10 @@ from pantocheck.conformance.core.features import list_features
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary, discretise_line
+from pantocheck.conformance.line.derived_line import build_derived_line
 from pantocheck.conformance.line.line_drawing import LineDrawing, paint_rows
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.line.line_shape import build_line_shape
+from pantocheck.conformance.line.line_shape import build_line_shape, list_connections
 from pantocheck.conformance.pages.line_figure import draw_line_shape
 
 line = read_model(Path("line.toml"), LineFile, "line")
@@ -153,12 +154,16 @@ imported, tree = export_and_import(Path(), Path("line.toml"))
 built = discretise_line(line, 2.0)
 drawing = LineDrawing(built, "Line", line.geometry)
 shape = build_line_shape(line, (2, 2), built)
+derived = build_derived_line(line, built)
 try:
     read_model(Path("lost.toml"), LineFile, "line")
 except InputError as error:
     lost = str(error)
 print(json.dumps({
     "masses": [mass.mass for mass in built.catenary.point_masses],
+    "springs": [spring.stiffness for spring in built.catenary.springs],
+    "derived": [len(derived.wire_springs), len(derived.point_masses)],
+    "connected": len(list_connections(built.catenary)) - len(built.catenary.droppers),
     "same": build_catenary(imported) == build_catenary(line),
     "support": tree["geometry"]["support"],
     "features": sorted({*list_features(line)} & {"insulators", "single_supports"}),
@@ -171,13 +176,21 @@ print(json.dumps({
 """Use of the trial element in a process of its own: tables, features and drawings know the elements when they load."""
 
 
+SPRING, MASS = {"x_m": 90.0, "stiffness_N_m": 5e4}, {"x_m": 90.0, "wire": "contact_wire", "mass_kg": 3.0}
+
+
 def test_new_element_takes_one_file_and_one_base_of_the_registry(tmp_path: Path) -> None:
-    """Insulators of 5 kg, at support 2 of 8 kg: a column of the line tables, a symbol of both drawings, a feature."""
+    """Insulators of 5 kg, at support 2 of 8 kg: a column of the line tables, a symbol of both drawings, a feature.
+
+    Springs and masses of another element remain its own: programs receive one of each, and one spring is drawn.
+    """
     tables = list_spans(read_toml(library_folder() / "en50318-2002" / "line.toml", "line"))
     change_keys(tables, {"geometry.span_list": tables["geometry"]["span_list"][:4]})
     tables["geometry"]["support"] = [{"number": 2, "insulator": {"mass_kg": 8.0}}]
     write_toml(tmp_path / "lost.toml", tables)
-    write_toml(tmp_path / "line.toml", tables | {"insulator": {"mass_kg": 5.0}})
+    write_toml(
+        tmp_path / "line.toml", tables | {"insulator": {"mass_kg": 5.0}, "wire_spring": [SPRING], "point_mass": [MASS]}
+    )
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
     done = subprocess.run(
         [sys.executable, "-c", TRIAL], capture_output=True, text=True, cwd=tmp_path, env=environment, check=False
@@ -186,7 +199,10 @@ def test_new_element_takes_one_file_and_one_base_of_the_registry(tmp_path: Path)
     found = json.loads(done.stdout)
     assert found.pop("lost").startswith("line 'lost.toml', key geometry.support[1].insulator")
     assert found == {
-        "masses": [5.0, 8.0, 5.0],
+        "masses": [3.0, 5.0, 8.0, 5.0],
+        "springs": [5e4, 1e3, 1e3, 1e3],
+        "derived": [1, 1],
+        "connected": 1,
         "same": True,
         "support": [{"number": 2, "insulator": {"mass_kg": 8.0}}],
         "features": ["insulators", "single_supports"],
