@@ -132,7 +132,7 @@ SMALLEST_SPREAD = 1e-4
 """Smallest spread of a drawn value relative to its size: a tuned mean force differs by less between the runs."""
 
 
-def drop_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) -> list[EvaluatedValue]:
+def leave_out_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) -> list[EvaluatedValue]:
     """Values that have a limit or differ between the runs: a constant value needs no chart."""
     differing = {
         name

@@ -133,7 +133,7 @@ def refuse_other_unit(record: StaticRecord, name: StaticValue, measured: RealArr
         )
 
 
-def grade_tolerance(
+def grade_static_difference(
     limit: ComparisonLimit, pairs: Mapping[StaticValue, ValuePair], sidecar: StaticSidecar, section: tuple[float, float]
 ) -> Criterion:
     """Grade the largest difference in the evaluated section.

@@ -11,7 +11,7 @@ from pantocheck.conformance.core.measured_table import (
     ChannelNames,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
     stack_channels,
 )
 
@@ -22,7 +22,7 @@ def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[Measu
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
-    with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "TDMS"):
+    with open_file(path, where, MAX_FILE_BYTES) as file, convert_damage_errors(where, "TDMS"):
         stated = sum(len(channel) for group in TdmsFile.read_metadata(file).groups() for channel in group.channels())
         if stated > min(largest, path.stat().st_size):  # a sample has at least one byte
             hint = f"At most {largest} samples are accepted, and not more samples than the file has bytes."

@@ -10,7 +10,7 @@ from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.pages.words import clean_text
 
 CheckOutcome = Literal["proved", "contradicted", "incomplete", "open"]
-"""CheckOutcome of a check, `open` if it was not requested or needs more than the document.
+"""Outcome of a check; `open` if it was not requested or needs more than the document.
 
 `incomplete`: another version wrote the document, so that a part of it could not be compared. This is no contradiction,
 but such a document is never accepted: otherwise a changed version number would hide changed pages.
@@ -26,7 +26,7 @@ class DocumentCheck:
     """Result of one check."""
 
     outcome: CheckOutcome
-    """CheckOutcome of the check."""
+    """Outcome of the check."""
     statement: str
     """Fact that was proved or not, as a sentence."""
     details: tuple[str, ...] = ()

@@ -104,7 +104,7 @@ def _check_finite(values: RealArray, rate: float, where: str) -> None:
 def _check_signal(signal: RealArray, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
     """Refuse a constant signal; warn of clipping and of implausible accelerations."""
     if np.ptp(signal) == 0:
-        raise InputError(where, "is constant", "Leave this channel out; its sensor did not work.")
+        raise InputError(where, "is constant", "Leave this channel out; its sensor failed.")
     warnings = []
     tops = find_clipping(signal)
     if tops:

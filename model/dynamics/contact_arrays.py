@@ -1,4 +1,4 @@
-"""Irregularity of the contact wires in a time step: height of a cubic spline at the position of a head."""
+"""Arrays of the contact wires in a time step: their contact with pantographs, and the splines of their irregularity."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

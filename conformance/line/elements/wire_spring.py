@@ -101,7 +101,7 @@ class WireSprings(Element):
 
     @staticmethod
     def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
-        """Springs, drawn as droppers are."""
+        """Lines of the springs, drawn as those of droppers."""
         return (DrawnConnection(part.position, part.lower, part.upper) for part in catenary.springs)
 
 
