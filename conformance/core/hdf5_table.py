@@ -33,7 +33,7 @@ MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 
 def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `table_formats.Reader`.
+    """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `measured_table.Reader`.
 
     A file without groups `run_<k>` holds one run, with data sets of one or more rows in the root group.
     """

@@ -33,7 +33,7 @@ RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
 
 
 def read_matlab_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of a MATLAB file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of a MATLAB file; arguments and errors as in `measured_table.Reader`."""
     where = f"record '{path.name}'"
     arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where, largest)
     time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)

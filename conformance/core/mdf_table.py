@@ -30,7 +30,7 @@ SAME_TIME = 1e-6
 
 
 def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of an MDF file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of an MDF file; arguments and errors as in `measured_table.Reader`."""
     from asammdf import MDF
     from asammdf.blocks.utils import MdfException
 

@@ -18,7 +18,7 @@ from pantocheck.conformance.core.measured_table import (
 
 def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`."""
-    del names  # `mass_drops` compares the names of the columns with the sidecar
+    del names  # `drop_sidecar` compares the names of the columns with the sidecar
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"

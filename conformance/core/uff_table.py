@@ -37,7 +37,7 @@ DROP_LINE = re.compile(
 
 
 def read_uff_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of a universal file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of a universal file; arguments and errors as in `measured_table.Reader`."""
     where = f"record '{path.name}'"
     # pyuff raises plain `Exception` for some damaged files, and leaves out keys for others.
     with convert_damage_errors(where, "a universal file", Exception):

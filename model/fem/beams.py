@@ -70,8 +70,8 @@ def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:
 
 # Rows of tensioned beams as plain arrays, shared by statics and time integration.
 #
-# Parts that act on a single row at a single station are lumped onto the deflection there (`lumped_parts`); parts that
-# couple rows are connectors (`connectors`).
+# Parts that act on a single row at a single station are lumped onto the deflection there (`sum_lumped_parts`); parts
+# that couple rows are connectors (`connectors`).
 class Beams(NamedTuple):
     """Rows of beams; B rows, S stations."""
 
