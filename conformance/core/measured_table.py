@@ -161,7 +161,7 @@ class TableFormat:
     """File format of measured tables."""
 
     module: str
-    """Module of its reader in `formats/`; the reader is called `read_` and the name of the module."""
+    """File of its reader in this folder; the reader is called `read_` and the name of the file."""
     suffixes: tuple[str, ...]
     """Suffixes of its files in lower case, the usual one first."""
     library: str = ""
