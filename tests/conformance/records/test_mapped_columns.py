@@ -88,7 +88,7 @@ def test_unused_columns_are_listed(foreign: Callable[[str], Path]) -> None:
         ({"force_1_N": {"column": "Kraft_vorn"}}, r"columns.force_1_N.unit: missing; the file states no unit"),
         (
             {"force_1_N": {"column": "Kraft_vorn", "scale": 2.0}},
-            r"columns.force_1_N.unit: the value is scaled",
+            r"force_1_N.unit: missing, but the value is scaled",
         ),
         ({"force_1_kN": {"column": "Kraft_vorn", "unit": "kN"}}, r"columns.force_1_kN: not a channel of a record"),
         ({"force_3_N": {"column": "Kraft_vorn", "unit": "kN"}}, r"columns.force_3_N: the sidecar has no pantograph 3"),
