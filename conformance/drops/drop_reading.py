@@ -13,12 +13,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, parse_direction, read_tables
 from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
-from pantocheck.conformance.drops.drop_record import (
-    DropChannel,
-    DropDescription,
-    DropRecord,
-    find_sampling_rate,
-)
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord, find_sampling_rate
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.results.identified_modes import MeasuredLine
