@@ -100,7 +100,7 @@ class CampaignColumns:
         )
 
     def group(self, keys: Sequence[str]) -> dict[str, IntegerArray]:
-        """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text with what differs."""
+        """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text that names their group."""
         parts: list[tuple[str, list[Any]]] = [("", list(self.cases)), ("", list(self.systems))]
         parts += [(f"{key} = ", [_make_hashable(value) for value in self.inputs[key]]) for key in keys]
         shown = [(prefix, column) for prefix, column in parts if len(set(column)) > 1]

@@ -47,7 +47,7 @@ class PreparedCampaign:
     file: CampaignFile
     """Content of the campaign file."""
     design: CampaignDesign
-    """Its runs."""
+    """Runs of the campaign."""
     execute: RunExecution
     """Function that executes one run."""
     identity: dict[str, Any]

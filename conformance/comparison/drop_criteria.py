@@ -31,7 +31,7 @@ def grade_drop(
         clipped: Sensors and windows with clipped samples.
 
     Returns:
-        One criterion per limit and sensor. It is skipped if the record does not have what it needs.
+        One criterion per limit and sensor. It is skipped if its data are missing in the record.
     """
     criteria = []
     for limit, sensor in [(each, number) for each in limits for number in each.sensors or ()]:

@@ -40,7 +40,7 @@ def shorten_details(details: Sequence[str]) -> tuple[str, ...]:
 
 
 def judge_details(proved: str, contradicted: str, details: Iterable[str]) -> DocumentCheck:
-    """Check that is proved without details, and contradicted by each of them; control characters are removed."""
+    """Check that is contradicted if there are details, and otherwise proved; control characters are removed."""
     lines = tuple(dict.fromkeys(map(clean_text, details)))
     return DocumentCheck("contradicted", contradicted, lines) if lines else DocumentCheck("proved", proved)
 

@@ -48,7 +48,7 @@ class PdfCertificate:
     attachment: bytes
     """Attached results."""
     results: Results
-    """The same results as values."""
+    """Attached results as values."""
 
 
 def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:

@@ -251,7 +251,7 @@ def apply_exclusions(
     Returns:
         excluded: Stretches that are left out [m, m].
         facts: Every event, with the reason why it is left out or not.
-        warnings: Sentences on what is left out, and on exclusions that are not applied.
+        warnings: Sentences on stretches that are left out, and on exclusions that are not applied.
     """
     wanted = [event for event in events if event.reason is not None]
     permitted = [event for event in wanted if rule is not None and event.kind in rule.kinds]

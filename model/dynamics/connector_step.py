@@ -102,7 +102,7 @@ class NodeArrays(NamedTuple):
     connector: Indices
     """Connector of each end, (L,)."""
     coefficient: Array
-    """Its coefficient in the elongation of the connector, (L,) [-]."""
+    """Coefficient of each end in the elongation of its connector, (L,) [-]."""
 
 
 class ConnectorArrays(NamedTuple):

@@ -21,7 +21,7 @@ FindingState = Literal["ok", "missing", "wrong", "note"]
 
 @dataclass(frozen=True)
 class AdapterFinding:
-    """One line of the check: its state, its subject, and a text that says what to do next."""
+    """One line of the check: its state, its subject, and a text with the next step."""
 
     state: FindingState
     subject: str

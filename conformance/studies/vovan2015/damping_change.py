@@ -44,7 +44,7 @@ class ForceChanges:
     values: dict[int, dict[str, Value]]
     """Changes by pantograph (0: the line) and name."""
     shifted: tuple[dict[int, dict[str, Value]], ...] = field(default_factory=tuple)
-    """The same over each of the shifted sections."""
+    """Changes over each of the shifted sections, as `values`."""
 
     @property
     def spread(self) -> dict[int, dict[str, float]]:
