@@ -100,7 +100,7 @@ class ContactWorkspace(NamedTuple):
     response: Array
     """Accelerations of deflection and slope around each contact per contact force, (P, W, 2, n) [1/kg, 1/(kg m)]."""
     start: Indices
-    """Station of the first value of each response, a multiple of the size of a vector, (P,); it can lie before the line."""
+    """Station of the first value of each response, a multiple of a vector size, (P,); it can lie before the line."""
     wire_compliance: Array
     """Acceleration of each wire at one contact per force at another, (P, P, W) [1/kg]."""
     wire_acceleration: Array
@@ -110,7 +110,7 @@ class ContactWorkspace(NamedTuple):
     near: Indices
     """Scalar forces that a contact influences, (P, W, N)."""
     influence: Array
-    """Acceleration of the elongations of these forces per contact force, (P, W, N) [1/kg]."""
+    """Accelerations of the elongations of these forces per contact force, (P, W, N) [1/kg]."""
     number_near: Indices
     """Number of the scalar forces that a contact influences, (P, W)."""
 

@@ -1,6 +1,6 @@
 """Element of a line: base class of the declarations in this folder.
 
-An element is a class. Its fields are keys of the line file. Its methods are the work of the element wherever the suite
+An element is a class. Its fields are keys of the line file. Its methods do the work of the element wherever the suite
 uses a line: each of them has a default for elements that do nothing there. `element_registry.ELEMENTS` lists all
 elements, and a new one needs no change outside this folder.
 """
