@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pantocheck.model.description.curves import TrackCurve
     from pantocheck.model.description.failures import SimulationError
     from pantocheck.model.description.irregularity import Irregularity, SpectralDensity, realise_irregularity
-    from pantocheck.model.description.pantograph import Pantograph, chain
+    from pantocheck.model.description.pantograph import Pantograph, build_chain
     from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise, make_droppers_bilateral
     from pantocheck.model.dynamics.passage import History, Passage
     from pantocheck.model.dynamics.simulation import simulate_passage
@@ -57,7 +57,7 @@ __all__ = [
     "TensionChange",
     "TrackCurve",
     "Wire",
-    "chain",
+    "build_chain",
     "compute_modes",
     "damping_ratios",
     "discretise",
@@ -81,7 +81,7 @@ _MODULES = {
     "Passage": "dynamics.passage",
     "SimulationError": "description.failures",
     "SpectralDensity": "description.irregularity",
-    "chain": "description.pantograph",
+    "build_chain": "description.pantograph",
     "compute_modes": "modal.modes",
     "damping_ratios": "modal.modes",
     "discretise": "discretisation.discretised_line",

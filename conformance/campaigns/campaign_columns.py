@@ -100,7 +100,7 @@ class CampaignColumns:
         )
 
     def group(self, keys: Sequence[str]) -> dict[str, IntegerArray]:
-        """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text with what differs."""
+        """Numbers of the runs (from 0) that agree in case, system and some inputs, by a text that names their group."""
         parts: list[tuple[str, list[Any]]] = [("", list(self.cases)), ("", list(self.systems))]
         parts += [(f"{key} = ", [_make_hashable(value) for value in self.inputs[key]]) for key in keys]
         shown = [(prefix, column) for prefix, column in parts if len(set(column)) > 1]
@@ -132,7 +132,7 @@ SMALLEST_SPREAD = 1e-4
 """Smallest spread of a drawn value relative to its size: a tuned mean force differs by less between the runs."""
 
 
-def drop_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) -> list[EvaluatedValue]:
+def leave_out_constant(values: Sequence[EvaluatedValue], columns: CampaignColumns) -> list[EvaluatedValue]:
     """Values that have a limit or differ between the runs: a constant value needs no chart."""
     differing = {
         name

@@ -253,7 +253,7 @@ def parse_condition(text: str, keys: Collection[str]) -> Condition:
     where = f"campaign, condition {text[:80]!r}"
     match = _CONDITION.fullmatch(text)
     if match is None:
-        raise InputError(where, "is no condition", "Write KEY RELATION VALUE, e.g. speed_km_h <= 320 .")
+        raise InputError(where, "is not a condition", "Write KEY RELATION VALUE, e.g. speed_km_h <= 320 .")
     key, relation, right = (part.strip() for part in match.groups())
     if key not in keys:
         raise InputError(where, f"{key!r} is not a varied input", suggest_names(key, list(keys)))

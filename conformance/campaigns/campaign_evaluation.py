@@ -12,7 +12,7 @@ from pantocheck.conformance.campaigns.campaign_columns import (
     EvaluatedValue,
     choose_values,
     count_reasons,
-    drop_constant,
+    leave_out_constant,
     read_columns,
 )
 from pantocheck.conformance.campaigns.campaign_design import DesignAxis, SampleAxis
@@ -119,7 +119,7 @@ def evaluate_campaign(
     sampled = [key for axis in design.axes if isinstance(axis, SampleAxis) for key in axis.ordered_keys]
     values = choose_values(store, prepared.limits)
     columns = read_columns(store, values, design.keys)
-    charted = drop_constant(values, columns)
+    charted = leave_out_constant(values, columns)
     saltelli = [axis for axis in design.axes if isinstance(axis, SampleAxis) and axis.sampling.method == "saltelli"]
     independent = select_independent(columns, saltelli[0]) if saltelli else columns
     inputs = {key: _describe_axis(axis, key) for axis in design.axes for key in axis.keys}

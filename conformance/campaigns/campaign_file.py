@@ -51,7 +51,7 @@ class ValueRange(InputTable):
 
 
 class ValueVariation(SourcedTable):
-    """InputVariation of one key over listed values."""
+    """Variation of one key over listed values."""
 
     key: Key
     values: Values
@@ -59,14 +59,14 @@ class ValueVariation(SourcedTable):
 
 
 class RangeVariation(SourcedTable):
-    """InputVariation of one key over equidistant values."""
+    """Variation of one key over equidistant values."""
 
     key: Key
     range: ValueRange
 
 
 class ColumnVariation(SourcedTable):
-    """InputVariation of several keys together: the first values of all of them, then the second values."""
+    """Variation of several keys together: the first values of all of them, then the second values."""
 
     columns: Annotated[dict[Key, Values], Field(min_length=1)]
     """Values of each key; all lists have the same length."""
@@ -80,7 +80,7 @@ class ColumnVariation(SourcedTable):
 
 
 class TableVariation(SourcedTable):
-    """InputVariation by a table of designs: one row per design, one column per key."""
+    """Variation by a table of designs: one row per design, one column per key."""
 
     table: Annotated[str, Field(min_length=1, max_length=500)]
     """CSV file, relative to the campaign; keys in its first row."""
@@ -131,7 +131,7 @@ class InputSampling(InputTable):
         if self.method in ("sobol", "saltelli") and self.runs & (self.runs - 1):
             less = 2 ** (self.runs.bit_length() - 1)
             hint = f"A Sobol sequence is balanced for powers of two, e.g. {less} or {2 * less}."
-            yield validation_problem("runs", f"{self.runs} is no power of two", hint)
+            yield validation_problem("runs", f"{self.runs} is not a power of two", hint)
 
 
 class InputLink(InputTable):
@@ -179,7 +179,7 @@ class Execution(InputTable):
     @cross_check
     def _check_cluster(self) -> Problems:
         if self.scheduler is not None and self.cluster is not None:
-            yield validation_problem("scheduler", "stands beside cluster", "Give either scheduler or cluster.")
+            yield validation_problem("scheduler", "is given together with cluster", "Give either scheduler or cluster.")
 
 
 Texts = Annotated[tuple[str, ...], Field(strict=False, max_length=1000)]
@@ -233,7 +233,7 @@ def parse_variation(text: str) -> dict[str, Any]:
     key, equals, values = (part.strip() for part in text.partition("="))
     where = f"{VARY_OPTION} {text[:80]!r}"
     if not equals or not key or not values:
-        raise InputError(where, "is no variation", HINT)
+        raise InputError(where, "is not a variation", HINT)
     if (match := _RANGE.fullmatch(values)) is not None:
         start, stop, step = (parse_value(number, where) for number in match.groups())
         return {"key": key, "range": {"start": start, "stop": stop, "step": step}}

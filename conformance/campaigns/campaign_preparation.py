@@ -16,11 +16,11 @@ from pantocheck.conformance.campaigns.campaign_design import (
 )
 from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
-from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, name_column, vary_inputs
+from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, build_input_changes, name_column
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.campaigns.run_executors import RunExecutor
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
-from pantocheck.conformance.cases.case_source import repeated_id
+from pantocheck.conformance.cases.case_source import build_repeated_id_error
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_entries, load_entry, overlay_limits, read_limits
@@ -30,7 +30,7 @@ from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.sourced_table import PROVENANCE
 from pantocheck.conformance.core.suite_identity import suite_digest
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.execution.plan import place_cases, place_system
+from pantocheck.conformance.execution.plan import resolve_cases, resolve_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.campaign_format import CampaignEnding
@@ -47,7 +47,7 @@ class PreparedCampaign:
     file: CampaignFile
     """Content of the campaign file."""
     design: CampaignDesign
-    """Its runs."""
+    """Runs of the campaign."""
     execute: RunExecution
     """Function that executes one run."""
     identity: dict[str, Any]
@@ -85,7 +85,7 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
     """
     changes = parse_changes(file.set)
     catalogue = open_catalogue([folder / name for name in file.case_folders])
-    cases = _read_cases(place_cases(file.cases, folder), catalogue)
+    cases = _read_cases(resolve_cases(file.cases, folder), catalogue)
     limits = () if file.limits is None else read_limits(folder / file.limits)
     profile = None
     if file.profile is not None:
@@ -124,7 +124,7 @@ def _read_cases(patterns: Sequence[str], catalogue: Catalogue) -> dict[str, tupl
     for entry in find_entries(patterns, catalogue):
         case, path = load_entry(entry), entry.path.resolve()
         if cases.setdefault(case.id, (path, case))[0] != path:
-            raise repeated_id(case.id, str(cases[case.id][0]), str(path))
+            raise build_repeated_id_error(case.id, str(cases[case.id][0]), str(path))
     return cases
 
 
@@ -139,13 +139,13 @@ def _build_design(file: CampaignFile, folder: Path, case_ids: tuple[str, ...]) -
             raise InputError(where, f"{link.follows!r} is not a varied input", suggest_names(link.follows, keys))
         first = [axis.row(0)[link.follows] for axis in axes if link.follows in axis.keys]
         if any(not isinstance(value, int | float) for value in first):
-            raise InputError(f"campaign, key link[{i}].follows", "is not a number", "Vary the linked input itself.")
+            raise InputError(f"campaign, key link[{i}].follows", "the input is not a number", "Vary the linked input.")
     keys += [link.key for link in file.link]
     repeated = [key for key, count in Counter(keys).items() if count > 1]
     if repeated:
-        raise InputError(f"campaign, key {repeated[0]}", "varies twice", "Vary each input in one place.")
+        raise InputError(f"campaign, key {repeated[0]}", "is varied twice", "Vary each input in one place.")
     conditions = tuple(parse_condition(text, keys) for text in file.conditions)
-    systems = tuple(place_system(system, folder) for system in file.systems)
+    systems = tuple(resolve_system(system, folder) for system in file.systems)
     return CampaignDesign(case_ids, axes, file.link, conditions, systems)
 
 
@@ -167,7 +167,7 @@ def _check_first_designs(design: CampaignDesign, execute: RunExecution) -> list[
     first = list(islice(design.list_runs(), CHECKED_DESIGNS))
     if not first:
         raise InputError("campaign, key conditions", "no design meets them", "Relax a condition.")
-    vary_inputs(first[0].inputs)
+    build_input_changes(first[0].inputs)
     cases, problems = [], []
     for run in first:
         try:

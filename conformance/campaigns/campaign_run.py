@@ -11,7 +11,7 @@ from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_trace
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
 from pantocheck.conformance.cases.library import load_case, overlay_limits, source_text
-from pantocheck.conformance.cases.limits import Limit, LimitOverride, spread_limits
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, repeat_limits
 from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, resolve_bounds
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number
@@ -41,7 +41,7 @@ class ProfileLimits:
         """
         where = f"profile '{self.profile.name}'"
         if self.profile.compares:
-            raise InputError(where, "compares with a measured record", "Choose another profile.")
+            raise InputError(where, "needs a measured record; a campaign has none", "Choose another profile.")
         if case.file.speed_km_h is None:
             raise InputError(where, f"needs a train, but {case.id} is a static case", "Choose cases with a speed.")
         if self.profile.filter != case.file.filter:
@@ -56,7 +56,7 @@ class ProfileLimits:
                 continue
             stated = {"quantity": rule.quantity, "lower": lower, "upper": upper, "trust": rule.trust, "note": rule.note}
             limits.append(Limit.model_validate({**stated, "source": source_text(rule.source)}))
-        return spread_limits(limits, len(case.pantographs)), tuple(missing)
+        return repeat_limits(limits, len(case.pantographs)), tuple(missing)
 
 
 FAILED: Verdict = "error"
@@ -126,13 +126,13 @@ class RunExecution:
 
     def read_case(self, run: PlannedRun) -> Case:
         """Case of a run, with its inputs and the limits of the user."""
-        case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *vary_inputs(run.inputs)))
+        case = load_case(Path(self.case_files[run.case_id]), (*self.changes, *build_input_changes(run.inputs)))
         rules = () if self.profile is None else self.profile.resolve(case)[0]
         (limited,) = overlay_limits([case.with_limits(rules)], self.limits)
         return limited
 
 
-def vary_inputs(inputs: Inputs) -> tuple[InputChange, ...]:
+def build_input_changes(inputs: Inputs) -> tuple[InputChange, ...]:
     """Changes of a case that set its varied inputs."""
     return tuple(build_change(key, value, CAMPAIGN) for key, value in inputs.items())
 

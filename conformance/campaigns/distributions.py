@@ -87,7 +87,7 @@ class Discrete(InputTable):
 
     kind: Literal["discrete"]
     values: Annotated[tuple[Any, ...], Field(strict=False, min_length=1, max_length=1000)]
-    """Values."""
+    """Values of the input."""
     weights: PositiveList | None = None
     """Relative frequency of each value; default: all alike."""
 

@@ -59,7 +59,7 @@ class PantographByLaw(SourcedTable):
     def _states_no_force(cls, content: Any) -> Any:
         for key in ("uplift_force_N", "target_mean_force_N"):
             if isinstance(content, dict) and key in content:
-                raise validation_problem("force_from", f"stands beside {key}", f"Give either force_from or {key}.")
+                raise validation_problem("force_from", f"is given together with {key}", f"Give force_from or {key}.")
         return content
 
 
@@ -156,7 +156,7 @@ class CaseFile(SourcedTable):
         if self.mass_drop is not None and self.speed_km_h is not None:
             yield validation_problem(
                 "mass_drop",
-                "stands in a case with speed_km_h",
+                "is given in a case with speed_km_h",
                 "Write one case for the train and one for the mass drop.",
             )
         if self.study is None:
@@ -179,7 +179,7 @@ class CaseFile(SourcedTable):
             return
         if self.apparent_mass is not None:
             yield validation_problem(
-                "apparent_mass", "stands in a case with speed_km_h", "Move it to a static case, without speed_km_h."
+                "apparent_mass", "is given in a case with speed_km_h", "Move it to a static case, without speed_km_h."
             )
         elif not self.pantograph:
             yield validation_problem("pantograph", "missing", "A run needs at least one [[pantograph]] table.")
@@ -206,7 +206,7 @@ class CaseFile(SourcedTable):
         for key in ("evaluated_spans", "compared_spans"):
             if getattr(self, key) is not None:
                 yield validation_problem(
-                    "evaluated_m", f"stands beside {key}", f"Leave out {key}, or state the section by evaluated_spans."
+                    "evaluated_m", f"is given together with {key}", f"Leave out {key} or evaluated_m."
                 )
         start, end = self.evaluated_m
         if end <= start:

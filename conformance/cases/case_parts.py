@@ -14,7 +14,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.lift_force import resolve_rule
-from pantocheck.conformance.cases.limits import spread_limits
+from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.key_paths import find_holders, follow_path
 from pantocheck.conformance.core.sourced_table import SourcedTable
@@ -70,7 +70,7 @@ class CaseFiles:
             file,
             line,
             tuple(pantograph for pantograph, _ in pantographs),
-            spread_limits(file.limit, len(pantographs)),
+            repeat_limits(file.limit, len(pantographs)),
             static_pantograph,
             dampings,
             tuple(dict.fromkeys(descriptions)),

@@ -1,4 +1,4 @@
-"""List of the cases of the library."""
+"""Sources of cases: library, folders of the user, installed distributions; names that the library reserves."""
 
 import hashlib
 import re
@@ -44,7 +44,7 @@ def _library_files() -> dict[str, Path]:
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in folder.rglob("*.toml")}
 
 
-def find_claims(folder: Path, trees: Mapping[Path, Mapping[str, Any]], prefix: str) -> Iterator[InputError]:
+def find_reserved_names(folder: Path, trees: Mapping[Path, Mapping[str, Any]], prefix: str) -> Iterator[InputError]:
     """Find the names that files from outside must not have.
 
     Args:
@@ -63,10 +63,10 @@ def find_claims(folder: Path, trees: Mapping[Path, Mapping[str, Any]], prefix: s
         if isinstance(name := tree.get("id"), str):
             yield from _check_id(path, name, prefix)
             if (other := first.setdefault(name, path)) != path:
-                yield repeated_id(name, str(other), str(path))
+                yield build_repeated_id_error(name, str(other), str(path))
 
 
-def repeated_id(name: str, first: str, second: str) -> InputError:
+def build_repeated_id_error(name: str, first: str, second: str) -> InputError:
     """Error for an id that two places have."""
     return InputError(
         f"case '{name}'", f"two files have this id: {first} and {second}", "Give each case a different id."
@@ -233,7 +233,7 @@ def _open_source(folder: Path, origin: CaseOrigin, prefix: str) -> CaseSource:
         raise InputError(where, "there is no such folder", "Name a folder with case files.")
     files = _list_files(folder, where)
     trees = {path: read_toml(path, "file") for path in files}
-    if problems := [*find_claims(folder, trees, prefix)]:
+    if problems := [*find_reserved_names(folder, trees, prefix)]:
         raise join_errors(problems)
     cases = {tree["id"]: path for path, tree in trees.items() if isinstance(tree.get("id"), str)}
     if not cases:

@@ -10,10 +10,10 @@ from pantocheck.conformance.cases.case import CaseOrigin
 from pantocheck.conformance.cases.case_source import (
     OUTSIDE_PREFIX,
     CaseSource,
+    build_repeated_id_error,
     list_case_sources,
     list_library,
     open_case_folder,
-    repeated_id,
 )
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError, suggest_names
@@ -108,7 +108,7 @@ def _join_sources(sources: Sequence[CaseSource]) -> dict[str, CaseEntry]:
     joined: dict[str, CaseEntry] = {}
     for name, entry in _list_entries(sources):
         if (other := joined.setdefault(name, entry)) != entry:
-            raise repeated_id(name, _place(other), _place(entry))
+            raise build_repeated_id_error(name, _place(other), _place(entry))
     return joined
 
 

@@ -35,7 +35,7 @@ class OwnedQuantity(InputTable):
         if (QUANTITIES[self.quantity].scope == "pantograph") != (self.pantograph is not None):
             yield validation_problem(
                 "pantograph",
-                f"{self.quantity} has {'a' if self.pantograph else 'no'} pantograph",
+                f"{self.quantity} is given {'with' if self.pantograph else 'without'} a pantograph",
                 "Quantities of a pantograph have its number, those of the line and of a static check have none.",
             )
 

@@ -100,7 +100,7 @@ def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChan
     """
     parts = parse_key(key)
     if parts is None:
-        raise InputError(f"{origin} {key[:80]!r}", "is no key", "Write a key such as line.contact_wire.tension_N .")
+        raise InputError(f"{origin} {key[:80]!r}", "is not a key of a case", "Write e.g. line.contact_wire.tension_N .")
     change = _locate(key, parts, value, origin)
     names = {part for part in parts if isinstance(part, str)}
     if names & PROVENANCE or parts[0] in FIXED_KEYS:
@@ -120,7 +120,7 @@ def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChan
 def _parse_change(text: str) -> InputChange:
     key, equals, value = (part.strip() for part in text.partition("="))
     if not equals or parse_key(key) is None:
-        raise InputError(f"{SET_OPTION} {text[:80]!r}", "is no assignment", "Write KEY=VALUE, e.g. speed_km_h=300 .")
+        raise InputError(f"{SET_OPTION} {text[:80]!r}", "is not of the form KEY=VALUE", "Write e.g. speed_km_h=300 .")
     return build_change(key, parse_value(value, f"{SET_OPTION}, key {key}"))
 
 

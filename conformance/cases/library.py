@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import LIBRARY, CaseEntry, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.lift_force import resolve_lift_force
-from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, spread_limits
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, repeat_limits
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.library_folder import library_folder
@@ -242,7 +242,7 @@ def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> li
             raise InputError(f"{where}.pantograph", f"there is no pantograph {limit.owner}", hint)
         for case in with_owner:
             added[case.id].append(limit)
-    return [case.with_limits(spread_limits(added[case.id], len(case.pantographs))) for case in cases]
+    return [case.with_limits(repeat_limits(added[case.id], len(case.pantographs))) for case in cases]
 
 
 @cache

@@ -95,7 +95,7 @@ class Limit(InputTable):
 AnyLimit = TypeVar("AnyLimit", bound=Limit)
 
 
-def spread_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimit, ...]:
+def repeat_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimit, ...]:
     """Give every pantograph of a train its own copy of each limit that names no pantograph.
 
     A limit that names its pantograph takes precedence. Without copies, a limit would judge the first pantograph alone,

@@ -95,10 +95,11 @@ class Rule(InputTable):
                 "quantity", f"{self.quantity} is not a quantity of a run", "Give a quantity of a contact-force record."
             )
         stated = self.lower is not None or self.upper is not None
-        if stated + (self.tolerance is not None) + (self.tolerance_pct is not None) != 1:
+        kinds = stated + (self.tolerance is not None) + (self.tolerance_pct is not None)
+        if kinds != 1:
             yield validation_problem(
                 "",
-                f"the rule for {self.quantity} has no bound, or several kinds of bounds",
+                f"the rule for {self.quantity} has {'several kinds of bounds' if kinds else 'no bound'}",
                 "Give one kind: lower and upper, tolerance or tolerance_pct.",
             )
 

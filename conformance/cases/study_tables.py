@@ -120,7 +120,7 @@ class ReleaseVelocity(SourcedTable):
         for i, (start, end) in enumerate(self.windows_s, 1):
             if not 0 <= start < end:
                 yield validation_problem(
-                    f"windows_s[{i}]", f"from {start:g} s to {end:g} s", "Give [start, end] with 0 <= start < end."
+                    f"windows_s[{i}]", f"runs from {start:g} s to {end:g} s", "Give [start, end], 0 <= start < end."
                 )
 
 
@@ -136,7 +136,7 @@ class DropperDamping(SourcedTable):
     def _ascending(self) -> Problems:
         if list(self.coefficients_s) != sorted(set(self.coefficients_s)):
             yield validation_problem(
-                "coefficients_s", "not in ascending order", "List every value once, from small to large."
+                "coefficients_s", "the values are not in ascending order", "List every value once, from small to large."
             )
 
 
@@ -151,7 +151,7 @@ class DropperOscillation(SourcedTable):
     def _ascending_from_zero(self) -> Problems:
         if list(self.coefficients_s) != sorted(set(self.coefficients_s)) or self.coefficients_s[0] != 0:
             yield validation_problem(
-                "coefficients_s", "not ascending from 0", "List every value once, from 0 to the largest."
+                "coefficients_s", "the values do not ascend from 0", "List every value once, from 0 to the largest."
             )
 
 

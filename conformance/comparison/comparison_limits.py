@@ -52,7 +52,7 @@ LIMIT_UNITS = {"pct": "%", "deg": "°", "mm_N": "mm/N", "mm": "mm"}
 
 @dataclass(frozen=True)
 class LimitKind:
-    """Limits of one comparison: what their quantities need."""
+    """Limits of one comparison: its quantities, and the keys that their limits need or may have."""
 
     name: str
     quantities: Sequence[str]

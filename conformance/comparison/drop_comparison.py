@@ -19,7 +19,7 @@ from pantocheck.conformance.comparison.recorded_drop import RecordedDrop, locate
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.step_log import ShareCallback, follow_part, ignore_progress
+from pantocheck.conformance.core.step_log import ShareCallback, build_part_callback, ignore_progress
 from pantocheck.conformance.core.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.line_comparison import warn_about_line
@@ -113,12 +113,12 @@ def compare_drop(record: DropRecord, task: DropTask, progress: ShareCallback = i
     _check_sensor_numbers(drop, task)
     # The refined simulation has twice the elements and twice the time steps: it takes as long as about four others.
     share = 1.0 if not task.limits else len(catenaries) / (len(catenaries) + 4)
-    motion = simulate_models(drop, catenaries, task.settings, follow_part(progress, 0.0, share))
+    motion = simulate_models(drop, catenaries, task.settings, build_part_callback(progress, 0.0, share))
     windows, bands = _find_windows(motion, record, task), _find_bands(motion, record)
     places = _list_places(drop)
     names = tuple(place.name for place in places)
     statistics = compute_statistics(motion, names, windows, bands)
-    criteria = _grade(drop, task, motion, statistics, follow_part(progress, share, 1.0))
+    criteria = _grade(drop, task, motion, statistics, build_part_callback(progress, share, 1.0))
     verdict = worst_verdict(criterion.verdict for criterion in criteria)
     return DropComparison(
         suite=build_suite(),

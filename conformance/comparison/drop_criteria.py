@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit, TimeWindow, grade_difference
 from pantocheck.conformance.comparison.drop_motion import MotionBand
-from pantocheck.conformance.comparison.drop_statistics import is_buried
+from pantocheck.conformance.comparison.drop_statistics import is_mostly_noise
 from pantocheck.conformance.core.criterion import ComparedMotion, Criterion, CriterionPlace
 from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.results.drop_comparison_format import WindowStatistics
@@ -31,7 +31,7 @@ def grade_drop(
         clipped: Sensors and windows with clipped samples.
 
     Returns:
-        One criterion per limit and sensor. It is skipped if the record does not have what it needs.
+        One criterion per limit and sensor. It is skipped if its data are missing in the record.
     """
     criteria = []
     for limit, sensor in [(each, number) for each in limits for number in each.sensors or ()]:
@@ -86,5 +86,5 @@ def _list_missing(key: StatisticsKey, computed: GradedStatistics, clipped: bool)
         yield "the channel is clipped in this window"
     if key in computed and computed[key].noise_rms is None:
         yield "the record has no rest before the release, from which its noise would follow"
-    if key in computed and is_buried(computed[key]):
+    if key in computed and is_mostly_noise(computed[key]):
         yield "the noise of the record is too large in this window and band"

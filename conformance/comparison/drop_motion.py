@@ -12,7 +12,7 @@ from scipy.signal import periodogram, resample_poly
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.step_log import ShareCallback, follow_part, ignore_progress
+from pantocheck.conformance.core.step_log import ShareCallback, build_part_callback, ignore_progress
 from pantocheck.conformance.drops.decay_kernel import LOWEST_FREQUENCY
 from pantocheck.conformance.drops.decay_preparation import MIN_REST, Release, find_release
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER
@@ -251,7 +251,7 @@ def simulate_models(
     duration = min(settings.last + MARGIN_S + TAPER_S, available)
     simulated, slack = {}, {}
     for number, (name, catenary) in enumerate(models.items()):
-        part = follow_part(progress, number / len(models), (number + 1) / len(models))
+        part = build_part_callback(progress, number / len(models), (number + 1) / len(models))
         simulated[name], slack[name] = _simulate(drop, catenary, settings, (rate, lead, duration), part)
     first = next(iter(simulated.values()))[:, aligned]
     record_part, model_part = (filter_motion(part, rate, 0, GRAPHIC_BAND) for part in (samples[:, aligned], first))

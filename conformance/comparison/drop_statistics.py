@@ -66,7 +66,7 @@ def compute_statistics(
     return tuple(rows)
 
 
-def is_buried(statistics: WindowStatistics) -> bool:
+def is_mostly_noise(statistics: WindowStatistics) -> bool:
     """Whether the known noise of a record is so large that ratio and correlation state little."""
     clean, noise = statistics.record_rms, statistics.noise_rms
     return clean is not None and noise is not None and noise > LARGEST_NOISE * float(np.hypot(clean, noise))
@@ -136,7 +136,7 @@ def _compare_model(
     name: str, model: RealArray, record: RealArray | None, statistics: WindowStatistics
 ) -> ModelAgreement:
     rms, clean = float(np.sqrt(np.mean(model**2))), statistics.record_rms
-    if record is None or not clean or is_buried(statistics):
+    if record is None or not clean or is_mostly_noise(statistics):
         return ModelAgreement(model=name, rms=rms, rms_ratio=None, correlation=None)
     correlation = float(np.mean(model * record)) / (float(np.sqrt(np.mean(record**2))) * rms) if rms > 0 else 0.0
     return ModelAgreement(model=name, rms=rms, rms_ratio=rms / clean, correlation=correlation)

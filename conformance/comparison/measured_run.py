@@ -31,7 +31,7 @@ def list_run_supports(record: AssessedRecord) -> tuple[float, ...]:
 def compare_measured_run(
     simulated: AssessedRecord, measured: AssessedRecord, supports: Sequence[float]
 ) -> MeasuredRun | None:
-    """Lay a measured run over a simulated one.
+    """Compare a measured run with a simulated one at the same positions.
 
     Args:
         simulated: Record of the simulated passage.

@@ -21,7 +21,7 @@ from pantocheck.conformance.grading.results_building import (
     utc_now,
 )
 from pantocheck.conformance.grading.rule_grading import RuleGrading
-from pantocheck.conformance.grading.validity_warnings import find_unvalidated
+from pantocheck.conformance.grading.validity_warnings import warn_of_unvalidated_band
 from pantocheck.conformance.records.traces import build_pantograph_traces
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
@@ -85,7 +85,7 @@ def grade_record(
         criteria_verdict=None,
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],
-        warnings=[*_name_sources(records, "warnings"), *find_unvalidated(subject.values)],
+        warnings=[*_name_sources(records, "warnings"), *warn_of_unvalidated_band(subject.values)],
         inputs=[group for record in records for group in record.inputs],
         input_digest=f"sha256:{digest}",
         limits_digest=profile_limits_digest(profile, limits),

@@ -7,11 +7,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
-from pantocheck.conformance.comparison.response_deviation import (
-    grade_responses,
-    response_deviation,
-    summarise_band,
-)
+from pantocheck.conformance.comparison.response_deviation import grade_responses, response_deviation, summarise_band
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
@@ -106,10 +102,7 @@ def _deviate(record: ResponseRecord, pantograph: PantographFile) -> ComplexArray
 
 
 def _describe_response(
-    record: ResponseRecord,
-    deviation: ComplexArray,
-    bands: tuple[BandDeviation, ...],
-    pantograph: PantographFile,
+    record: ResponseRecord, deviation: ComplexArray, bands: tuple[BandDeviation, ...], pantograph: PantographFile
 ) -> ComparedResponse:
     """Part of the report on one response."""
     sidecar, present = record.sidecar, np.isfinite(deviation)

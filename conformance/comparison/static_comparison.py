@@ -11,7 +11,7 @@ from pantocheck.conformance.comparison.static_differences import (
     CRITERIA,
     ValuePair,
     find_static_outliers,
-    grade_tolerance,
+    grade_static_difference,
     refuse_other_unit,
     select_section,
 )
@@ -82,7 +82,7 @@ def compare_statics(
     spans = sidecar.evaluated_spans or (1, line.geometry.spans)
     section = line.geometry.section(*spans)
     pairs = {name: _pair_values(record, name, model, fine_model) for name in record.values}
-    criteria = tuple(grade_tolerance(limit, pairs, sidecar, section) for limit in limits)
+    criteria = tuple(grade_static_difference(limit, pairs, sidecar, section) for limit in limits)
     values = tuple(_describe(name, pair, line.geometry, section, model) for name, pair in pairs.items())
     return StaticComparison(
         suite=build_suite(),

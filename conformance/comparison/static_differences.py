@@ -28,7 +28,7 @@ OUTLIER_SCALES = 5.0
 SMALLEST_SCATTER = 0.01
 """Smallest standard deviation of a search for outliers, relative to the median elasticity."""
 SMALLEST_HEIGHT_SCATTER_M = 0.001
-"""The same of contact wire heights [m]."""
+"""Smallest standard deviation of a search for outliers of contact wire heights [m]."""
 LARGEST_RATIO = 5.0
 """Largest ratio between median elasticities of measurement and model; the smallest ratio of two units is 10."""
 LARGEST_HEIGHT_DIFFERENCE_M = 0.5
@@ -133,7 +133,7 @@ def refuse_other_unit(record: StaticRecord, name: StaticValue, measured: RealArr
         )
 
 
-def grade_tolerance(
+def grade_static_difference(
     limit: ComparisonLimit, pairs: Mapping[StaticValue, ValuePair], sidecar: StaticSidecar, section: tuple[float, float]
 ) -> Criterion:
     """Grade the largest difference in the evaluated section.

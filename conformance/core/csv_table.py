@@ -44,7 +44,7 @@ Lines = Iterator[NumberedLine]
 def read_csv_table(
     path: Path, names: ChannelNames, largest: int, settings: TextSettings = FOUND
 ) -> list[MeasuredTable]:
-    """Read the run of a CSV file; arguments and errors as in `table_formats.Reader`.
+    """Read the run of a CSV file; arguments and errors as in `measured_table.Reader`.
 
     Columns of text become columns of missing values. Blank lines are skipped, and an empty cell is a missing value.
 

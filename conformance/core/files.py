@@ -1,4 +1,4 @@
-"""Bounded reading: only regular files are read, and never more bytes than the size that was checked on opening."""
+"""Bounded reading and atomic writing. Only regular files are read, up to the size checked on opening."""
 
 import hashlib
 import io
@@ -79,7 +79,7 @@ def open_file(path: Path, where: str, largest: int, flags: int = 0) -> Iterator[
         try:
             status = os.fstat(descriptor)
             if not stat.S_ISREG(status.st_mode):
-                raise InputError(where, f"cannot be read from {path} (not a regular file)", "Give a regular file.")
+                raise OSError(0, "not a regular file")
             if status.st_size > largest:
                 raise InputError(where, f"has {status.st_size} bytes", f"At most {largest} bytes are accepted.")
             file = BoundedFile(descriptor, where, status.st_size)
@@ -120,7 +120,8 @@ def convert_read_errors(path: Path, where: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise InputError(where, f"cannot be read from {path} ({error.strerror or error})", "Check the path.") from None
+        place = "" if str(path) in where else f" from {path}"
+        raise InputError(where, f"cannot be read{place} ({error.strerror or error})", "Check the path.") from None
     except UnicodeDecodeError as error:
         raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None
 

@@ -1,4 +1,4 @@
-"""Finding of a publication, graded by a limit."""
+"""Findings of publications: their sentence, limit and outcome."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -56,7 +56,7 @@ class FindingCounts(ResultsPart):
 
 
 def judge_finding(role: Role, verdict: Verdict) -> FindingOutcome:
-    """FindingOutcome of a finding from the verdict of its value between the limits, whether or not the limits count."""
+    """Outcome of a finding by the verdict of its value against the limits, whether or not these count."""
     if verdict == "fail":
         return "not_reproduced"
     if verdict != "pass":
@@ -69,7 +69,7 @@ def grade_finding(finding: PublishedFinding, verdict: Verdict) -> GradedFinding:
     return GradedFinding(**finding.model_dump(), outcome=judge_finding(finding.role, verdict))
 
 
-def count_verdict(role: Role | None, verdict: Verdict) -> Verdict:
+def lower_imposed_verdict(role: Role | None, verdict: Verdict) -> Verdict:
     """Verdict that counts: an imposed finding inside its limits is information, because its inputs were chosen so."""
     return "info" if role == "imposed" and verdict == "pass" else verdict
 

@@ -18,7 +18,7 @@ from pantocheck.conformance.core.measured_table import (
     EveryChannel,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
 )
 
 MOST_ITEMS = 10_000
@@ -33,7 +33,7 @@ MOTION_QUANTITIES = ("acceleration", "velocity", "displacement")
 
 
 def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `table_formats.Reader`.
+    """Read all runs of an HDF5 file in the order of their numbers; arguments and errors as in `measured_table.Reader`.
 
     A file without groups `run_<k>` holds one run, with data sets of one or more rows in the root group.
     """
@@ -62,7 +62,7 @@ def open_hdf5(path: Path, largest: int) -> Iterator[h5py.File]:
     # The library reads from the open file, so that no other file can take its name after the check of its kind.
     with (
         open_file(path, where, MAX_FILE_BYTES) as content,
-        refuse_damage(where, "HDF5"),
+        convert_damage_errors(where, "HDF5"),
         h5py.File(content, "r") as file,
     ):
         numbers = _check_items(file, where, largest)

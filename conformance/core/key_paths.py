@@ -89,7 +89,7 @@ def check_path(
         return
     part = path[found]
     if isinstance(part, int):
-        raise InputError(where, "is no list", f"Leave out [{part + 1}].")
+        raise InputError(where, "is not a list", f"Leave out [{part + 1}].")
     above = join_path(path[:found])
     below = [key for model in models for key in list_dotted_keys(model) if key.startswith(above)]
     names = list(dict.fromkeys(key.removeprefix(f"{above}.").partition(".")[0] for key in below))

@@ -20,7 +20,7 @@ from pantocheck.conformance.core.measured_table import (
     EveryChannel,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
     stack_channels,
 )
 
@@ -33,7 +33,7 @@ RATE_NAMES = ("sampling_rate_hz", "fs", "rate")
 
 
 def read_matlab_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of a MATLAB file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of a MATLAB file; arguments and errors as in `measured_table.Reader`."""
     where = f"record '{path.name}'"
     arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where, largest)
     time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
@@ -96,7 +96,7 @@ def _find_largest_matrix(data: dict[str, RealArray], where: str) -> RealArray:
 
 def _read_version_5(path: Path, where: str, largest: int) -> dict[str, RealArray]:
     """Numeric variables; the stated shapes and the size of the decompressed data are checked before reading."""
-    with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "a MATLAB file", MatReadError):
+    with open_file(path, where, MAX_FILE_BYTES) as file, convert_damage_errors(where, "a MATLAB file", MatReadError):
         inflated = _inflates_over(file, 8 * largest + 2**20)  # `whosmat` inflates whole variables
         stated = [] if inflated else scipy.io.whosmat(file)
         shapes = {name: shape for name, shape, kind in stated if kind in NUMERIC_CLASSES}

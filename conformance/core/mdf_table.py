@@ -19,7 +19,7 @@ from pantocheck.conformance.core.measured_table import (
     EveryChannel,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
     stack_channels,
 )
 
@@ -30,7 +30,7 @@ SAME_TIME = 1e-6
 
 
 def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of an MDF file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of an MDF file; arguments and errors as in `measured_table.Reader`."""
     from asammdf import MDF
     from asammdf.blocks.utils import MdfException
 
@@ -41,7 +41,7 @@ def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
         )
     with (
         open_file(path, where, MAX_FILE_BYTES) as content,
-        refuse_damage(where, "MDF", MdfException),
+        convert_damage_errors(where, "MDF", MdfException),
         _silence_library(),
         MDF(content) as file,
     ):

@@ -105,7 +105,7 @@ class MeasuredTable:
 
 
 @contextmanager
-def refuse_damage(where: str, kind: str, *others: type[Exception]) -> Iterator[None]:
+def convert_damage_errors(where: str, kind: str, *others: type[Exception]) -> Iterator[None]:
     """Convert exceptions that a library raises for a damaged file into `InputError`.
 
     Args:
@@ -148,7 +148,7 @@ def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealA
     return np.column_stack(channels)
 
 
-# File formats of measured tables. A new format is a module in `formats/` and a row in `TABLE_FORMATS`.
+# File formats of measured tables. A new format is a file beside this one and a row in `TABLE_FORMATS`.
 Reader = Callable[[Path, ChannelNames, int], list[MeasuredTable]]
 """Reader of a format. Its arguments are the path, the names of the channels in the sidecar (empty for a file that
 describes itself, `EVERY_CHANNEL` for all channels by their names in the file) and the largest accepted number of
@@ -161,7 +161,7 @@ class TableFormat:
     """File format of measured tables."""
 
     module: str
-    """Module of its reader in `formats/`; the reader is called `read_` and the name of the module."""
+    """File of its reader in this folder; the reader is called `read_` and the name of the file."""
     suffixes: tuple[str, ...]
     """Suffixes of its files in lower case, the usual one first."""
     library: str = ""
@@ -261,7 +261,7 @@ def read_tables(
     if table_format is not CSV:
         raise InputError(
             f"sidecar of {where}, key table",
-            f"states the layout of a text table, but {path.suffix} is no text table",
+            f"states the layout of a text table, but {path.suffix} is not a text table",
             "Remove separator, decimal, header_lines and encoding.",
         )
     return table_format.read(path, names, largest, layout)

@@ -1,4 +1,4 @@
-"""Control of child processes on Linux: end with the parent, adoption and end of orphans.
+"""Control of child and worker processes on Linux: end with the parent, adoption and end of orphans, signals.
 
 On other platforms the functions have no effect.
 """

@@ -20,7 +20,7 @@ def ignore_progress(share: float) -> None:
     """Follow no progress."""
 
 
-def follow_part(progress: ShareCallback, begin: float, end: float) -> ShareCallback:
+def build_part_callback(progress: ShareCallback, begin: float, end: float) -> ShareCallback:
     """Callback of a part of a computation.
 
     Args:
@@ -37,7 +37,7 @@ class TaskStep:
     task: str
     """Task, such as the id of a case."""
     name: str
-    """TaskStep that runs."""
+    """Step that runs."""
     completed: float
     """Completed share of the task, 0 to 1."""
 
@@ -72,7 +72,7 @@ class StepSequence:
     """Estimated duration of every step, in any unit."""
 
     def begin(self, name: str) -> ShareCallback:
-        """Report the begin of a step; returns a function that reports its completed share, 0 to 1."""
+        """Report the start of a step; return the callback of its completed share, 0 to 1."""
         names, (begin, end) = list(self.weights), _PART.get()
         scale = (end - begin) / sum(self.weights.values())
         before = begin + scale * sum(self.weights[earlier] for earlier in names[: names.index(name)])
@@ -86,6 +86,6 @@ class StepSequence:
 
 
 def report_remote(logger: logging.Logger, task: str) -> None:
-    """Report the begin of a task in another process, whose steps are not followed."""
+    """Report the start of a task in another process, whose steps are not followed."""
     name = "in a process of its own"
     logger.info("%s: %s", task, name, extra={"step": TaskStep(task, name, 0.0)})

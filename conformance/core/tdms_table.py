@@ -11,18 +11,18 @@ from pantocheck.conformance.core.measured_table import (
     ChannelNames,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
     stack_channels,
 )
 
 
 def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`."""
-    del names  # `mass_drops` compares the names of the columns with the sidecar
+    del names  # `drop_sidecar` compares the names of the columns with the sidecar
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
-    with open_file(path, where, MAX_FILE_BYTES) as file, refuse_damage(where, "TDMS"):
+    with open_file(path, where, MAX_FILE_BYTES) as file, convert_damage_errors(where, "TDMS"):
         stated = sum(len(channel) for group in TdmsFile.read_metadata(file).groups() for channel in group.channels())
         if stated > min(largest, path.stat().st_size):  # a sample has at least one byte
             hint = f"At most {largest} samples are accepted, and not more samples than the file has bytes."

@@ -328,6 +328,6 @@ def _find_missing_numbers(lines: list[NumberedLine], where: str) -> InputError:
         return InputError(where, "holds a head line but no samples", "Export the record again.")
     return InputError(
         where,
-        "is no table of numbers under any separator and decimal mark",
+        "is not a table of numbers under any separator and decimal mark",
         "Export columns of numbers, or state separator, decimal and header_lines in [table] of the sidecar.",
     )

@@ -1,4 +1,4 @@
-"""Numbers with their nouns, for everything that a person reads."""
+"""Texts for a reader: numbers with nouns, names of documentation pages, characters that no page may show."""
 
 import re
 import unicodedata

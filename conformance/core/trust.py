@@ -12,7 +12,7 @@ Computed = Literal["computed"]
 LEVELS: tuple[Trust, ...] = get_args(Trust)
 
 
-def limit_counts(trust: Trust | Computed | None, lowest: Trust | Computed) -> bool:
+def decides_verdict(trust: Trust | Computed | None, lowest: Trust | Computed) -> bool:
     """Whether a limit of this trust decides a verdict, if `lowest` is the lowest trust that counts.
 
     With `computed`, computed limits count and no others; with any other level, computed limits do not count. Bounds

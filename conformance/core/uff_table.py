@@ -16,7 +16,7 @@ from pantocheck.conformance.core.measured_table import (
     EveryChannel,
     MeasuredTable,
     TableColumn,
-    refuse_damage,
+    convert_damage_errors,
     stack_channels,
 )
 from pantocheck.conformance.core.units import SI_UNITS, MotionQuantity
@@ -37,10 +37,10 @@ DROP_LINE = re.compile(
 
 
 def read_uff_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of a universal file; arguments and errors as in `table_formats.Reader`."""
+    """Read the run of a universal file; arguments and errors as in `measured_table.Reader`."""
     where = f"record '{path.name}'"
     # pyuff raises plain `Exception` for some damaged files, and leaves out keys for others.
-    with refuse_damage(where, "a universal file", Exception):
+    with convert_damage_errors(where, "a universal file", Exception):
         return [_build_table(_read_sets(path, where), path.name, names, largest)]
 
 

@@ -11,7 +11,7 @@ from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.pages.words import clean_text
 
 CheckOutcome = Literal["proved", "contradicted", "incomplete", "open"]
-"""CheckOutcome of a check, `open` if it was not requested or needs more than the document.
+"""Outcome of a check; `open` if it was not requested or needs more than the document.
 
 `incomplete`: another version wrote the document, so that a part of it could not be compared. This is no contradiction,
 but such a document is never accepted: otherwise a changed version number would hide changed pages.
@@ -27,7 +27,7 @@ class DocumentCheck:
     """Result of one check."""
 
     outcome: CheckOutcome
-    """CheckOutcome of the check."""
+    """Outcome of the check."""
     statement: str
     """Fact that was proved or not, as a sentence."""
     details: tuple[str, ...] = ()
@@ -41,7 +41,7 @@ def shorten_details(details: Sequence[str]) -> tuple[str, ...]:
 
 
 def judge_details(proved: str, contradicted: str, details: Iterable[str]) -> DocumentCheck:
-    """Check that is proved without details, and contradicted by each of them; control characters are removed."""
+    """Check that is contradicted if there are details, and otherwise proved; control characters are removed."""
     lines = tuple(dict.fromkeys(map(clean_text, details)))
     return DocumentCheck("contradicted", contradicted, lines) if lines else DocumentCheck("proved", proved)
 

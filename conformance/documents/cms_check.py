@@ -12,7 +12,7 @@ from pantocheck.conformance.documents.key_files import (
     find_validity_problem,
     format_moment,
     read_name,
-    run_apart,
+    run_in_own_thread,
 )
 from pantocheck.conformance.documents.signature_writing import ROLE_PREFIX
 from pantocheck.conformance.pages.words import clean_text
@@ -195,7 +195,7 @@ def _validate(content: bytes, signed_data: Any, roots: list[Any], moment: dateti
             )
         )
 
-    return run_apart(validate)
+    return run_in_own_thread(validate)
 
 
 def _find_distrust(status: Any, moment: datetime) -> str:

@@ -48,7 +48,7 @@ class PdfCertificate:
     attachment: bytes
     """Attached results."""
     results: Results
-    """The same results as values."""
+    """Attached results as values."""
 
 
 def parse_pdf_certificate(content: bytes, name: str) -> PdfCertificate:
@@ -81,9 +81,9 @@ def open_document(content: bytes, name: str) -> "PdfReader":
     except Exception as error:
         raise _build_damage_error(name, error) from None
     if encrypted:
-        raise InputError(name, "an encrypted PDF", "Pantocheck writes no encrypted PDF. Request the certificate again.")
+        raise InputError(name, "is encrypted", "Pantocheck writes no encrypted PDF. Request the certificate again.")
     if pages == 0:
-        raise InputError(name, "a PDF without pages", "Request the certificate again.")
+        raise InputError(name, "has no pages", "Request the certificate again.")
     return reader
 
 
@@ -103,14 +103,14 @@ def read_attachment(reader: "PdfReader", name: str) -> bytes:
             f"A certificate holds one {NAME}. Other PDFs cannot be verified; reports on campaigns, mass drops and "
             "comparisons hold no results."
         )
-        raise InputError(name, f"{len(attachments) or 'no'} attachment named {NAME}", hint)
+        raise InputError(name, f"holds {len(attachments) or 'no'} attachments named {NAME}", hint)
     return content
 
 
 def _build_damage_error(name: str, error: Exception) -> InputError:
     """Message for an exception of the parser; its exceptions for damaged files have no common base."""
     return InputError(
-        name, f"a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
+        name, f"is a damaged PDF ({clean_text(str(error)) or type(error).__name__})", "Request the certificate again."
     )
 
 
@@ -140,14 +140,14 @@ def parse_html_certificate(content: bytes, name: str) -> HtmlCertificate:
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(name, "an HTML page that is not UTF-8", "Request the certificate again.") from None
+        raise InputError(name, "is an HTML page that is not UTF-8", "Request the certificate again.") from None
     blocks = DATA_BLOCK.findall(text)
     if len(blocks) != 1:
         hint = (
             f"A certificate holds one data block named {BLOCK_ID}. Other pages cannot be verified; reports on "
             "campaigns, mass drops and comparisons hold no results, nor do pages of early versions: verify their PDF."
         )
-        raise InputError(name, f"{len(blocks) or 'no'} embedded results", hint)
+        raise InputError(name, f"holds {len(blocks) or 'no'} embedded results", hint)
     return HtmlCertificate(name, text, parse_results(blocks[0].encode("utf-8"), f"{name}, embedded results"))
 
 
@@ -199,12 +199,12 @@ def read_certificate(path: Path) -> Certificate:
     if path.suffix.lower() in COPIES:
         raise InputError(
             name,
-            "a copy of results without protection: no change of it can be found",
+            "is a copy of results without protection: a change of it cannot be found",
             f"Verify the document beside it: {', '.join(DOCUMENTS)}.",
         )
     raise InputError(
         name,
-        "not a PDF, not an HTML page and not JSON",
+        "is neither a PDF nor an HTML page nor JSON",
         "Name the certificate.pdf, certificate.html or results.json that 'pantocheck run' wrote.",
     )
 

@@ -1,4 +1,4 @@
-"""Private keys with their certificates, from PKCS#12 or PEM files."""
+"""Files of signatures: private keys with their certificates (PKCS#12, PEM), X.509 certificates, CMS signatures."""
 
 import base64
 import logging
@@ -78,7 +78,7 @@ def _load_pem(content: bytes, where: str, ask: AskPassphrase) -> Any:
     except (ValueError, UnsupportedAlgorithm) as error:
         if isinstance(error, InputError):
             raise
-        raise _build_load_error(where, "no private key in PEM format, or one that is damaged") from None
+        raise _build_load_error(where, "the file holds no intact private key in PEM format") from None
 
 
 def _load_pkcs12(content: bytes, where: str, ask: AskPassphrase) -> tuple[Any, list[Any]]:
@@ -91,7 +91,7 @@ def _load_pkcs12(content: bytes, where: str, ask: AskPassphrase) -> tuple[Any, l
         _ = structure.Pfx.load(content, strict=True)["version"].native
     except (ValueError, TypeError):
         raise InputError(
-            where, "neither PKCS#12 nor PEM", "Give a .p12 or .pfx file, or a PEM file and --certificate."
+            where, "is neither PKCS#12 nor PEM", "Give a .p12 or .pfx file, or a PEM file and --certificate."
         ) from None
     try:
         with warnings.catch_warnings(action="ignore"):  # some programs write BER in place of DER
@@ -102,7 +102,7 @@ def _load_pkcs12(content: bytes, where: str, ask: AskPassphrase) -> tuple[Any, l
     except (ValueError, UnsupportedAlgorithm) as error:
         if isinstance(error, InputError):
             raise
-        raise _build_load_error(where, "a damaged file, or an encryption that is not supported") from None
+        raise _build_load_error(where, "the file is damaged, or its encryption is not supported") from None
     if key is None:
         raise InputError(where, "holds no private key", "Export the key together with its certificate.")
     certificates = [certificate for certificate in (own, *others) if certificate is not None]
@@ -110,7 +110,7 @@ def _load_pkcs12(content: bytes, where: str, ask: AskPassphrase) -> tuple[Any, l
 
 
 def _build_load_error(where: str, otherwise: str) -> InputError:
-    return InputError(where, f"a wrong passphrase, or {otherwise}", "Check the passphrase and the file.")
+    return InputError(where, f"the passphrase is wrong, or {otherwise}", "Check the passphrase and the file.")
 
 
 def _select_certificate(key: Any, certificates: list[Any], where: str) -> SigningKey:
@@ -120,7 +120,7 @@ def _select_certificate(key: Any, certificates: list[Any], where: str) -> Signin
     public = key.public_key().public_bytes(Encoding.DER, PublicFormat.SubjectPublicKeyInfo)
     own = [certificate for certificate in certificates if certificate.public_key.dump() == public]
     if not own:
-        found = "no certificate found" if not certificates else "the signing certificate belongs to another key"
+        found = "holds no certificate" if not certificates else "the signing certificate belongs to another key"
         raise InputError(where, found, "Give the certificate of this key with --certificate.")
     return SigningKey(key, own[0], tuple(other for other in certificates if other is not own[0]))
 
@@ -129,13 +129,13 @@ def _check_usable(key: SigningKey, where: str) -> None:
     """Refuse a key whose signature would not be trusted at the moment of signing."""
     public = key.certificate.public_key
     if public.algorithm not in ("rsa", "ec", "ed25519", "ed448"):
-        raise InputError(where, f"a key of the kind '{public.algorithm}'", "Use an RSA, EC or Ed25519 key.")
+        raise InputError(where, f"holds a key of the kind '{public.algorithm}'", "Use an RSA, EC or Ed25519 key.")
     if public.algorithm == "rsa" and public.bit_size < SMALLEST_RSA_KEY:
-        raise InputError(where, f"an RSA key of {public.bit_size} bits", f"Use at least {SMALLEST_RSA_KEY} bits.")
+        raise InputError(where, f"holds an RSA key of {public.bit_size} bits", f"Use at least {SMALLEST_RSA_KEY} bits.")
     problem = find_validity_problem(key.certificate, datetime.now(UTC)) or find_usage_problem(key.certificate)
     if problem:
         found = f"the signing certificate of '{key.holder}' {problem}"
-        raise InputError(where, found, "Request a certificate for signatures from its authority.")
+        raise InputError(where, found, "Request a certificate for signatures from your authority.")
 
 
 # Signature files beside a document: CMS in DER or PEM.
@@ -168,18 +168,18 @@ def parse_signatures(content: bytes, where: str) -> list[Any]:
             content = pem.unarmor(content)[2]
         message = cms.ContentInfo.load(content, strict=True)
         if message["content_type"].native != "signed_data":
-            raise InputError(where, f"a message of the kind '{message['content_type'].native}'", hint)
+            raise InputError(where, f"is a message of the kind '{message['content_type'].native}'", hint)
         joined = message["content"]
         _ = joined.native  # reads every field, so that a damaged one is reported here
     except InputError:
         raise
     except (ValueError, TypeError, KeyError, AttributeError):
-        raise InputError(where, "no CMS signature, or a damaged one", hint) from None
+        raise InputError(where, "is not a CMS signature, or is damaged", hint) from None
     if joined["encap_content_info"]["content"].native is not None:
-        raise InputError(where, "a signature that contains its content", hint)
+        raise InputError(where, "is a signature that contains its content", hint)
     number = len(joined["signer_infos"])
     if not 1 <= number <= MOST_SIGNATURES:
-        raise InputError(where, f"{number} signatures", f"At least 1 and at most {MOST_SIGNATURES} are accepted.")
+        raise InputError(where, f"has {number} signatures", f"At least 1 and at most {MOST_SIGNATURES} are accepted.")
     return [_separate(joined, info) for info in joined["signer_infos"]]
 
 
@@ -222,7 +222,7 @@ def read_certificates(path: Path, where: str) -> list[Any]:
     """
     certificates = parse_certificates(read_bytes(path, where, MAX_KEY_FILE_BYTES), where)
     if not certificates:
-        raise InputError(where, "no certificate found", "Give a PEM file with -----BEGIN CERTIFICATE----- blocks.")
+        raise InputError(where, "holds no certificate", "Give a PEM file with -----BEGIN CERTIFICATE----- blocks.")
     return certificates
 
 
@@ -238,7 +238,7 @@ def parse_certificates(content: bytes, where: str) -> list[Any]:
         for certificate in certificates:
             _ = certificate.native  # reads every field, so that a damaged one is reported here
     except (ValueError, TypeError):
-        raise InputError(where, "a certificate is damaged", "Give certificates as PEM text or DER.") from None
+        raise InputError(where, "holds a damaged certificate", "Give certificates as PEM text or DER.") from None
     return certificates
 
 
@@ -285,7 +285,7 @@ def format_moment(moment: datetime) -> str:
 Result = TypeVar("Result")
 
 
-def run_apart(function: Callable[[], Result]) -> Result:
+def run_in_own_thread(function: Callable[[], Result]) -> Result:
     """Run a function in a thread of its own: pyHanko starts an event loop, and a notebook has a running one already."""
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(function).result()

@@ -27,7 +27,7 @@ from pantocheck.conformance.grading.case_verification import (
     verification_digest,
 )
 from pantocheck.conformance.grading.criterion_grading import criterion_name
-from pantocheck.conformance.grading.validity_warnings import find_unvalidated, validity_warnings
+from pantocheck.conformance.grading.validity_warnings import validity_warnings, warn_of_unvalidated_band
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import format_bounds
@@ -125,7 +125,7 @@ def _compare_warnings(case: Case, result: CaseResult) -> Iterator[str]:
         for owner, quantities in result.quantities.items()
     }
     evaluation = Evaluation(values, {})
-    for warning in (*validity_warnings(case, evaluation), *find_unvalidated(evaluation)):
+    for warning in (*validity_warnings(case, evaluation), *warn_of_unvalidated_band(evaluation)):
         if warning not in result.warnings:
             yield f"the warning '{warning.split(':')[0]}' is missing"
 

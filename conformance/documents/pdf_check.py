@@ -107,7 +107,7 @@ def read_date(reader: PdfReader, name: str) -> int:
         date = reader.metadata.creation_date if reader.metadata else None
         return 0 if date is None else max(0, int(date.timestamp()))
     except Exception:
-        raise InputError(name, "a date of creation that is no date", "Request the certificate again.") from None
+        raise InputError(name, "has a date of creation that is not a date", "Request the certificate again.") from None
 
 
 def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]:

@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, CaseVerification, ComponentName, Criterion
-from pantocheck.conformance.core.findings import count_findings, count_verdict, judge_finding
+from pantocheck.conformance.core.findings import count_findings, judge_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import Number, select_item
-from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, judge, margin
 from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
@@ -107,7 +107,7 @@ def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
     value, lower, upper = row.value, row.lower, row.upper
     if lower is None and upper is None:
         # Only a rule without a bound for this record, which is skipped, may lack a limit.
-        if row.verdict != ("skip" if limit_counts(row.trust, trust) else "info"):
+        if row.verdict != ("skip" if decides_verdict(row.trust, trust) else "info"):
             yield "no limit"
         return
     if lower is not None and upper is not None and lower > upper:
@@ -118,7 +118,7 @@ def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
     if finding is not None and finding.outcome != judge_finding(finding.role, judged):
         yield f"finding '{finding.outcome}' stated, '{judge_finding(finding.role, judged)}' follows"
     role = None if finding is None else finding.role
-    verdict = count_verdict(role, judged) if limit_counts(row.trust, trust) else "info"
+    verdict = lower_imposed_verdict(role, judged) if decides_verdict(row.trust, trust) else "info"
     if row.verdict != verdict:
         yield f"verdict '{row.verdict}' stated, '{verdict}' follows from value, limits and trust"
     expected = None if value is None else margin(value, lower, upper)
@@ -177,7 +177,7 @@ def _check_order(quantities: Mapping[str, float]) -> Iterator[str]:
 def check_components(
     row: Criterion, components: UncertaintyComponents, names: Collection[ComponentName]
 ) -> Iterator[str]:
-    """The components of a criterion must be those of its quantity; a drift and a missing limit have none."""
+    """Check that the components of a criterion are those of its quantity; a drift and a missing limit have none."""
     if row.is_drift or (row.lower is None and row.upper is None):
         return
     reported = components.get(str(row.pantograph), {}).get(row.quantity, {})
@@ -187,7 +187,7 @@ def check_components(
 
 
 def check_combination(case: CaseResult) -> Iterator[str]:
-    """Every combined uncertainty must be the root of the sum of the squares of its components."""
+    """Check that every combined uncertainty is the root of the sum of the squares of its components."""
     for key, quantities in case.uncertainty_components.items():
         for name, parts in quantities.items():
             columns = [width if isinstance(width, list) else [width] for width in parts.values()]

@@ -15,7 +15,7 @@ from pantocheck.conformance.documents.key_files import (
     describe_failure,
     format_moment,
     parse_signatures,
-    run_apart,
+    run_in_own_thread,
 )
 from pantocheck.conformance.pages.pdf import render_signature_box
 
@@ -110,7 +110,7 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
             )
         )
 
-    added = run_apart(sign)
+    added = run_in_own_thread(sign)
     parts = [] if earlier is None else parse_signatures(earlier, where)
     return join_signatures([*parts, added["content"]])
 
@@ -170,7 +170,7 @@ def sign_pdf(content: bytes, signer: Signer, place: str | None, where: str) -> b
             stamp_style=None if place is None else _build_stamp(signer, BOXES[place]),
             new_field_spec=SigFieldSpec(name, readable_field_name=f"Signature of the {signer.role}", **box),
         )
-        return bytes(run_apart(lambda: pdf_signer.sign_pdf(writer)).getvalue())
+        return bytes(run_in_own_thread(lambda: pdf_signer.sign_pdf(writer)).getvalue())
 
 
 def _open_writer(content: bytes, where: str) -> Any:
@@ -191,7 +191,7 @@ def _open_writer(content: bytes, where: str) -> Any:
 
     writer = Writer(BytesIO(content))
     if writer.prev.encrypted:
-        raise InputError(where, "an encrypted PDF", "Sign the PDF before it is encrypted; PDF/A has no encryption.")
+        raise InputError(where, "is encrypted", "Sign the PDF before it is encrypted; PDF/A has no encryption.")
     return writer
 
 

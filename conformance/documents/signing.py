@@ -145,7 +145,7 @@ def build_timestamp_client(url: str) -> Any:
 
     where = f"time-stamp server {clean_text(url)}"
     if urlsplit(url).scheme not in ("http", "https") or not urlsplit(url).hostname:
-        raise InputError(where, "not an address of a server", "Give an address as https://tsa.example.org/tsr.")
+        raise InputError(where, "is not the address of a server", "Give an address as https://tsa.example.org/tsr.")
 
     class Client(TimeStamper):  # type: ignore[misc]  # the base class is known only when the package is installed
         """Client that sends a request by HTTP."""

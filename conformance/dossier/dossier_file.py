@@ -36,7 +36,7 @@ class StaticTolerance(InputTable):
     elasticity_mm_N: Positive | None = None
     """Largest difference between model and measurement [mm/N]."""
     elasticity_pct: Positive | None = None
-    """The same, relative to the measured elasticity [%]."""
+    """Largest difference between model and measurement, relative to the measured elasticity [%]."""
     height_mm: Positive | None = None
     """Largest difference of the contact wire height [mm]."""
     trust: Trust = NO_TRUST

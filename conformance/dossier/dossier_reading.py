@@ -14,7 +14,7 @@ from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.table_sidecar import locate_table
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.dossier.dossier_file import CaseRun, DossierFile, LineEntry, PantographEntry, RecordRun
-from pantocheck.conformance.execution.plan import place_cases, place_system
+from pantocheck.conformance.execution.plan import resolve_cases, resolve_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
@@ -40,7 +40,7 @@ class Dossier:
     @property
     def system(self) -> str:
         """System under test as for `--system`, with paths relative to the working folder."""
-        return place_system(self.file.system, self.folder)
+        return resolve_system(self.file.system, self.folder)
 
     @property
     def digest(self) -> str:
@@ -111,7 +111,7 @@ def read_dossier(path: Path) -> Dossier:
         for i, pair in enumerate(file.pair, 1)
         if isinstance(pair.simulated, CaseRun)
     }
-    cases = reader.attempt("reference.cases", lambda: select_cases(place_cases(file.reference.cases, path.parent)))
+    cases = reader.attempt("reference.cases", lambda: select_cases(resolve_cases(file.reference.cases, path.parent)))
     if (limits := file.reference.limits) is not None:
         own_limits = path.parent / limits
         cases = reader.attempt("reference.limits", lambda: overlay_limits(cases or [], read_limits(own_limits)))
@@ -175,7 +175,7 @@ def _locate_document(path: Path, folder: Path) -> None:
 
 def _select_run(name: str, folder: Path) -> Case:
     """Case of the simulated run of a pair: one case with a train."""
-    cases = select_cases(place_cases([name], folder))
+    cases = select_cases(resolve_cases([name], folder))
     trains = [case for case in cases if not case.is_static]
     if len(trains) != 1 or trains[0].file.mass_drop is not None:
         ids = ", ".join(case.id for case in cases)

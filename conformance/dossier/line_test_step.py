@@ -17,7 +17,7 @@ from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.dossier.dossier_file import CaseRun, LineTestTable, PairTable
 from pantocheck.conformance.dossier.dossier_reading import Dossier
-from pantocheck.conformance.dossier.run_reading import RunSide, find_copy, list_mismatches, make_run, read_run
+from pantocheck.conformance.dossier.run_reading import RunSide, find_dependence, list_mismatches, read_run, run_and_read
 from pantocheck.conformance.dossier.step_result import StepInterrupted, StepResult, list_inputs
 from pantocheck.conformance.execution.runner import Progress
 from pantocheck.conformance.grading.case_identity import profile_limits_digest
@@ -103,7 +103,7 @@ class LineTests:
     def _simulate(self, pair: PairTable, profile: Profile) -> RunSide:
         if isinstance(pair.simulated, CaseRun):
             case, path = self.dossier.pair_cases[pair.name], self.folder / RECORDS_FOLDER / f"{pair.name}.h5"
-            return make_run(case, pair.simulated.direction, self.system, self.dossier, profile, path)
+            return run_and_read(case, pair.simulated.direction, self.system, self.dossier, profile, path)
         return read_run(pair.simulated, self.dossier, profile)
 
     def _find_dependence(self, simulated: RunSide, measured: RunSide) -> str | None:
@@ -114,7 +114,7 @@ class LineTests:
             return f"the simulated record states {name}, the system under test is {self.system.name}"
         if measured.record.system.name == self.system.name:
             return "the measured record was made by the system under test"
-        return find_copy(simulated, measured)
+        return find_dependence(simulated, measured)
 
     def _grade(self, pair: PairTable, simulated: RunSide, measured: RunSide, profile: Profile) -> CaseResult:
         trust = self.dossier.file.trust

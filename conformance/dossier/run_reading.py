@@ -64,7 +64,7 @@ def measure_spacing(record: AssessedRecord) -> tuple[float, ...] | None:
     return tuple(float(np.median(ahead - behind)) for ahead, behind in pairwise(positions))
 
 
-def find_copy(simulated: RunSide, measured: RunSide) -> str | None:
+def find_dependence(simulated: RunSide, measured: RunSide) -> str | None:
     """Reason why two records are not independent of each other; None if they are."""
     first, second = simulated.record, measured.record
     if first.record_digest == second.record_digest or first.digest == second.digest:
@@ -135,7 +135,7 @@ def read_run(run: RecordRun, dossier: Dossier, profile: Profile) -> RunSide:
     )
 
 
-def make_run(case: Case, direction: str, system: System, dossier: Dossier, profile: Profile, path: Path) -> RunSide:
+def run_and_read(case: Case, direction: str, system: System, dossier: Dossier, profile: Profile, path: Path) -> RunSide:
     """Run a case on the system under test, keep its record, and read it like any other record.
 
     Args:

@@ -69,7 +69,7 @@ class StepResult:
 
 
 def grade_again(row: Criterion, changes: Mapping[str, object], lowest_trust: Trust) -> Criterion:
-    """Criterion of the procedure from one of a comparison.
+    """Grade the criterion of a comparison again, as a criterion of the procedure.
 
     Args:
         row: Criterion of the comparison. A value of an incomplete record is left out, because it must not be graded.

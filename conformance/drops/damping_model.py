@@ -176,13 +176,13 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
             "line of the record with --line.",
         )
     columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
-    target, std = measured.damping_ratio - basis.stated, fit_deviation(measured)
+    target, std = measured.damping_ratio - basis.stated, ratio_deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
     for _ in range(3):
-        values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+        values = solve_weighted(columns, target, mode_weights(std, measured.group, used))
         used = _near_their_group(target - columns @ values, std, measured.group)
     # The last fit uses the final set of modes.
-    values = solve_weighted(columns, target, fit_weights(std, measured.group, used))
+    values = solve_weighted(columns, target, mode_weights(std, measured.group, used))
     predicted = basis.stated + columns @ values
     low_95, high_95 = _confidence_intervals(columns, target, measured, used)
     relative = (measured.damping_ratio - predicted) / measured.damping_ratio
@@ -193,12 +193,12 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
     return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
 
 
-def fit_deviation(measured: MeasuredModes) -> RealArray:
+def ratio_deviation(measured: MeasuredModes) -> RealArray:
     """Standard deviation of measured minus computed damping ratios, (m,), due to measurement and line model [-]."""
     return np.hypot(measured.std, MODEL_ERROR * measured.damping_ratio)
 
 
-def fit_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
+def mode_weights(std: RealArray, group: IntegerArray, used: NDArray[np.bool_]) -> RealArray:
     """Square roots of the weights of the modes, (m,): 1 / (std sqrt(n)) with n used modes in the group.
 
     Modes that are not used have the weight 0.
@@ -229,7 +229,7 @@ def _confidence_intervals(
 ) -> tuple[RealArray, RealArray]:
     """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
     random = np.random.default_rng(20150817)
-    std, noise, group = fit_deviation(measured), measured.std, measured.group
+    std, noise, group = ratio_deviation(measured), measured.std, measured.group
     group_members = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
     group_members = [members for members in group_members if members.size]
     replicates = np.empty((FIT_REPLICATES, columns.shape[1]))
@@ -237,7 +237,7 @@ def _confidence_intervals(
         rows = np.concatenate([random.choice(members, members.size) for members in group_members])
         noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
         all_used = np.ones(rows.size, dtype=np.bool_)
-        replicates[r] = solve_weighted(columns[rows], noisy, fit_weights(std[rows], group[rows], all_used))
+        replicates[r] = solve_weighted(columns[rows], noisy, mode_weights(std[rows], group[rows], all_used))
     return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
 
 
@@ -277,7 +277,7 @@ def compute_observability(basis: DampingBasis, measured: MeasuredModes, fit: Dam
     If the model misfits the damping ratios by more than their standard deviations, the misfit takes their place: it
     could otherwise pass for information on the coefficients.
     """
-    std = fit_deviation(measured)
+    std = ratio_deviation(measured)
     misfit = float(np.sqrt(np.mean(((measured.damping_ratio - fit.predicted) / std)[fit.used] ** 2)))
     weighted = basis.ratios / (max(1.0, misfit) * std)[:, None]
     rows = []
@@ -336,7 +336,7 @@ def residual_without_term(basis: DampingBasis, measured: MeasuredModes, fit: Dam
     """Root mean square of the relative residual of a fit without one coefficient, over the modes in the fit [-]."""
     kept = [basis.terms.index(term) for term in fit.values if term != left_out]
     target = measured.damping_ratio - basis.stated
-    weight = fit_weights(fit_deviation(measured), measured.group, fit.used)
+    weight = mode_weights(ratio_deviation(measured), measured.group, fit.used)
     values = solve_weighted(basis.ratios[:, kept], target, weight)
     relative = (target - basis.ratios[:, kept] @ values) / measured.damping_ratio
     return float(np.sqrt(np.mean(relative[fit.used] ** 2)))

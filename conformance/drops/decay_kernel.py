@@ -1,4 +1,4 @@
-"""Exact discrete Fourier transform of a truncated free decay.
+"""Exact discrete Fourier transform of a truncated free decay, and filters that keep its pole.
 
 A decay x_n = A exp(lambda n dt) + conj., n = 0..N-1, has at the lines w_k = 2 pi k / (N dt) the transform
 
@@ -129,7 +129,7 @@ class FrequencyBand:
         return cls(LOWEST_FREQUENCY, min(high, 0.92 * fitted), fitted, stop)
 
 
-def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float) -> RealArray:
+def low_pass_taps(rate: float, passes: float, stops: float, attenuation: float) -> RealArray:
     """Taps of a linear-phase low-pass (Kaiser window).
 
     Args:
@@ -145,7 +145,7 @@ def low_pass_decay(rate: float, passes: float, stops: float, attenuation: float)
     return np.asarray(taps, dtype=np.float64)
 
 
-def complete_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
+def filter_full_overlap(samples: SampledArray, taps: RealArray) -> SampledArray:
     """Filtered samples at full overlap with the filter, (n - t + 1, c), in which each decay has its exact pole."""
     return np.asarray(scipy.signal.oaconvolve(samples, taps[:, None], mode="valid", axes=0))
 

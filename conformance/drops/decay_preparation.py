@@ -6,7 +6,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.drops.decay_kernel import FrequencyBand, complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.decay_search import SHORTEST_DECAY, DecaySearch
 from pantocheck.conformance.drops.drop_record import DropChannel, DropRecord
 from pantocheck.conformance.records.force_checks import find_clipping
@@ -197,7 +197,7 @@ def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
     n = linear.samples.shape[0]
     step = round(linear.dt * record.rate)
     signals = record.signals[begin : begin + (n - 1) * step + linear.taps.size, list(record.along("y"))]
-    return complete_overlap(signals, linear.taps)[::step] if signals.shape[1] else np.zeros((n, 0))
+    return filter_full_overlap(signals, linear.taps)[::step] if signals.shape[1] else np.zeros((n, 0))
 
 
 def find_linear_decay(
@@ -217,7 +217,7 @@ def find_linear_decay(
     """
     signals, rate, name = record.signals[:, list(columns)], record.rate, record.name
     begin = int(release.time * rate)
-    taps = low_pass_decay(rate, band.fitted, band.stop, 80.0)
+    taps = low_pass_taps(rate, band.fitted, band.stop, 80.0)
     step = max(1, int(rate / (2.6 * band.stop)))
     available = (signals.shape[0] - begin) / rate
     if available - GUARD < SHORTEST_DECAY:
@@ -226,7 +226,7 @@ def find_linear_decay(
             f"ends {max(available, 0):.1f} s after the release",
             f"Record 120 to 240 s after the release; at least {SHORTEST_DECAY + GUARD:g} s are needed.",
         )
-    samples = complete_overlap(signals[begin:], taps)[::step]
+    samples = filter_full_overlap(signals[begin:], taps)[::step]
     dt, total, shortest = step / rate, samples.shape[0], SHORTEST_DECAY - taps.size / rate
     guard = max(int(GUARD / dt), int(np.ceil((clipped_until - release.time) / dt)) + 1)
     if (total - guard) * dt < shortest:

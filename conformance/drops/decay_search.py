@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
-from pantocheck.conformance.drops.decay_kernel import FrequencyBand, complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.model_order import select_poles
 from pantocheck.conformance.drops.projection import build_block, solve_residues
 from pantocheck.conformance.drops.start_poles import find_start_poles
@@ -34,7 +34,7 @@ TEST_TRANSITION = 2.5
 
 @dataclass(frozen=True)
 class ResidualWindows:
-    """Windows of the residual: first samples, disturbed ones, samples of a window without and with its filter."""
+    """Windows of a residual: first samples, mask of the disturbed ones, lengths [samples] without and with filter."""
 
     starts: IntegerArray
     disturbed: NDArray[np.bool_]
@@ -141,7 +141,7 @@ def _residual_levels(
 
     The linear trend of each window is removed.
     """
-    inner = complete_overlap(residual, _test_filter(dt, band))
+    inner = filter_full_overlap(residual, _test_filter(dt, band))
     starts = np.arange(0, inner.shape[0] - window + 1, max(window // 4, 1))
     t = np.linspace(-1, 1, window)
     line = np.column_stack([np.ones(window), t])
@@ -162,4 +162,4 @@ def _exceeds_noise(ratio: RealArray, width: float, band: FrequencyBand) -> NDArr
 def _test_filter(dt: float, band: FrequencyBand) -> RealArray:
     """Short low-pass for the residual, so that a disturbance is located in time."""
     passes = max(band.fitted - TEST_TRANSITION, 0.5 * band.fitted)
-    return low_pass_decay(1 / dt, passes, band.fitted, 70.0)
+    return low_pass_taps(1 / dt, passes, band.fitted, 70.0)

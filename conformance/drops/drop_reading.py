@@ -13,12 +13,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable, parse_direction, read_tables
 from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
-from pantocheck.conformance.drops.drop_record import (
-    DropChannel,
-    DropDescription,
-    DropRecord,
-    find_sampling_rate,
-)
+from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord, find_sampling_rate
 from pantocheck.conformance.drops.drop_sidecar import DropSidecar, describe_columns
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.results.identified_modes import MeasuredLine
@@ -104,7 +99,7 @@ def _check_finite(values: RealArray, rate: float, where: str) -> None:
 def _check_signal(signal: RealArray, quantity: MotionQuantity, rate: float, where: str) -> list[str]:
     """Refuse a constant signal; warn of clipping and of implausible accelerations."""
     if np.ptp(signal) == 0:
-        raise InputError(where, "is constant", "Leave this channel out; its sensor did not work.")
+        raise InputError(where, "is constant", "Leave this channel out; its sensor failed.")
     warnings = []
     tops = find_clipping(signal)
     if tops:

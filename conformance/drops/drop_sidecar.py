@@ -70,7 +70,7 @@ class DropChannelTable(InputTable):
 
     @property
     def description(self) -> TableColumn:
-        """Description of the column as in a `MeasuredTable`."""
+        """The column as a `TableColumn`."""
         return TableColumn(
             self.name,
             unit=self.unit,

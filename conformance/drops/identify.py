@@ -10,7 +10,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, build_modes, fit_line, share_blocks
+from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, build_modes, fit_line, group_into_blocks
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
     estimate_block_noise,
@@ -111,7 +111,7 @@ def identify_decays(
 ) -> Identification:
     """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
     name, spans = decays[0].record.name, decays[0].record.line.spans_m
-    samples, places = share_blocks(decays)
+    samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles")
     selection, search = _search_poles(decays, samples, data, band) if start is None else _use_poles(start, data)

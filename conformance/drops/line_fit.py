@@ -14,7 +14,7 @@ from pantocheck.conformance.drops.projection import (
     ProjectionFit,
     build_block,
     estimate_noise,
-    residue_spread,
+    residue_deviation,
     solve_residues,
     whiten,
 )
@@ -74,7 +74,7 @@ class LineFit:
     """Squared residual over its expectation for noise [-]; 1 for a complete model."""
 
 
-def share_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
+def group_into_blocks(decays: list[PreparedDecay]) -> tuple[list[tuple[RealArray, float]], list[tuple[int, slice]]]:
     """Put records of about equal length into one block, cut to the shortest.
 
     Returns:
@@ -119,7 +119,7 @@ def fit_line(
     refined = refine_poles(poles, white, iterations=10)
     poles = refined.poles
     blocks = tuple(
-        FittedBlock(block, solve_residues(poles, block), sigma, residue_spread(poles, block))
+        FittedBlock(block, solve_residues(poles, block), sigma, residue_deviation(poles, block))
         for block, sigma in zip(data, noise, strict=True)
     )
     records = tuple(RecordFit(decay, blocks[b], columns) for decay, (b, columns) in zip(decays, places, strict=True))
@@ -269,7 +269,7 @@ def _lateral_shares(fit: LineFit, record: RecordFit) -> RealArray | None:
         return None
     data = build_block(decay.lateral, decay.linear.dt, fit.band.low, fit.band.fitted)
     lateral = solve_residues(fit.poles, data)
-    noise = estimate_noise(lateral, fit.poles.size, data) * residue_spread(fit.poles, data)[:, None]
+    noise = estimate_noise(lateral, fit.poles.size, data) * residue_deviation(fit.poles, data)[:, None]
     sideways = np.where(np.abs(lateral.residues) > 4 * noise, np.abs(lateral.residues), 0).max(axis=1)
     upward = np.abs(record.residues).max(axis=1)
     return np.asarray(sideways / np.maximum(upward, np.finfo(float).tiny))

@@ -50,7 +50,7 @@ def write_modes_csv(modes: tuple[Mode, ...], path: Path) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*MODE_COLUMNS, *(f"{place.name}_{part}" for place in places for part in SHAPE_PARTS)])
     for mode in modes:
-        shape = {place_sensor(component): component for component in mode.sensor_shape}
+        shape = {locate_sensor(component): component for component in mode.sensor_shape}
         cells = [_format_cell(getattr(mode, column)) for column in MODE_COLUMNS]
         for place in places:
             component = shape.get(place)
@@ -59,14 +59,14 @@ def write_modes_csv(modes: tuple[Mode, ...], path: Path) -> None:
     write_atomically(path, text.getvalue().encode("utf-8"))
 
 
-def place_sensor(component: SensorShape) -> SensorPlace:
+def locate_sensor(component: SensorShape) -> SensorPlace:
     """Sensor of one component of a shape."""
     return SensorPlace(component.sensor, component.wire, component.position_m)
 
 
 def list_sensor_places(modes: tuple[Mode, ...]) -> tuple[SensorPlace, ...]:
     """Sensors of all modes, each once, in the order of their number."""
-    places = {place_sensor(component) for mode in modes for component in mode.sensor_shape}
+    places = {locate_sensor(component) for mode in modes for component in mode.sensor_shape}
     return tuple(sorted(places, key=lambda place: (place.sensor, place.wire, place.position_m or 0.0)))
 
 
@@ -149,7 +149,7 @@ def _build_shape_set(mode: Mode, number: int, nodes: dict[SensorPlace, int]) -> 
         "eig": complex(-ratio * omega, omega * np.sqrt(1 - ratio**2)),
         "modal_a": 0j,
         "modal_b": 0j,
-        "node_nums": np.array([nodes[place_sensor(component)] for component in mode.sensor_shape]),
+        "node_nums": np.array([nodes[locate_sensor(component)] for component in mode.sensor_shape]),
         "r1": np.zeros_like(values),
         "r2": np.zeros_like(values),
         "r3": values,

@@ -106,7 +106,7 @@ def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
-def residue_spread(poles: ComplexArray, data: DataBlock) -> RealArray:
+def residue_deviation(poles: ComplexArray, data: DataBlock) -> RealArray:
     """Standard deviation of the real or imaginary part of a residue for unit noise and known poles, (m,)."""
     r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
     inverse = np.linalg.pinv(r[: r.shape[1]])

@@ -1,11 +1,11 @@
-"""Repeatability of a mass drop: comparison of its records at the start and a minute later."""
+"""Repeatability of a mass drop: its records at the start and a minute later; conversion of motion."""
 
 import numpy as np
 import scipy.fft
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.units import MotionQuantity
-from pantocheck.conformance.drops.decay_kernel import complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_kernel import filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER
 from pantocheck.conformance.results.identification_format import (
@@ -92,8 +92,8 @@ def _align_record(decay: PreparedDecay, lowest_rate: float) -> tuple[RealArray, 
     The cut-off is `HIGHEST_COMPARED`, or lower if the lowest sampling rate of the repeats [Hz] requires it.
     """
     rate, passes = decay.record.rate, min(HIGHEST_COMPARED, 0.28 * lowest_rate)
-    taps = low_pass_decay(rate, passes, 1.5 * passes, 50.0)
-    samples = complete_overlap(decay.record.signals[:, list(decay.columns)], taps)
+    taps = low_pass_taps(rate, passes, 1.5 * passes, 50.0)
+    samples = filter_full_overlap(decay.record.signals[:, list(decay.columns)], taps)
     time = (np.arange(samples.shape[0]) + (taps.size - 1) / 2) / rate - decay.release.time
     return np.asarray(time, dtype=np.float64), samples
 

@@ -21,7 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.drops.decay_kernel import complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_kernel import filter_full_overlap, low_pass_taps
 from pantocheck.conformance.results.identified_modes import read_modes
 
 BAND = 1.0
@@ -84,11 +84,11 @@ def _try_band_orders(records: list[RealArray], rate: float, low: float, high: fl
     flank = max(0.4 * width, 25.0 * rate / min(samples.shape[0] for samples in records))
     middle = 2 * np.pi * (low + high) / 2
     step = max(1, int(rate / (width + 2.5 * flank)))
-    taps = low_pass_decay(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
+    taps = low_pass_taps(rate, width / 2 + 0.1 * flank, width / 2 + flank, 60.0)
     signals = []
     for samples in records:
         shifted = samples * np.exp(-1j * middle * np.arange(samples.shape[0]) / rate)[:, None]
-        signals.append(complete_overlap(shifted, taps)[::step])
+        signals.append(filter_full_overlap(shifted, taps)[::step])
     dt = step / rate
     basis = _signal_subspace(signals)
     trials = [_subspace_poles(basis[:, :order], dt) for order in range(1, basis.shape[1] + 1)]

@@ -176,9 +176,9 @@ def read_plan(path: Path) -> Plan:
         )
     return plan.model_copy(
         update={
-            "cases": place_cases(plan.cases, folder),
+            "cases": resolve_cases(plan.cases, folder),
             "case_folders": tuple(str(folder / name) for name in plan.case_folders),
-            "system": place_system(plan.system, folder),
+            "system": resolve_system(plan.system, folder),
             "out": str(folder / plan.out),
             "baseline": None if plan.baseline is None else str(folder / plan.baseline),
             "limits": None if plan.limits is None else str(folder / plan.limits),
@@ -191,12 +191,12 @@ def split_names(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-def place_cases(names: Sequence[str], folder: Path) -> tuple[str, ...]:
+def resolve_cases(names: Sequence[str], folder: Path) -> tuple[str, ...]:
     """Ids, globs and paths of cases; paths are relative to the folder of their file."""
     return tuple(str(folder / name) if name.endswith(".toml") else name for name in names)
 
 
-def place_system(system: str, folder: Path) -> str:
+def resolve_system(system: str, folder: Path) -> str:
     """Text of a system whose folder or program is relative to the folder of its file."""
     kind, _, rest = system.partition(":")
     if kind == "record":

@@ -13,7 +13,7 @@ from pantocheck.conformance.core.files import file_digest
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.grading.record_uncertainty import assess_uncertainty
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, skip_record
+from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, build_empty_evaluation
 from pantocheck.conformance.quantities.filters import is_same_cutoff
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.uncertainty import Uncertainty
@@ -124,7 +124,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
     force_digest = _force_digest(samples)
     missing = find_missing_statement(samples, sidecar)
-    evaluation = prepared.evaluation if missing is None else skip_record(missing, prepared.pantographs)
+    evaluation = prepared.evaluation if missing is None else build_empty_evaluation(missing, prepared.pantographs)
     return AssessedRecord(
         name=path.stem,
         header=sidecar,
@@ -251,7 +251,7 @@ def apply_exclusions(
     Returns:
         excluded: Stretches that are left out [m, m].
         facts: Every event, with the reason why it is left out or not.
-        warnings: Sentences on what is left out, and on exclusions that are not applied.
+        warnings: Sentences on stretches that are left out, and on exclusions that are not applied.
     """
     wanted = [event for event in events if event.reason is not None]
     permitted = [event for event in wanted if rule is not None and event.kind in rule.kinds]

@@ -32,7 +32,7 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.check import CheckName, Finding
-from pantocheck.conformance.runs.record_checks import check_record, record_state
+from pantocheck.conformance.runs.record_checks import check_record, judge_record_state
 from pantocheck.conformance.runs.record_folder import find_other_case, find_record_mismatch
 from pantocheck.conformance.runs.system import Delivered
 
@@ -142,7 +142,7 @@ class CaseEvaluation:
             return RecordFacts(state="unverified", reason=reason, **digests, **start)
         if self.signals is None:
             return None
-        state, reason = record_state(self.findings)
+        state, reason = judge_record_state(self.findings)
         return RecordFacts(state=state, reason=reason, **digests, **start)
 
     def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:

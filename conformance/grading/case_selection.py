@@ -6,7 +6,7 @@ from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.core.trust import Trust, limit_counts
+from pantocheck.conformance.core.trust import Trust, decides_verdict
 from pantocheck.conformance.results.results_format import VerdictName
 
 VerdictChoice = Literal["criteria", "verification", "both"]
@@ -54,7 +54,7 @@ class CaseSelection:
         return ("criteria" in self.requested and self._has_limit(case)) or self._is_verified(case)
 
     def _has_limit(self, case: Case) -> bool:
-        return any(limit_counts(limit.trust, self.trust) for limit in case.limits)
+        return any(decides_verdict(limit.trust, self.trust) for limit in case.limits)
 
     def _is_verified(self, case: Case) -> bool:
         return "verification" in self.requested and find_converged(case.id) is not None

@@ -65,7 +65,7 @@ class Participation:
             if case not in self.information
         )
 
-    def judge_name(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
+    def judge_one_verdict(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
         """One of the two verdicts of a run; None if no case takes part in it."""
         verdicts = [(case.id, verdict) for case in cases if (verdict := self._case_verdict(name, case)) is not None]
         return self.judge_run(verdicts, system) if verdicts else None
@@ -91,7 +91,7 @@ class Participation:
         some cases are compared with a baseline, a case that is not, such as an interrupted one, is skipped.
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
-        by_name = {name: self.judge_name(name, cases, system) for name in get_args(VerdictName)}
+        by_name = {name: self.judge_one_verdict(name, cases, system) for name in get_args(VerdictName)}
         overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
         compared: list[tuple[str, Verdict]] = [
             (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases

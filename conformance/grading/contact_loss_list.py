@@ -1,4 +1,4 @@
-"""Contact losses of a record in results.json."""
+"""Contact losses of a record in results.json, and the places of its extremes."""
 
 from collections.abc import Callable, Mapping
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.criterion import Criterion, LimitTarget, Requirement
-from pantocheck.conformance.core.findings import IMPOSED_REASON, count_verdict, grade_finding
+from pantocheck.conformance.core.findings import IMPOSED_REASON, grade_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import select_item
-from pantocheck.conformance.core.trust import Computed, Trust, limit_counts
+from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, judge, margin
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
@@ -113,10 +113,10 @@ def build_criterion(
         verdict = verdict if missing is None else "skip"
     reason = "; ".join(reasons) or None
     finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
-    if not limit_counts(requirement.trust, lowest_trust):
+    if not decides_verdict(requirement.trust, lowest_trust):
         hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
-    elif finding is not None and (counted := count_verdict(finding.role, verdict)) != verdict:
+    elif finding is not None and (counted := lower_imposed_verdict(finding.role, verdict)) != verdict:
         verdict, reason = counted, IMPOSED_REASON
     stated = {key: part for key, part in requirement if key in Requirement.model_fields and key != "finding"}
     return Criterion(

@@ -44,7 +44,7 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
         parts = [verdicts[case.id] for case in named]
         if step.step == "limits_of_validity":
             judged = [judge_claim(claim, procedure.claims, evidence) for claim in procedure.claims]
-            claims = [rest_claim_on_steps(claim, steps) for claim in judged]
+            claims = [require_steps_for_claim(claim, steps) for claim in judged]
             parts += [claim.verdict for claim in claims]
         if step.step == "reference_models" and not any("reference_models" in case.steps for case in named):
             parts.append("info")
@@ -138,7 +138,7 @@ def judge_claim(claim: ValidityClaim, claims: Sequence[ValidityClaim], evidence:
     return claim.model_copy(update={"verified": shown, "evidence": found, "verdict": verdict, "reason": reason})
 
 
-def rest_claim_on_steps(claim: ValidityClaim, steps: Sequence[ProcedureStep]) -> ValidityClaim:
+def require_steps_for_claim(claim: ValidityClaim, steps: Sequence[ProcedureStep]) -> ValidityClaim:
     """Claim that passes only if every step before it passes, required or not.
 
     A step that fails or has an error leaves the claim not verified: `skip`. Its removal then never improves the claim.

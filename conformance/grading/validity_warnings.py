@@ -151,7 +151,7 @@ NOT_VALIDATED = (
 )
 
 
-def find_unvalidated(evaluation: Evaluation) -> list[str]:
+def warn_of_unvalidated_band(evaluation: Evaluation) -> list[str]:
     """Caveat for every record with values in the band, measured records included."""
     return [NOT_VALIDATED] if _band_values(evaluation) else []
 
@@ -166,7 +166,7 @@ def extended_band_warnings(evaluation: Evaluation, refined: Evaluation | None, d
         refined: Quantities of the same case with element length and time step halved; None if that was not run.
         dt_s: Time step of the run [s], if known.
     """
-    band_values, warnings = _band_values(evaluation), find_unvalidated(evaluation)
+    band_values, warnings = _band_values(evaluation), warn_of_unvalidated_band(evaluation)
     if not band_values:
         return []
     if refined is None:

@@ -14,7 +14,7 @@ from pantocheck.model.description.catenary import GRAVITY
 
 
 class SectionLimits(InputTable):
-    """First key of a tension section."""
+    """Anchors and supports of a tension section; the keys of the elements follow."""
 
     span_limits_m: Numbers
     """Positions of both anchors, and of the supports between them [m]."""

@@ -159,7 +159,8 @@ def hang_line_on_droppers(tree: dict[str, Any], where: str) -> dict[str, Any]:
 def _find_heights(line: LineFile, where: str) -> list[list[float]]:
     """Heights of the contact wire at the droppers of every span; of parallel wires, their mean."""
     if len(line.section_places) > 1:
-        raise InputError(where, "the line has several tension sections", "Give presag_m or contact_wire_height_m.")
+        found = "dropper lengths need a line with one tension section; this one has several"
+        raise InputError(where, found, "Give presag_m or contact_wire_height_m.")
     lengths = [length for schedule in line.dropper_schedules for length in schedule.length_m or ()]
     wires = line.contact_wire.number
     try:

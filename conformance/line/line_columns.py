@@ -126,6 +126,6 @@ def _find_mixed_decimals(table: Spreadsheet, columns: dict[int, tuple[str, float
     if table.delimiter != "," and point is not None and comma is not None:
         yield InputError(
             table.locate(*comma),
-            f"a decimal comma, but row {point[0].number} has a decimal point",
+            f"has a decimal comma, but row {point[0].number} has a decimal point",
             "Write all decimals of a table alike, and no thousands marks.",
         )

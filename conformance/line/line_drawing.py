@@ -49,14 +49,14 @@ def divide_into_rows(geometry: Geometry) -> tuple[DrawingRow, ...]:
     return tuple(DrawingRow(first, last, *geometry.section(first, last)) for first, last in limits)
 
 
-def row_height(plan_view: bool) -> float:
+def drawing_row_height(plan_view: bool) -> float:
     """Height of a row with or without a plan view [in]."""
     return SIDE_VIEW + BETWEEN_ROWS + (PLAN_VIEW if plan_view else 0.0)
 
 
 def divide_into_pages(rows: tuple[DrawingRow, ...], plan_view: bool) -> list[tuple[DrawingRow, ...]]:
     """Rows of each page of `SHEET`."""
-    fit = max(1, int((SHEET[1] - HEADING) / row_height(plan_view)))
+    fit = max(1, int((SHEET[1] - HEADING) / drawing_row_height(plan_view)))
     return [rows[i : i + fit] for i in range(0, len(rows), fit)]
 
 
@@ -128,7 +128,7 @@ class LineDrawing:
 
 def draw_line_svg(drawing: LineDrawing) -> str:
     """SVG text of a drawing with all rows below each other."""
-    height = HEADING + len(drawing.rows) * row_height(drawing.line.catenary.has_lateral_field)
+    height = HEADING + len(drawing.rows) * drawing_row_height(drawing.line.catenary.has_lateral_field)
     return render_svg(paint_rows)(drawing, drawing.rows, height)
 
 
@@ -151,7 +151,7 @@ def paint_rows(drawing: LineDrawing, rows: tuple[DrawingRow, ...], height: float
     figure.set_layout_engine("none")  # the place of every view is given
     _write_heading(figure, drawing, height)
     for n, row in enumerate(rows):
-        top = height - HEADING - n * row_height(lateral)
+        top = height - HEADING - n * drawing_row_height(lateral)
         side = _add_view(figure, drawing, row, "z", top - SIDE_VIEW)
         _name_spans(side, drawing, row)
         _write_dropper_lengths(side, drawing, row)

@@ -1,4 +1,4 @@
-"""Shape of a line at rest between two positions, for its drawings; the elements say what is drawn."""
+"""Shape of a line at rest between two positions, for its drawings; the elements name their points and lines."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -12,7 +12,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures, reference_note
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.document_facts import list_case_facts
-from pantocheck.conformance.pages.line_figure import line_figures, line_reference, scheme_figures
+from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (
     build_band_table,
     build_quantity_table,
@@ -92,7 +92,7 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
     if notes := _list_notes(shown):
         yield doc.Section("Notes", (doc.BulletList(notes),), folded=True)
     figures = (*line_figures(case, shown.earlier), *scheme_figures(case, shown.earlier))
-    drawings = (*((doc.Figures(figures),) if figures else ()), *line_reference(case, shown.earlier))
+    drawings = (*((doc.Figures(figures),) if figures else ()), *find_earlier_drawing(case, shown.earlier))
     inputs = input_blocks(case, shown.earlier, f"{shown.anchor}-input-source")
     if drawings or inputs:
         yield doc.Section("Inputs", (*drawings, *inputs), folded=True)

@@ -43,9 +43,9 @@ from pantocheck.conformance.pages.two_verdicts import (
 )
 from pantocheck.conformance.pages.verdict_reasons import (
     build_headline,
-    count_incomplete,
     describe_record,
     list_reasons,
+    state_incomplete,
     summarise_case,
 )
 from pantocheck.conformance.pages.words import name_verdict, read_words
@@ -132,7 +132,7 @@ def build_header(results: Results) -> doc.VerdictHeader:
         verdict=results.verdict,
         statement=results.statement,
         headline=build_headline(results),
-        subject=" ".join(filter(None, (f"{title}{system}, checked with {suite}.{trust}", count_incomplete(results)))),
+        subject=" ".join(filter(None, (f"{title}{system}, checked with {suite}.{trust}", state_incomplete(results)))),
         footer=f"{suite} · {system}",
     )
 

@@ -29,7 +29,7 @@ class PageKind(Generic[C]):
     statement: str
     headlines: Mapping[str, str]
     scope: str
-    """Paragraph on what the comparison states."""
+    """Paragraph on the statement of the comparison and its limits."""
     describe: Callable[[C], str]
     """Sources in the header."""
     label: Callable[[C], str]

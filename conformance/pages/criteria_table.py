@@ -276,7 +276,7 @@ def build_findings_section(results: Results) -> tuple[doc.Section, ...]:
         doc.Column("Trust"),
         doc.Column("Outcome", share=1.3),
     )
-    counts = doc.Paragraph(" ".join(count_sentences(results)))
+    counts = doc.Paragraph(" ".join(describe_counts(results)))
     table = doc.Table(columns, rows, layout="cards")
     return (doc.Section("Findings", (counts, table, doc.SmallPrint(FINDING_MEANING)), anchor="findings"),)
 
@@ -287,7 +287,7 @@ def list_findings(results: Results) -> Iterator[tuple[CaseResult, Criterion, Gra
     yield from sorted(graded, key=lambda item: item[2].section)
 
 
-def count_sentences(results: Results) -> list[str]:
+def describe_counts(results: Results) -> list[str]:
     """Sentence on the numbers of findings by outcome; none without findings."""
     if results.findings is None:
         return []

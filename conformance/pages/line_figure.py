@@ -177,7 +177,7 @@ def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc
     return (doc.Figure(draw_line_shape(shape, section), caption, caption),)
 
 
-def line_reference(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.SmallPrint, ...]:
+def find_earlier_drawing(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.SmallPrint, ...]:
     """Name of the earlier case that has the drawing of this one; parameters as in `line_figures`."""
     other = _find_equal(case, earlier)
     return () if other is None else (doc.SmallPrint(f"Line: as drawn in {other}."),)

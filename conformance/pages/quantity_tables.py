@@ -18,7 +18,7 @@ from pantocheck.conformance.pages.words import (
     quantity_label,
     quantity_unit,
 )
-from pantocheck.conformance.quantities.registry import QUANTITIES, table_quantities
+from pantocheck.conformance.quantities.registry import QUANTITIES, list_table_quantities
 from pantocheck.conformance.results.case_facts_format import ReferenceValues
 from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -48,12 +48,12 @@ def build_band_table(case: CaseResult) -> Table:
         return f"{format_value(select_single(value))} ({'; '.join(_list_verdicts(case, quantity, key))})"
 
     rows = (*list_criteria(case, "criteria"), *list_criteria(case, "verification"))
-    graded = any(row.quantity in table_quantities("bands") for row in rows)
+    graded = any(row.quantity in list_table_quantities("bands") for row in rows)
     pantographs = [key for key in list_owners(case) if key != "0" and graded]
     cells: dict[str, Callable[[str], RichText]] = {
         name_pantograph(key).capitalize(): partial(cell, key=key) for key in pantographs
     }
-    return _table(table_quantities("bands") if pantographs else (), cells, BAND_CAPTION)
+    return _table(list_table_quantities("bands") if pantographs else (), cells, BAND_CAPTION)
 
 
 def _list_verdicts(case: CaseResult, quantity: str, key: str) -> Iterator[str]:

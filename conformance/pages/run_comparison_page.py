@@ -250,7 +250,7 @@ def draw_overlay(pantograph: MeasuredPantograph) -> Figure:
     lower.plot(position, force_difference(pantograph), color=INK, linewidth=0.9)
     lower.axhline(0.0, color=GREY, linewidth=0.8)
     for axes in (upper, lower):
-        for support in list_span_limits(pantograph):
+        for support in list_span_ends(pantograph):
             axes.axvline(support, color=GREY, linewidth=0.6, linestyle=":")
     upper.set_ylabel("contact force [N]")
     lower.set(xlabel="position along the track [m]", ylabel="difference [N]", xlim=(position[0], position[-1]))
@@ -304,8 +304,8 @@ def spectrum_difference(simulated: Spectrum, measured: Spectrum) -> tuple[list[f
     return frequency[both].tolist(), (np.array(simulated.amplitude_N)[both] - beside).tolist()
 
 
-def list_span_limits(pantograph: MeasuredPantograph) -> list[float]:
-    """Positions of the supports between the compared spans [m]."""
+def list_span_ends(pantograph: MeasuredPantograph) -> list[float]:
+    """Supports at both ends of every compared span [m]."""
     return sorted({place for span in pantograph.spans for place in (span.start_m, span.end_m)})
 
 

@@ -185,7 +185,7 @@ def name_state(step: ProcedureStep) -> str:
     return f"{step.state}{'' if step.required else ', for information'}"
 
 
-def anchor_step(step: ProcedureStep) -> str:
+def step_anchor(step: ProcedureStep) -> str:
     """Anchor of the section of a step."""
     return f"step-{step.step.replace('_', '-')}"
 
@@ -262,7 +262,7 @@ def _build_procedure_row(number: int, step: ProcedureStep, cases: Sequence[CaseR
     missing = list_step_missing(step, cases)
     texts = [text for text in (step.closest, step.unverified, step.reason) if text]
     return (
-        doc.Link(f"{number} {name_step(step)}", anchor_step(step)),
+        doc.Link(f"{number} {name_step(step)}", step_anchor(step)),
         name_state(step),
         doc.VerdictMark(step.verdict),
         margin,

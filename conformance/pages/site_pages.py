@@ -47,7 +47,7 @@ class PublishedResults:
         return "error" if self.discrepancies else stated
 
 
-def publish_results(contents: Iterable[tuple[Results, tuple[str, ...]]]) -> list[PublishedResults]:
+def order_results(contents: Iterable[tuple[Results, tuple[str, ...]]]) -> list[PublishedResults]:
     """Order results by date and name their folders.
 
     Returns:

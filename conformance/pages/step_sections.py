@@ -8,7 +8,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.pantograph_pages import build_response_sections
-from pantocheck.conformance.pages.scope_page import anchor_step, name_step
+from pantocheck.conformance.pages.scope_page import name_step, step_anchor
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
@@ -60,7 +60,7 @@ def build_step_section(
     word = f"\N{EN SPACE}{step.reason or step.unverified or ''}"
     blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step.verdict), word))]
     if step.criteria:
-        anchor = anchor_step(step)
+        anchor = step_anchor(step)
         blocks.append(doc.Section("Criteria", criteria_blocks(step.criteria, anchor, f"{anchor}-source")))
     blocks += index
     if step.step in BUILDERS:
@@ -68,7 +68,7 @@ def build_step_section(
     if step.notes:
         blocks.append(doc.BulletList(tuple(step.notes)))
     return doc.Section(
-        f"{number} {name_step(step)}", tuple(blocks), anchor=anchor_step(step), ruled=step.step not in SHORT_STEPS
+        f"{number} {name_step(step)}", tuple(blocks), anchor=step_anchor(step), ruled=step.step not in SHORT_STEPS
     )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.criteria_table import count_sentences, criterion_title
+from pantocheck.conformance.pages.criteria_table import criterion_title, describe_counts
 from pantocheck.conformance.pages.document import BulletList, Section
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import list_criteria, select_criteria, verdict_sentences
@@ -63,7 +63,7 @@ def build_headline(results: Results) -> str:
     if shown := results.information:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
-    return " ".join([*sentences, *verdict_sentences(results), *count_sentences(results), *summarise_identity(results)])
+    return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
@@ -116,7 +116,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
     )
 
 
-def count_incomplete(results: Results) -> str | None:
+def state_incomplete(results: Results) -> str | None:
     """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
     counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "fail")]
     missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]

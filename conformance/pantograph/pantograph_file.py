@@ -106,12 +106,12 @@ class MatricesTable(SourcedTable):
             rows = getattr(self, key)
             if len(rows) != n or any(len(row) != n for row in rows):
                 yield validation_problem(
-                    key, f"not {n} rows of {n} values", "Give a square matrix with one row per value of head."
+                    key, f"does not have {n} rows of {n} values", "Give a square matrix, one row per value of head."
                 )
                 continue
             matrix = np.array(rows)
             if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * float(np.abs(matrix).max())):
-                yield validation_problem(key, "not symmetric", "Give a symmetric matrix, row by row.")
+                yield validation_problem(key, "the matrix is not symmetric", "Give a symmetric matrix, row by row.")
                 continue
             lowest, largest = np.linalg.eigvalsh(matrix)[[0, -1]]
             if lowest < -1e-9 * abs(largest) or (key == "mass_kg" and lowest <= 1e-12 * largest):
@@ -188,7 +188,7 @@ class PantographFile(InputTable):
         size = len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
         if not isinstance(point, tuple) or len(point) != size:
             yield validation_problem(
-                key, "does not fit the model", f"Give the displacement of the point in each of its {size} unknowns."
+                key, f"is not a list of {size} values", "Give the displacement of the point in each unknown."
             )
 
 

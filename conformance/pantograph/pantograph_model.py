@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw
 from pantocheck.conformance.pantograph.pantograph_file import ChainTable, PantographFile
-from pantocheck.model.description.pantograph import Pantograph, chain, from_matrices, from_modes, preload_springs
+from pantocheck.model.description.pantograph import Pantograph, build_chain, from_matrices, from_modes, preload_springs
 
 
 def build_pantograph(
@@ -41,7 +41,7 @@ def _build_model(file: PantographFile, uplift_force: float, working_height: floa
     contact = file.contact.stiffness_N_m
     if file.chain is not None:
         parts = file.chain
-        model = chain(
+        model = build_chain(
             np.array(parts.masses_kg),
             np.array(parts.stiffness_N_m),
             np.array(parts.damping_N_s_m),

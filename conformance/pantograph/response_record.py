@@ -164,7 +164,7 @@ class ResponseRecord(TableRecord[ResponseSidecar]):
     stiffness: ComplexArray
     """Dynamic stiffness, converted from the measured kind, (n,) [N/m]."""
     uncertainty: ResponseUncertainty | None
-    """Its uncertainty, the same for every kind; None: not stated."""
+    """Uncertainty of the response, the same for every kind; None: not stated."""
 
 
 def read_response(path: Path) -> ResponseRecord:

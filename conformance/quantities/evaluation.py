@@ -42,7 +42,7 @@ class SectionedSignals(Protocol):
         """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
 
 
-def skip_record(reason: str, pantographs: Iterable[int]) -> Evaluation:
+def build_empty_evaluation(reason: str, pantographs: Iterable[int]) -> Evaluation:
     """Evaluation of a record that supports no quantity, for one reason."""
     owners = {LINE: LINE_QUANTITIES} | dict.fromkeys(pantographs, PANTOGRAPH_QUANTITIES)
     skipped = {owner: {quantity.name: reason for quantity in quantities} for owner, quantities in owners.items()}

@@ -128,7 +128,7 @@ def _join_bounds(low: str | None, high: str | None) -> str:
 
 
 def raises_trust_only(change: str) -> bool:
-    """Check that a sentence on a changed limit states a higher trust of the limit and nothing else.
+    """Whether a sentence on a changed limit states a higher trust of the limit and nothing else.
 
     Args:
         change: The sentence; a name with a colon is not recognised, so that its change is never played down.

@@ -7,10 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.unavailable import (
-    ChannelMissing,
-    SupportsMissing,
-)
+from pantocheck.conformance.quantities.unavailable import ChannelMissing, SupportsMissing
 
 SUPPORT_TOLERANCE_M = 0.5
 """Largest distance between the stated and the real position of a support [m].

@@ -10,11 +10,7 @@ import numpy as np
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_part, band_rms
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, Filter, needs_filter
-from pantocheck.conformance.quantities.unavailable import (
-    BandNotObservable,
-    ChannelMissing,
-    SectionNotCovered,
-)
+from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, SectionNotCovered
 
 EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 """Upper edge of the extended band [Hz]."""

@@ -210,6 +210,6 @@ def unit_of(name: str) -> str:
     return QUANTITIES[name].unit if name in QUANTITIES else ""
 
 
-def table_quantities(table: QuantityTable) -> list[str]:
+def list_table_quantities(table: QuantityTable) -> list[str]:
     """Names of the quantities in a fixed table, in the order of reports."""
     return [quantity.name for quantity in QUANTITIES.values() if table in quantity.tables]

@@ -191,11 +191,16 @@ class SignalsOutside:
 
     def band(self, low: float, high: float) -> float:
         """Not available: a band needs one uninterrupted stretch."""
-        raise BandNotObservable(f"the band {low:g}-{high:g} Hz needs one uninterrupted stretch")
+        raise _build_band_error(low, high)
 
     def band_part(self, low: float, high: float) -> RealArray:
-        """Not available: a band needs one uninterrupted stretch."""
-        raise BandNotObservable(f"the band {low:g}-{high:g} Hz needs one uninterrupted stretch")
+        """Not available, as `band`."""
+        raise _build_band_error(low, high)
+
+
+def _build_band_error(low: float, high: float) -> BandNotObservable:
+    needed = f"the band {low:g}-{high:g} Hz needs one uninterrupted stretch"
+    return BandNotObservable(f"{needed}; overlaps or excluded stretches divide this record")
 
 
 def evaluate_outside_overlaps(

@@ -37,7 +37,7 @@ class ColumnTable(InputTable):
         if self.scale == 0:
             yield validation_problem("scale", "found 0", "Give the factor from the numbers of the file to the unit.")
         if self.unit is None and (self.scale != 1 or self.offset != 0):
-            yield validation_problem("unit", "missing beside scale or offset", "Give the unit of the scaled value.")
+            yield validation_problem("unit", "missing, but the value is scaled", "Give the unit of the scaled value.")
 
 
 class HeadPart(InputTable):

@@ -47,7 +47,7 @@ def list_events(sidecar: RecordSidecar, position: RealArray, levels: RealArray |
     for channel, level in zip(sidecar.event_channel, () if levels is None else levels, strict=True):
         edges = np.flatnonzero(np.diff(np.concatenate([[False], level > channel.above, [False]]).astype(np.int8)))
         if edges.size > 2 * MOST_EVENTS:
-            raise TooManyEvents(f"the column {channel.column[:80]!r} marks {edges.size // 2} events")
+            raise TooManyEvents(f"the column {channel.column[:80]!r} marks more than {MOST_EVENTS} events")
         for first, after in edges.reshape(-1, 2):
             start, end = (float(position[i]) + channel.ahead_m for i in (first, after - 1))
             events.append(RecordEvent(channel.kind, "", start, end, channel.exclude))

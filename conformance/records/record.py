@@ -88,7 +88,7 @@ class Record:
             if value is not None and value.shape != self.force.shape:
                 raise RecordInvalid(name, f"has the shape {value.shape}, expected {self.force.shape} as for the force")
         if (self.support_position is None) != (self.support_uplift is None):
-            raise RecordInvalid("support_uplift", "either the uplift or the positions of the supports are missing")
+            raise RecordInvalid("support_uplift", "uplift and positions of the supports are needed together")
         if self.support_position is not None and self.support_uplift is not None:
             expected = (self.support_position.size, n)
             if self.support_position.ndim != 1 or self.support_uplift.shape != expected:
@@ -111,7 +111,7 @@ _WITH_GAPS = frozenset({"support_uplift"})
 def _check_array(name: str, value: ArrayLike) -> RealArray:
     array = np.array(value, dtype=np.float64)
     if array.size > MAX_SAMPLES:
-        raise RecordInvalid(name, f"has {array.size} values, accepted are {MAX_SAMPLES}")
+        raise RecordInvalid(name, f"has {array.size} values, at most {MAX_SAMPLES} are accepted")
     bad = np.flatnonzero(np.isinf(array) if name in _WITH_GAPS else ~np.isfinite(array))
     if bad.size:
         raise RecordInvalid(

@@ -25,8 +25,8 @@ from pantocheck.conformance.records.usable_sections import (
     PlacedSamples,
     UsableSection,
     find_usable_sections,
+    format_share,
     local_speed,
-    missing_share,
     place_samples,
     resample_section,
 )
@@ -120,7 +120,7 @@ def prepare_record(
     warnings = [*placed.warnings, *list_sensor_warnings(sidecar.columns, samples.left_out_sensors)]
     if not steady.all():
         warnings.append(
-            f"{missing_share(~steady)} of the record was cut, first at {position[0][np.argmin(steady)]:.1f} m: "
+            f"{format_share(~steady)} of the record was cut, first at {position[0][np.argmin(steady)]:.1f} m: "
             f"the speed differs by more than {speed_tolerance_pct:g} % from {sidecar.speed_km_h:g} km/h"
         )
     section = analysis_section(sidecar, position)
@@ -169,7 +169,7 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
     warnings = []
     if not present.all():
         warnings.append(
-            f"{missing_share(~present)} of the force of {name} is missing, first at {position[~present][0]:.1f} m"
+            f"{format_share(~present)} of the force of {name} is missing, first at {position[~present][0]:.1f} m"
         )
     warnings += _outlier_warnings(force[present], position[present], name)
     parts = find_usable_sections(placed.time, present & settings.steady)
@@ -234,7 +234,7 @@ def _prepare_line(
     warnings = []
     if missing.any():
         warnings.append(
-            f"{missing_share(missing)} of the uplift is missing; supports with missing values that count are not "
+            f"{format_share(missing)} of the uplift is missing; supports with missing values that count are not "
             "evaluated"
         )
     complete = ~has_gaps(samples.support_position, uplift, last_position)

@@ -44,9 +44,9 @@ from pantocheck.conformance.records.track_position import (
     EVENTS,
     LOADED,
     MARKS,
+    complete_position_rows,
     list_further_columns,
     list_used_channels,
-    place_rows,
 )
 
 RECORD_SCHEMAS: dict[str, type[RecordSidecar] | type[RecordSummary]] = {
@@ -190,7 +190,7 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
     if "time" not in rows and (time := _find_own_time(table)) is not None:
         rows["time"] = {1: time}
     if not errors:  # a wrong column may be the missing one
-        place_rows(rows, table, sidecar, sidecar_where)
+        complete_position_rows(rows, table, sidecar, sidecar_where)
         errors += _find_missing_channels(rows, sidecar, where)
     for name in rows.keys() - MARKS:
         errors += _find_impossible_values(name, rows[name], where)

@@ -122,7 +122,7 @@ class RecordSidecar(PassageTable, TableSidecar):
             return
         if any(name.startswith("position_") for name in self.columns or ()):
             yield validation_problem(
-                "position", "the position stands in columns, too", "Remove the table position, or the column."
+                "position", "the table columns gives the position as well", "Remove the table position, or the column."
             )
         if self.position.kind == "marks":
             yield from self._find_mark_problems(self.position)
@@ -130,7 +130,7 @@ class RecordSidecar(PassageTable, TableSidecar):
     def _find_mark_problems(self, position: MarkPosition) -> Problems:
         if self.track is None:
             yield validation_problem(
-                "track", "missing beside kilometre marks", "State zero_km and kilometres of the line in [track]."
+                "track", "missing, but needed for kilometre marks", "State zero_km and kilometres in [track]."
             )
             return
         places = [self.track.place(mark.km) for mark in position.mark]

@@ -190,9 +190,10 @@ class EventTable(InputTable):
     @cross_check
     def _check_place(self) -> Problems:
         if (self.from_m is None) == (self.from_km is None):
-            yield validation_problem("from_m", "the place is missing, or stated twice", "Give from_m or from_km.")
+            found = "missing" if self.from_m is None else "given twice"
+            yield validation_problem("from_m", f"the place is {found}", "Give from_m or from_km.")
         elif (self.to_m is not None and self.from_m is None) or (self.to_km is not None and self.from_km is None):
-            yield validation_problem("to_m", "the ends have other units", "Give both ends in metres or in kilometres.")
+            yield validation_problem("to_m", "the ends differ in unit", "Give both ends in metres or in kilometres.")
         if self.from_m is not None and self.to_m is not None and self.to_m < self.from_m:
             yield validation_problem("to_m", "the end is before the start", "Give the start, then the end.")
         if self.exclude is not None and self.to_m is None and self.to_km is None:
@@ -238,6 +239,6 @@ class ArcTable(InputTable):
         if (self.current is None) != (self.nominal_current_A is None):
             yield validation_problem(
                 "current",
-                "current and nominal_current_A belong together",
+                f"{'nominal_current_A' if self.current else 'current'} is missing",
                 "Give both; without them there is no arc share.",
             )

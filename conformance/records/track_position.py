@@ -53,7 +53,7 @@ def count_distance(count: RealArray, metres_per_pulse: float) -> RealArray:
         raise PulsesUnusable(f"the counter runs backwards at sample {backwards[0] + 2}")
     changes = np.flatnonzero(steps) + 1
     if changes.size < FEWEST_PULSES:
-        raise PulsesUnusable(f"{changes.size} pulses are counted")
+        raise PulsesUnusable(f"the counter counts {changes.size} pulses; at least {FEWEST_PULSES} are needed")
     travelled = np.abs(count[changes] - count[0]) * metres_per_pulse
     return _interpolate_from_start(changes.astype(np.float64), travelled, count.size)
 
@@ -67,14 +67,16 @@ def pulse_distance(signal: RealArray, metres_per_pulse: float) -> RealArray:
         PulsesUnusable: The signal is missing or constant, has fewer than two edges, or more than one edge in two
             samples.
     """
-    if not np.isfinite(signal).all() or np.ptp(signal) == 0:
-        raise PulsesUnusable("the pulse train is constant, or values are missing")
+    if not np.isfinite(signal).all():
+        raise PulsesUnusable("values of the pulse train are missing")
+    if np.ptp(signal) == 0:
+        raise PulsesUnusable("the pulse train is constant")
     level = (signal - signal.min()) / np.ptp(signal)
     state = np.where(level >= RISING, 1.0, np.where(level <= FALLING, 0.0, np.nan))
     known = np.flatnonzero(np.isfinite(state))
     edges = known[1:][(state[known[1:]] == 1) & (state[known[:-1]] == 0)]
     if edges.size < FEWEST_PULSES:
-        raise PulsesUnusable(f"the pulse train has {edges.size} rising edges")
+        raise PulsesUnusable(f"the pulse train has {edges.size} rising edges; at least {FEWEST_PULSES} are needed")
     if np.median(np.diff(edges)) <= 2:
         raise PulsesUnusable("the pulse train has about one edge in two samples: pulses may be lost")
     before, after = level[edges - 1], level[edges]
@@ -131,7 +133,7 @@ def list_used_channels(sidecar: RecordSidecar) -> tuple[str, ...]:
     return tuple(name for name in names if name != TIME_COLUMN)
 
 
-def place_rows(rows: ChannelRows, table: MeasuredTable, sidecar: RecordSidecar, where: str) -> None:
+def complete_position_rows(rows: ChannelRows, table: MeasuredTable, sidecar: RecordSidecar, where: str) -> None:
     """Add or convert the rows of the position.
 
     Args:

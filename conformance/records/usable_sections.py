@@ -134,10 +134,10 @@ def place_samples(samples: RecordSamples, sidecar: RecordSidecar) -> PlacedSampl
     if known.sum() < 2:
         raise RecordInvalid("time", "fewer than two samples have a time or position")
     if not known.all():
-        warnings.append(f"{missing_share(~known)} of the samples were discarded: they have no time or no position")
+        warnings.append(f"{format_share(~known)} of the samples were discarded: they have no time or no position")
         samples = samples.select(known)
     if samples.time is None and samples.speed is not None and not (samples.speed > 0).all():
-        warnings.append(f"{missing_share(samples.speed <= 0)} of the samples were discarded: the train stands still")
+        warnings.append(f"{format_share(samples.speed <= 0)} of the samples were discarded: the train stands still")
         samples = samples.select(samples.speed > 0)
     if samples.force.shape[1] < 2:
         raise RecordInvalid("speed", "fewer than two samples have a positive speed")
@@ -165,7 +165,7 @@ def _smooth_steps(
     return samples.select(within), time[within], smooth
 
 
-def missing_share(mask: NDArray[np.bool_]) -> str:
+def format_share(mask: NDArray[np.bool_]) -> str:
     """Share of the samples in a mask as text."""
     return f"{100 * mask.mean():.2g} %"
 

@@ -65,7 +65,7 @@ class ReportPlaces:
         return self.baseline or self.find_case(case_id)
 
     def find_limit(self, case_id: str, quantity: str, pantograph: int, item: int | None) -> FilePlace | None:
-        """Place of the limit of a value, or else of its case."""
+        """Place in a file that states the limit of a value; otherwise the place of its case."""
         limits = self.cases[case_id].limits if case_id in self.cases else self.limits
         stated = (limit.place for limit in limits if limit.bounds(quantity, pantograph, item))
         return next(stated, self.find_case(case_id))

@@ -18,7 +18,7 @@ class RecordSensor(RoundedModel):
     channel: str
     """Name of the channel."""
     wire: str
-    """wire: CW (contact wire) or MW (messenger wire); empty: unknown."""
+    """Wire with the sensor: CW (contact wire) or MW (messenger wire); empty: unknown."""
     position_m: float | None
     """Distance from the first support [m]; null: unknown."""
 

@@ -19,7 +19,7 @@ class SensorShape(RoundedModel):
     sensor: int
     """Number of the sensor."""
     wire: str = ""
-    """wire: CW (contact wire) or MW (messenger wire); empty: unknown."""
+    """Wire with the sensor: CW (contact wire) or MW (messenger wire); empty: unknown."""
     position_m: float | None = None
     """Distance from the first support [m]; null: unknown."""
     re: Rounded

@@ -156,7 +156,7 @@ def _place_train(
     )
 
 
-def start_forces(case: Case) -> tuple[float, ...]:
+def list_start_forces(case: Case) -> tuple[float, ...]:
     """Uplift force of every pantograph, or start value of its tuning [N]."""
     return tuple(lift.uplift_force for lift in case.lift_forces)
 

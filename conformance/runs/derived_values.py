@@ -18,7 +18,7 @@ from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.records.sidecar_tables import StartTable
-from pantocheck.conformance.runs.case_run import start_forces
+from pantocheck.conformance.runs.case_run import list_start_forces
 from pantocheck.conformance.runs.uplift_tuning import (
     TOLERANCE,
     compute_working_height,
@@ -144,7 +144,7 @@ def build_derived_start(case: Case) -> DerivedStart:
 
 
 def _train(case: Case, line: DiscretisedLine) -> DerivedTrain:
-    heights = height_under_forces(line, np.array(case.start_positions), np.array(start_forces(case)))
+    heights = height_under_forces(line, np.array(case.start_positions), np.array(list_start_forces(case)))
     return DerivedTrain(
         pantographs=_pantographs(case, line, heights),
         working_height_positions_m=round_positions(working_height_positions(case)),

@@ -1,4 +1,4 @@
-"""Content of the contact force above the cut-off, against the least content that kinks of the wire cause.
+"""Checks of the contact force: its content above the cut-off against that of kinks of the wire, and copied forces.
 
 Force and contact height that pass the same filter still obey the equations of the pantograph. The filter shows in the
 spectrum. The wire has kinks at droppers and supports. A kink passed at constant speed is a motion with the spectrum
@@ -105,7 +105,7 @@ def force_content(signals: RecordSignals, number: int, upper: float) -> float:
 
 
 def kink_content(case: Case, number: int, upper: float) -> float:
-    """The same ratio of the force that a kink of the contact wire causes [-].
+    """Ratio as in `force_content`, of the force that a kink of the contact wire causes [-].
 
     Args:
         case: Case with line and pantographs.

@@ -75,7 +75,7 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
         window = _compared_samples(pantograph)
         force = low_pass(pantograph.force.delivered, record.rate)[window][::step]
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
-        fit = fit_motion(file, force, height, step / record.rate)
+        fit = compare_motion(file, force, height, step / record.rate)
         if fit is None:
             findings.append(report_not_made("dynamics", f"the head of pantograph {number} hardly moves"))
         elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
@@ -83,7 +83,7 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
     return worst_finding(findings)
 
 
-def fit_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
+def compare_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
     Args:

@@ -33,7 +33,7 @@ Simulated records have 0.03 or less at a time step of 2 ms; heights rounded to 0
 filter of 20 Hz gives 0.2 to 0.3 where the force has content at 20 Hz."""
 
 LARGEST_EXTENDED_ERROR = 0.3
-"""The same up to 50 Hz, where an integration at 2 ms has errors of 7 %: 0.09 at most in simulated records."""
+"""Largest error of the force up to 50 Hz; integration at 2 ms gives errors of 7 %, simulated records 0.09 at most."""
 
 LARGEST_LAG_S = 0.005
 """Largest lag of the force that is removed [s]: one sample of a slow record."""

@@ -25,7 +25,7 @@ class AnswerRefused(ValueError):
 
 
 class Start(InputTable):
-    """First message."""
+    """First message to a program."""
 
     message: Literal["start"] = "start"
     protocol: Literal["pantocheck.command/1"] = PROTOCOL

@@ -226,7 +226,7 @@ Otherwise a record could avoid a check by leaving out its channels.
 """
 
 
-def record_state(
+def judge_record_state(
     findings: Mapping[CheckName, Finding],
 ) -> tuple[Literal["verified", "unverified", "contradicted"], str]:
     """State of a record and its reason.

@@ -1,4 +1,4 @@
-"""Resolution of a frequency band by elements and time step of the reference simulator.
+"""Warnings on a run of the reference simulator: resolution of bands, active window, effects that are left out.
 
 Time. Average acceleration changes the period of a vibration of frequency f by (2 pi f dt)^2 / 12 (Newmark's method with
 beta = 1/4; Bathe, Finite Element Procedures). The mass correction removes this error from the wires, but not from the

@@ -1,4 +1,4 @@
-"""Quantities of a line at rest from the reference simulator."""
+"""Quantities of a line at rest from the reference simulator, in its middle span or in every span."""
 
 from collections.abc import Iterator
 

@@ -99,7 +99,7 @@ FORCE_STEP = 1.0
 
 
 def estimate_uplift_forces(case: Case, line: DiscretisedLine) -> tuple[float, ...]:
-    """Estimate the uplift forces of a case: those that it states, and for a mean contact force the estimate.
+    """Uplift forces of a case: stated, or estimated from a stated mean contact force.
 
     Args:
         case: Case with a speed.
@@ -156,7 +156,7 @@ def working_height_positions(case: Case) -> RealArray:
 
 
 def nominal_wire_height(case: Case) -> float:
-    """Nominal height of the contact wire at the same positions [m].
+    """Nominal height of the contact wire, the mean over `working_height_positions` [m].
 
     It is the mean of the straight lines between the supports, in an overlap of those of the lowest wire.
     """

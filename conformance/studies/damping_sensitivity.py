@@ -1,4 +1,4 @@
-"""Bar charts of the contact force in frequency bands under several damping models."""
+"""Damping sensitivity: a passage under several damping models, with bar charts of the contact force by band."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -12,7 +12,7 @@ from pantocheck.conformance.line.elements.damping import DampingFile
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import LINE, Value, ValuesByOwner
-from pantocheck.conformance.quantities.registry import table_quantities
+from pantocheck.conformance.quantities.registry import list_table_quantities
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.system import Delivered, Outcome, StudyResult, System, missing_record_reason
 
@@ -61,7 +61,7 @@ def _draw_bars(label: str, values: Mapping[str, Value], bands: Sequence[str]) ->
 # Damping sensitivity: the passage of any case under several damping models.
 MODELS = {name: f"vovan2015/damping/{name}.toml" for name in ("benchmark", "initial", "updated")}
 """Damping files of the library by name of the model, for the damping study of any line."""
-TABLE_ROWS = table_quantities("damping models")
+TABLE_ROWS = list_table_quantities("damping models")
 REFINED_RUN = 5.0
 """Estimated duration of the first run, with its refined runs and other starts, in runs with one mesh."""
 CASE_DAMPING = "of the case"

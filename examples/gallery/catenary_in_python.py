@@ -22,7 +22,7 @@ from pantocheck.model import (
     Rayleigh,
     SteadyArm,
     Wire,
-    chain,
+    build_chain,
     compute_modes,
     damping_ratios,
     discretise,
@@ -70,7 +70,7 @@ print("damping ratios:", np.round(100 * damping_ratios(line, modes), 2), "%")
 # %%
 # **Passage.** One pantograph, 60 m/s, and the motion of the contact wire watched at 61 places.
 
-pantograph = chain(
+pantograph = build_chain(
     masses=np.array([6.0, 9.0, 7.5]),
     stiffness=np.array([160.0, 15500.0, 7000.0]),
     damping=np.array([100.0, 0.1, 45.0]),

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.signal import welch
 
 from pantocheck.conformance import open_case
-from pantocheck.model import chain
+from pantocheck.model import build_chain
 
 case = open_case("en50318-2018/ac-simple/275")
 heights = {"frequency_1_m": [0.1, 0.6], "density_m3": [1e-6, 1e-6 / 36], "seed": 1}
@@ -41,7 +41,7 @@ inputs = case.inputs
 wire, pantograph = inputs["line"]["contact_wire"], inputs["pantographs"][0]
 contact_N_m, speed = pantograph["contact"]["stiffness_N_m"], inputs["case"]["speed_km_h"] / 3.6
 parts = [np.array(pantograph["chain"][key]) for key in ("masses_kg", "stiffness_N_m", "damping_N_s_m")]
-head = chain(*parts, uplift_force=0.0, uplift_on=0, contact_stiffness=contact_N_m)
+head = build_chain(*parts, uplift_force=0.0, uplift_on=0, contact_stiffness=contact_N_m)
 
 
 def force_density(frequency):

@@ -22,7 +22,7 @@ from pantocheck.model import (
     Passage,
     SteadyArm,
     Wire,
-    chain,
+    build_chain,
     discretise,
     doppler_factor,
     simulate_passage,
@@ -41,7 +41,7 @@ line = discretise(Catenary((wire,), steady_arms=weights), element_length=0.5)
 # %%
 # Drive one pantograph from 300 m on, and watch the motion of the wire between 100 and 600 m.
 
-head = chain(
+head = build_chain(
     np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 60.0, uplift_on=0, contact_stiffness=50e3
 )
 places = np.arange(100.0, 601.0, 2.5)

@@ -39,7 +39,7 @@ class Pantograph:
     """Stiffness of the penalty contact between head and wire [N/m]."""
 
 
-def chain(
+def build_chain(
     masses: Array,
     stiffness: Array,
     damping: Array,

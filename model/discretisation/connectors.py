@@ -17,7 +17,7 @@ from pantocheck.model.description.catenary import Catenary, Kind, SteadyArm
 from pantocheck.model.discretisation.initial_state import InitialState
 from pantocheck.model.fem.beams import Beams
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.fem.residual_flexibility import in_series, station_flexibility
+from pantocheck.model.fem.residual_flexibility import combine_in_series, station_flexibility
 
 RIGID = 1e8
 """Stiffness of a clamp between two wires, and of a steady arm along its length [N/m].
@@ -67,7 +67,7 @@ def build_connectors(catenary: Catenary, mesh: Mesh, beams: Beams, state: Initia
         coefficient[n, list(bar.coefficient)] = list(bar.coefficient.values())
     station = np.array([bar.station for bar in bars], dtype=np.int64)
     unilateral = np.array([bar.unilateral for bar in bars], dtype=np.bool_)
-    stiffness, damping = in_series(
+    stiffness, damping = combine_in_series(
         np.array([bar.stiffness for bar in bars]),
         np.array([bar.damping for bar in bars]),
         *_end_flexibility(beams, station, coefficient, unilateral),

@@ -33,7 +33,7 @@ class DiscretisedLine:
     stretches: HeldStretches
     """Stretches of wires that are held along the track."""
     kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
-    """Results that the simulations of the line share (`kept_results`); a changed line begins without any."""
+    """Results that the simulations of the line share (`keep_with_line`); a changed line begins without any."""
 
     @property
     def contact_rows(self) -> list[int]:

@@ -1,4 +1,4 @@
-"""Linear statics with prescribed displacements, on rows of beams that connectors couple at their stations."""
+"""Initial state: the line at rest in side and plan view, by linear statics with prescribed displacements."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Binary search in a part of an array, without a view of this part."""
+"""Active window of a time step: the stations that it moves, found by a binary search."""
 
 import math
 from typing import NamedTuple
@@ -92,13 +92,13 @@ def build_window_arrays(line: DiscretisedLine, passage: Passage) -> WindowArrays
     return WindowArrays(line.mesh.position, c, passage.duration, kept, ahead, passage.reach, whole)
 
 
-def whole_line(line: DiscretisedLine) -> WindowArrays:
+def build_whole_window(line: DiscretisedLine) -> WindowArrays:
     """Active window that is the whole line at all times."""
     return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True)
 
 
 @kernel
-def influence(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
+def wave_reach(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
     """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m]."""
     front = MIN_HALF_WIDTH + limits.wave_speed * elapsed
     return front + speed * elapsed, max(front - speed * elapsed, MIN_HALF_WIDTH)
@@ -110,7 +110,7 @@ def half_widths(limits: WindowArrays, speed: float, elapsed: float) -> tuple[flo
 
     A wave needs the time d / (c - v) to catch up a distance d behind a pantograph, and d / (c + v) from ahead.
     """
-    behind, ahead = influence(limits, speed, elapsed)
+    behind, ahead = wave_reach(limits, speed, elapsed)
     left = max(limits.duration - elapsed, 0.0)
     behind = min(behind, MIN_HALF_WIDTH + limits.kept_behind + max(limits.wave_speed - speed, 0.0) * left)
     ahead = min(ahead, MIN_HALF_WIDTH + limits.kept_ahead + (limits.wave_speed + speed) * left)
@@ -146,7 +146,7 @@ def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray
     if limits.whole_line:
         return unknown
     position = np.array([position for _, position in passage.watched])[:, None]
-    widths = _half_widths_and_influence(limits, passage.speed, time)
+    widths = _half_widths_and_reach(limits, passage.speed, time)
     for side, start, end_of_line, direction in (
         (0, min(passage.start), limits.position[0], -1),
         (1, max(passage.start), limits.position[-1], 1),
@@ -163,10 +163,10 @@ def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray
 
 
 @njit(cache=True)
-def _half_widths_and_influence(limits: WindowArrays, speed: float, time: Array) -> Array:
+def _half_widths_and_reach(limits: WindowArrays, speed: float, time: Array) -> Array:
     """Half-widths and influence at each time, (2, 2, T): behind and ahead [m]."""
     widths = np.empty((2, 2, time.size))
     for n in range(time.size):
         widths[0, 0, n], widths[0, 1, n] = half_widths(limits, speed, time[n])
-        widths[1, 0, n], widths[1, 1, n] = influence(limits, speed, time[n])
+        widths[1, 0, n], widths[1, 1, n] = wave_reach(limits, speed, time[n])
     return widths

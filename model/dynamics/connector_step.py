@@ -1,8 +1,8 @@
-"""Local columns of the inverse of the effective matrix: the response of a row to a unit force within one step.
+"""Connectors in a time step, by local columns of the inverse of the effective matrix.
 
-Within one step a force influences the line over a few times sqrt(T / m) dt / 2 only (0.1 m at 1 ms). The columns of the
-inverse are therefore short. The matrix is symmetric: the column of a force at a station is also the share of every
-force around in the acceleration of this station.
+A column is the response of a row to a unit force within one step. This force influences the line over a few times
+sqrt(T / m) dt / 2 only (0.1 m at 1 ms). The matrix is symmetric: the column of a force at a station is also the share
+of every force around in the acceleration of this station.
 """
 
 from typing import NamedTuple
@@ -102,7 +102,7 @@ class NodeArrays(NamedTuple):
     connector: Indices
     """Connector of each end, (L,)."""
     coefficient: Array
-    """Its coefficient in the elongation of the connector, (L,) [-]."""
+    """Coefficient of each end in the elongation of its connector, (L,) [-]."""
 
 
 class ConnectorArrays(NamedTuple):

@@ -1,4 +1,4 @@
-"""Irregularity of the contact wires in a time step: height of a cubic spline at the position of a head."""
+"""Arrays of the contact wires in a time step: their contact with pantographs, and the splines of their irregularity."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -88,7 +88,7 @@ class ContactWorkspace(NamedTuple):
     above: Indices
     """Contact wires above each pantograph, in the order of the line, (P, W)."""
     number_above: Indices
-    """Their number, (P,)."""
+    """Number of the contact wires above each pantograph, (P,)."""
     shape: Array
     """Hermite functions at the contacts, (P, W, 4)."""
     stiffness: Array
@@ -100,7 +100,7 @@ class ContactWorkspace(NamedTuple):
     response: Array
     """Accelerations of deflection and slope around each contact per contact force, (P, W, 2, n) [1/kg, 1/(kg m)]."""
     start: Indices
-    """Station of their first values, a multiple of the size of a vector, (P,); it can lie before the line."""
+    """Station of the first value of each response, a multiple of a vector size, (P,); it can lie before the line."""
     wire_compliance: Array
     """Acceleration of each wire at one contact per force at another, (P, P, W) [1/kg]."""
     wire_acceleration: Array
@@ -110,9 +110,9 @@ class ContactWorkspace(NamedTuple):
     near: Indices
     """Scalar forces that a contact influences, (P, W, N)."""
     influence: Array
-    """Acceleration of their elongations per contact force, (P, W, N) [1/kg]."""
+    """Accelerations of the elongations of these forces per contact force, (P, W, N) [1/kg]."""
     number_near: Indices
-    """Their number, (P, W)."""
+    """Number of the scalar forces that a contact influences, (P, W)."""
 
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:

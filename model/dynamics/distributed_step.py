@@ -46,7 +46,7 @@ class DistributedArrays(NamedTuple):
     """Accelerations of deflections and slopes per force, (X,) [1/kg, 1/(kg m)]."""
 
 
-def distributed_laws(stretches: HeldStretches, terms: ModalTerms) -> ScalarLaw:
+def build_distributed_laws(stretches: HeldStretches, terms: ModalTerms) -> ScalarLaw:
     """Laws of the additional tensions and of the modal damping forces, in this order."""
     stretched, modes = np.zeros(stretches.stiffness.size), np.zeros(terms.damping.size)
     number = stretched.size + modes.size
@@ -94,7 +94,7 @@ def _modal_strips(stretches: HeldStretches, terms: ModalTerms) -> Iterator[Strip
             yield stretches.stiffness.size + j, row, 0, values
 
 
-def sparse_vectors(distributed: DistributedArrays, values: Array, layout: Layout, rows: int) -> csr_array:
+def stack_vectors(distributed: DistributedArrays, values: Array, layout: Layout, rows: int) -> csr_array:
     """Coefficients or responses as a (D, 2 B S') matrix: all deflections row by row, then all slopes."""
     plane = rows * layout.width
     index, force = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]

@@ -1,4 +1,4 @@
-"""Effective matrix of a Newmark step: A = M + dt/2 C + dt^2/4 K, with the corrected mass of `mass_correction`."""
+"""Kernel arrays of a line, and the effective matrix A = M + dt/2 C + dt^2/4 K of a step, M from `mass_correction`."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from scipy.sparse import block_array, csr_array
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
-from pantocheck.model.dynamics.active_window import WindowArrays, whole_line
+from pantocheck.model.dynamics.active_window import WindowArrays, build_whole_window
 from pantocheck.model.dynamics.block_tridiagonal import Factor, factorise_blocks
 from pantocheck.model.dynamics.connector_step import (
     ConnectorArrays,
@@ -26,17 +26,12 @@ from pantocheck.model.dynamics.contact_arrays import (
 from pantocheck.model.dynamics.distributed_step import (
     DistributedArrays,
     build_distributed_arrays,
-    distributed_laws,
-    sparse_vectors,
+    build_distributed_laws,
+    stack_vectors,
 )
 from pantocheck.model.dynamics.extents import find_extents, merge_extents
 from pantocheck.model.dynamics.motion import Layout
-from pantocheck.model.dynamics.panels import (
-    PanelFactor,
-    PanelWorkspace,
-    allocate_panel_workspace,
-    build_panels,
-)
+from pantocheck.model.dynamics.panels import PanelFactor, PanelWorkspace, allocate_panel_workspace, build_panels
 from pantocheck.model.dynamics.scalar_forces import (
     ScalarForces,
     ScalarLaw,
@@ -173,13 +168,13 @@ def _build_line_arrays(line: DiscretisedLine, time_step: float) -> KernelArrays:
     tensions = ScalarLaw(
         line.connectors.preload, line.connectors.stiffness, line.connectors.damping, line.connectors.unilateral
     )
-    laws = (tensions, distributed_laws(line.stretches, terms))
+    laws = (tensions, build_distributed_laws(line.stretches, terms))
     law = ScalarLaw(*(np.concatenate(parts) for parts in zip(*laws, strict=True)))
     compliance = _compliance(connectors, distributed, layout, line.mesh.rows)
     return KernelArrays(
         time_step=time_step,
         layout=layout,
-        window=whole_line(line),
+        window=build_whole_window(line),
         panels=panels,
         wires=build_wire_arrays(line.beams, merge_extents(find_extents(line.beams), panel), layout),
         connectors=connectors,
@@ -194,7 +189,7 @@ def _compliance(connectors: ConnectorArrays, distributed: DistributedArrays, lay
     """Acceleration of the elongation of each scalar force per any other one, (F, F) [1/kg]."""
     nodes, ends = connectors.nodes, coefficients_at_nodes(connectors)
     coefficient, response = (
-        sparse_vectors(distributed, values, layout, rows) for values in (distributed.coefficient, distributed.response)
+        stack_vectors(distributed, values, layout, rows) for values in (distributed.coefficient, distributed.response)
     )
     mutual = ends @ response[:, nodes.row * layout.width + nodes.station].T
     return csr_array(

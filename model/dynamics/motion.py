@@ -82,7 +82,7 @@ def end_of_step(motion: Motion, layout: Layout, time_step: float) -> tuple[Array
 
 
 @kernel
-def hold_left_stations(dt: float, motion: Motion, window: Window) -> None:
+def hold_passed_stations(dt: float, motion: Motion, window: Window) -> None:
     """Hold the stations that have left the active window at rest at their last displacement."""
     first, last = motion.active[0], motion.active[1]
     motion.active[0], motion.active[1] = window.first, window.last

@@ -28,7 +28,7 @@ from pantocheck.model.dynamics.distributed_step import accelerate_distributed, l
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
 from pantocheck.model.dynamics.kernel_compilation import merged_kernel
-from pantocheck.model.dynamics.motion import Motion, hold_left_stations
+from pantocheck.model.dynamics.motion import Motion, hold_passed_stations
 from pantocheck.model.dynamics.panels import solve_wires
 from pantocheck.model.dynamics.scalar_forces import FORCE_TOLERANCE, MAX_SWEEPS, maximum, sweep_forces
 from pantocheck.model.dynamics.train import Train
@@ -50,7 +50,7 @@ def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) ->
     """
     dt = kernel.time_step
     window = active_window(kernel.window, train)
-    hold_left_stations(dt, motion, window)
+    hold_passed_stations(dt, motion, window)
     predict_wires(dt, kernel.wires, motion, window)
     add_lumped_forces(kernel.wires, motion, window)
     predict_connectors(kernel.connectors, kernel.forces, motion, work.scalar, window)

@@ -1,4 +1,4 @@
-"""Gauss-Seidel sweeps over the scalar forces of a time step: terms that all of these forces share.
+"""Scalar forces of a time step, and the Gauss-Seidel sweeps that solve them.
 
 Within one step, each of these forces X changes its own closing acceleration linearly, by the compliance c:
 

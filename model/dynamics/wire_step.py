@@ -60,10 +60,10 @@ class WireArrays(NamedTuple):
     """First of the springs and dampers on a single row of each run (`find_runs`), and Q, (R + 1,)."""
     lumped_station: Indices
     lumped_index: Indices
-    """Their stations, and their indices in a flattened plane of rows, (Q,)."""
+    """Stations of these parts, and their indices in a flattened plane of rows, (Q,)."""
     lumped_stiffness: Array
     lumped_damping: Array
-    """Their coefficients, (Q,) [N/m, N s/m]."""
+    """Coefficients of these parts, (Q,) [N/m, N s/m]."""
 
 
 def build_wire_arrays(beams: Beams, extents: Extents, layout: Layout) -> WireArrays:

@@ -46,7 +46,7 @@ def _element_matrices(factor: float | Array, shares: Array, h: float | Array) ->
 
 
 def springs(stiffness: Array) -> Array:
-    """Stiffness of springs between the ends of n elements, (n, 4, 4): strings with linear shape functions [N/m]."""
+    """Stiffness of springs, or linear strings, that join the ends of n elements, (n, 4, 4) [N/m]."""
     elongation = np.array([1.0, 0.0, -1.0, 0.0])
     return np.asarray(stiffness[:, None, None] * np.outer(elongation, elongation))
 

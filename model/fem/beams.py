@@ -1,4 +1,4 @@
-"""Lumped parts: masses, springs and dampers that act on a single row at a single station.
+"""Rows of tensioned beams, and the lumped masses, springs and dampers on a single row at a single station.
 
 Droppers, clamps and point masses contribute their masses, steady arms and messenger supports also stiffness and
 damping.
@@ -15,7 +15,7 @@ from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.catenary import Catenary, Kind
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import Mesh
-from pantocheck.model.fem.residual_flexibility import element_flexibility, in_series, station_flexibility
+from pantocheck.model.fem.residual_flexibility import combine_in_series, element_flexibility, station_flexibility
 
 
 class LumpedPart(NamedTuple):
@@ -70,8 +70,8 @@ def _lumped_parts(catenary: Catenary, mesh: Mesh) -> Iterator[LumpedPart]:
 
 # Rows of tensioned beams as plain arrays, shared by statics and time integration.
 #
-# Parts that act on a single row at a single station are lumped onto the deflection there (`lumped_parts`); parts that
-# couple rows are connectors (`connectors`).
+# Parts that act on a single row at a single station are lumped onto the deflection there (`sum_lumped_parts`); parts
+# that couple rows are connectors (`connectors`).
 class Beams(NamedTuple):
     """Rows of beams; B rows, S stations."""
 
@@ -131,7 +131,7 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         bending_stiffness,
         mass_per_length,
         lumped_mass,
-        *in_series(lumped_stiffness, lumped_damping, at_station, lag),
+        *combine_in_series(lumped_stiffness, lumped_damping, at_station, lag),
         mass_coefficient=np.array([r.mass_coefficient for r in rayleigh]),
         stiffness_coefficient=stiffness_coefficient,
         free=free,

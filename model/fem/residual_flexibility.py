@@ -1,4 +1,4 @@
-"""Tensioned Euler-Bernoulli beam: exact static stiffness, with the unknowns (w1, r1, w2, r2) of `beam`.
+"""Residual flexibility of a tensioned beam, from its exact static stiffness in the unknowns of `beam`.
 
 Without load between its ends the beam has the deflection w = a + b x + c cosh(kx) + d sinh(kx), k^2 = T / EI.
 """
@@ -133,7 +133,7 @@ def residual_flexibility(coefficients: Array, s: float) -> float:
     return float(value)
 
 
-def in_series(stiffness: Array, damping: Array, flexibility: Array, lag: Array) -> tuple[Array, Array]:
+def combine_in_series(stiffness: Array, damping: Array, flexibility: Array, lag: Array) -> tuple[Array, Array]:
     """Springs with parallel dampers in series with residual flexibilities, to first order in frequency.
 
     A wire with stiffness-proportional damping beta has the flexibility R / (1 + i w beta). With f = 1 / (1 + k R) the

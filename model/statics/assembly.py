@@ -73,7 +73,7 @@ def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
     )
 
 
-def stepping_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
+def correct_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:
     """Corrected mass of the free unknowns in a time step [s] (`mass_correction`), for independent solvers [kg]."""
     rows = range(line.mesh.rows)
     correction = sp.block_diag([assemble_row(mass_correction(line.beams, r, time_step)) for r in rows], format="csr")

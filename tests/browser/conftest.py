@@ -19,7 +19,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import Document, Figure, Figures, PlainHeader, Section, make_grid
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_page import build_identification_document
-from pantocheck.conformance.pages.site_pages import build_site_index, publish_results
+from pantocheck.conformance.pages.site_pages import build_site_index, order_results
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 
@@ -70,7 +70,7 @@ def build_site_page() -> Document:
         identity = SystemIdentity(name=system, version="1", kind="record")
         contents.append((results.model_copy(update={"system": identity, "cases": cases}), ()))
     pages = {f"case/{i}": f"cases/{i}.html" for i in range(1, 13)}
-    return build_site_index("Site", publish_results(contents), pages)
+    return build_site_index("Site", order_results(contents), pages)
 
 
 @pytest.fixture(scope="session")

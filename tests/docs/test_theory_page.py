@@ -12,7 +12,7 @@ from pantocheck.conformance.grading.case_evaluation import observed_order
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.residual_flexibility import exact_stiffness, in_series
+from pantocheck.model.fem.residual_flexibility import combine_in_series, exact_stiffness
 from pantocheck.model.statics.wave_factors import doppler_factor
 
 ROOT = Path(__file__).parents[2]
@@ -108,7 +108,7 @@ def test_bands_partition_the_variance() -> None:
 def test_spring_in_series_with_the_residual_flexibility() -> None:
     """First order in frequency: at 0.1 Hz the second order is below 1e-6."""
     k, c, flexibility, beta = 1e5, 200.0, 3e-6, 1e-4
-    series = in_series(*(np.array([value]) for value in (k, c, flexibility, flexibility * beta)))
+    series = combine_in_series(*(np.array([value]) for value in (k, c, flexibility, flexibility * beta)))
     omega = 2 * np.pi * 0.1
     exact = 1 / (1 / (k + 1j * omega * c) + flexibility / (1 + 1j * omega * beta))
     assert series[0][0] == pytest.approx(exact.real, rel=1e-5)

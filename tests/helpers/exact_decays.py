@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
-from pantocheck.conformance.drops.decay_kernel import FrequencyBand, complete_overlap, low_pass_decay
+from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, Release
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
-from pantocheck.conformance.drops.line_fit import LineFit, fit_line, share_blocks
+from pantocheck.conformance.drops.line_fit import LineFit, fit_line, group_into_blocks
 from pantocheck.conformance.drops.projection import build_block
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
@@ -44,9 +44,9 @@ def build_exact_decay(
         channels.append(DropChannel("S1_y", 1, "y", "CW", 20.0))
     drop = DropDescription(20.0, "CW", 100.0, RELEASE)
     record = DropRecord(name, name, RATE, signals, tuple(channels), drop=drop, line=MeasuredLine(spans_m=(60.0,) * 6))
-    taps = low_pass_decay(RATE, BAND.fitted, BAND.stop, 80.0)
+    taps = low_pass_taps(RATE, BAND.fitted, BAND.stop, 80.0)
     begin, half = round((RELEASE + after) * RATE), (taps.size - 1) / 2 / RATE
-    filtered = complete_overlap(signals[begin:], taps)
+    filtered = filter_full_overlap(signals[begin:], taps)
     linear = LinearDecay(
         samples=filtered[:, :count],
         dt=1 / RATE,
@@ -62,7 +62,7 @@ def build_exact_decay(
 
 def build_exact_fit(decays: list[PreparedDecay], poles: ComplexArray, noise: RealArray) -> LineFit:
     """Fit of records with the exact poles, and a noise of each channel, (c,), as the cause of the uncertainty."""
-    samples, places = share_blocks(decays)
+    samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, BAND.low, BAND.fitted) for channels, dt in samples]
     levels = [np.resize(noise, block.spectrum.shape[1]) for block in data]
     return fit_line(decays, places, data, poles, levels, BAND)

@@ -15,7 +15,7 @@ from pantocheck.model import (
     Rayleigh,
     SteadyArm,
     Wire,
-    chain,
+    build_chain,
 )
 from pantocheck.model.description.sections import join_sections, place_section
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 DROPPERS_2002 = (5.0, 10.5, 17.0, 23.5, 30.0, 36.5, 43.0, 49.5, 55.0)
 """Positions of the droppers in a span of the EN 50318:2002 reference model [m]."""
 
-PANTOGRAPH_2002 = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+PANTOGRAPH_2002 = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
 """Pantograph of the EN 50318:2002 reference model (published_values.toml, en50318_2002)."""
 
 

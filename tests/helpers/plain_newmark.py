@@ -22,8 +22,8 @@ from pantocheck.model.statics.assembly import (
     bandwidth_order,
     connector_directions,
     contact_stiffness,
+    correct_mass,
     point_load,
-    stepping_mass,
     stretch_directions,
 )
 
@@ -58,7 +58,7 @@ class PlainNewmark:
         self.pantograph_slices = [slice(first, last) for first, last in pairwise(starts)]
         self.M, self.C, self.K = (np.zeros((starts[-1], starts[-1])) for _ in range(3))
         inner = slice(0, self.free.size)
-        self.M[inner, inner] = stepping_mass(line, passage.time_step).toarray()
+        self.M[inner, inner] = correct_mass(line, passage.time_step).toarray()
         self.C[inner, inner] = matrices.damping.toarray()
         stretches = stretch_directions(line)[self.free].toarray()
         self.K[inner, inner] = matrices.stiffness.toarray() + (stretches * line.stretches.stiffness) @ stretches.T

@@ -4,7 +4,7 @@ import numpy as np
 
 from helpers.lines import Array
 from helpers.plain_newmark import PlainNewmark
-from pantocheck.model import Passage, chain
+from pantocheck.model import Passage, build_chain
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import end_of_step
@@ -19,7 +19,7 @@ Both implementations balance forces of the order of 100 N to 1e-9 N, so their di
 a line that hardly moves has the same absolute error as a line that moves by centimetres.
 """
 
-THREE_MASSES = chain(
+THREE_MASSES = build_chain(
     np.array([6.0, 9.0, 7.5]), np.array([160.0, 15500.0, 7000.0]), np.array([100.0, 0.1, 45.0]), 250.0, 0, 50e3
 )
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.bands import BAND_QUANTITIES
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
-from pantocheck.conformance.studies.vovan2015.damping_change import force_changes
+from pantocheck.conformance.studies.vovan2015.damping_change import compare_force
 from verification.tables.table_scenarios import (
     CHOSEN,
     InitialRun,
@@ -83,7 +83,7 @@ def test_printed_levels_and_changes_reproduce_every_finding() -> None:
     assert level_error(InitialRun(CHOSEN, initial, ())) == 0
     doubled = {p: {name: 2 * value for name, value in table.items()} for p, table in initial.items()}
     assert level_error(InitialRun(CHOSEN, doubled, ())) == pytest.approx(0.6931, abs=1e-4)  # ln 2
-    changes = force_changes(printed_values("initial"), printed_values("updated"))
+    changes = compare_force(printed_values("initial"), printed_values("updated"))
     assert count_reproduced(changes) == len(load_study().limits) == 12
 
 

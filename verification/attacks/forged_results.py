@@ -10,7 +10,7 @@ from typing import Any
 
 from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
-from pantocheck.conformance.core.trust import limit_counts
+from pantocheck.conformance.core.trust import decides_verdict
 from pantocheck.conformance.core.verdicts import judge, margin
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
@@ -44,7 +44,7 @@ def regrade_row(row: Tree, trust: str) -> None:
     """Grade one criterion again."""
     value, lower, upper = row["value"], row["lower"], row["upper"]
     judged = "skip" if value is None else judge(value, lower, upper)
-    row["verdict"] = judged if limit_counts(row["trust"], trust) else "info"
+    row["verdict"] = judged if decides_verdict(row["trust"], trust) else "info"
     row["margin"] = None if value is None else margin(value, lower, upper)
     errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"])
     row["uncertainty"] = errors.uncertainty

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pantocheck.conformance.app.self_test.numerical_faults import without_residual_flexibility
+from pantocheck.conformance.app.self_test.numerical_faults import leave_out_residual_flexibility
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.grading.case_verification import EXTREMES, RELATIVE
@@ -128,7 +128,7 @@ CHOICES: dict[str, Runner] = {
     "arm without sideways pull of droppers": with_catenary(soften_arms),
     "wires without bending stiffness": with_catenary(remove_bending),
     "elements of 1 m, 2 ms": with_mesh(1.0, 2e-3),
-    "no residual flexibility": with_line(without_residual_flexibility),
+    "no residual flexibility": with_line(leave_out_residual_flexibility),
 }
 """Choices by name."""
 

@@ -16,8 +16,8 @@ from pantocheck.model.statics.assembly import (
     bandwidth_order,
     connector_directions,
     contact_stiffness,
+    correct_mass,
     point_load,
-    stepping_mass,
 )
 
 
@@ -39,7 +39,7 @@ def run_refactorised(line: DiscretisedLine, passage: Passage) -> tuple[np.ndarra
     )
     bare_k = matrices.stiffness - (bars[:n] @ sp.diags_array(connectors.stiffness) @ bars[:n].T)
     bare_c = matrices.damping - (bars[:n] @ sp.diags_array(connectors.damping) @ bars[:n].T)
-    mass = sp.block_diag([stepping_mass(line, dt), *(p.mass for p in passage.pantographs)], format="csc")
+    mass = sp.block_diag([correct_mass(line, dt), *(p.mass for p in passage.pantographs)], format="csc")
     damping = sp.block_diag([bare_c, *(p.damping for p in passage.pantographs)], format="csc")
     stiffness = sp.block_diag([bare_k, *(p.stiffness for p in passage.pantographs)], format="csc")
     place = bandwidth_order(line)[matrices.free]

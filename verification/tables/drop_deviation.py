@@ -54,13 +54,13 @@ def main() -> None:
     models = {"own": DampingChoice("line", line.damping), "initial": DampingChoice("initial.toml", initial.damping)}
     task = DropTask(line, models, WINDOWS, ELEMENT, TIME_STEP, 0.0)
     print_agreement("elements of the suite", record, task)
-    with without_residual_flexibility():
+    with leave_out_residual_flexibility():
         print_agreement("elements of the record", record, task)
     print_groups(record, task)
 
 
 @contextmanager
-def without_residual_flexibility() -> Iterator[None]:
+def leave_out_residual_flexibility() -> Iterator[None]:
     """Replace the residual flexibility of the elements by zero."""
     flexibility = beams.element_flexibility
     beams.element_flexibility = lambda length, *_: np.zeros((length.size, 7))

@@ -8,7 +8,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from pantocheck.conformance.pages.criteria_table import count_sentences, list_findings
+from pantocheck.conformance.pages.criteria_table import describe_counts, list_findings
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_reading import read_results
 
@@ -34,7 +34,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, help="results.json of the study")
     results = read_results(parser.parse_args().results).to_dict()
-    print(" ".join(count_sentences(results)))
+    print(" ".join(describe_counts(results)))
     print(build_table(results))
 
 

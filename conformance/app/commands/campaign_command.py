@@ -180,7 +180,7 @@ def _prepare(
         return prepare_campaign(validate_model(content, CampaignFile, "command line"), Path())
     if given:
         raise InputError(
-            f"option {'--' + min(given).removesuffix('s')}", "stands beside a campaign file", "Edit the campaign file."
+            f"option {'--' + min(given).removesuffix('s')}", "is given together with a campaign file", "Edit this file."
         )
     file = validate_model(tree, CampaignFile, f"campaign '{path.name}'")
     stated = file.execution.model_dump(exclude_unset=True)

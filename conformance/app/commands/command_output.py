@@ -127,7 +127,7 @@ class _ErrorLog(logging.Handler):
 
 
 @contextmanager
-def write_log() -> Iterator[None]:
+def print_log() -> Iterator[None]:
     """Print the log while a command runs, if the current settings ask for details."""
     if current_settings().detail != "verbose":
         yield
@@ -157,7 +157,7 @@ def build_executable(name: str, command: Callable[..., CommandOutput]) -> Callab
             raise typer.Exit(guard_command(execute, partial(print_failure, name))(**arguments))
 
     def execute(**arguments: object) -> int:
-        with write_log():
+        with print_log():
             output = command(**arguments)
         print_output(output, name)
         return output.exit_code

@@ -66,7 +66,7 @@ def compare_command(
     pantocheck compare report-1.0/results.json report-1.1/results.json
     """
     if len(subjects) < 2:
-        raise InputError("compare", "one subject", "Give two or more records, results or systems.")
+        raise InputError("compare", "names one subject only", "Give two or more records, results or systems.")
     simulated = _choose_simulated_case(subjects, case, changed)
     if out is not None:
         check_writable(out)
@@ -90,7 +90,7 @@ def _choose_simulated_case(subjects: list[str], case: str | None, changed: list[
     if not any(subject.startswith(SYSTEMS) for subject in subjects):
         return None
     if case is None:
-        raise InputError("compare", "a system without a case", "Name the case that it runs with --case.")
+        raise InputError("compare", "names a system, but no case", "Name the case that it runs with --case.")
     return choose_train_case(case, parse_changes(changed or ()))
 
 

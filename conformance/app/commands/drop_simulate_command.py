@@ -152,7 +152,7 @@ def _parse_place(text: str) -> tuple[WireName, float]:
         return WIRE_NAMES[wire.strip().upper()], float(position)
     except (KeyError, ValueError):
         raise InputError(
-            f"option --place {text[:60]!r}", "is no wire and position", "Write CW:212.25 or MW:81 ."
+            f"option --place {text[:60]!r}", "is not a wire and a position", "Write CW:212.25 or MW:81 ."
         ) from None
 
 
@@ -160,5 +160,5 @@ def _parse_axes(text: str) -> tuple[Axis, ...]:
     chosen = [part.strip() for part in text.split(",")]
     axes = tuple(axis for axis in get_args(Axis) if axis in chosen)
     if len(axes) != len(chosen):
-        raise InputError(f"option --axes {text[:60]!r}", "is no list of axes", "Write z, or z,y .")
+        raise InputError(f"option --axes {text[:60]!r}", "is not a list of axes", "Write z, or z,y .")
     return axes

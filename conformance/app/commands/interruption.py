@@ -25,7 +25,7 @@ WAITING = b"Interrupted: the reports are still written. A second signal ends the
 
 
 class Interruption:
-    """Signals of a run with a number of unfinished cases; with none, a first signal waits and sets `exit_code`."""
+    """Signals of a run. After its last case, a first signal does not end it, but sets `exit_code`."""
 
     def __init__(self, open_cases: int) -> None:
         self.exit_code = 0

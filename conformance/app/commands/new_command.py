@@ -90,6 +90,6 @@ def new_command(
         text = f"new case with {parts['line']} and {parts['pantograph']}"
         return CommandOutput(escape_text(text), {"kind": kind, **parts}, files=(path,))
     if line is not None or pantograph is not None:
-        raise InputError("options --line and --pantograph", f"given for a {kind}", "Only a case names other files.")
+        raise InputError("options --line and --pantograph", f"are given for a {kind}", "Only a case names other files.")
     write_new_file(path, read_template(chosen))
     return CommandOutput(escape_text(f"new {kind}"), {"kind": kind}, files=(path,))

@@ -79,7 +79,7 @@ DriftOption = Annotated[
 ]
 
 
-def state_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
+def read_stated_administration(file: Path | None, report_number: str | None) -> dict[str, str]:
     """Administrative data from a file, with the number of the report from the command line in place of its own."""
     stated = {} if file is None else read_administration(file).model_dump(exclude_none=True)
     return stated if report_number is None else {**stated, "report_number": report_number}
@@ -158,5 +158,5 @@ def read_line(name: str) -> LineFile:
         return read_model(Path(name), LineFile, "line")
     cases = select_cases([name])
     if any(case.line != cases[0].line for case in cases):
-        raise InputError(f"line '{name}'", f"{len(cases)} cases with different lines", "Give the id of one case.")
+        raise InputError(f"line '{name}'", f"names {len(cases)} cases with different lines", "Give the id of one case.")
     return cases[0].line

@@ -57,7 +57,7 @@ def pantograph_fit_command(
     """
     records = tuple(read_response(path) for path in responses)
     if out.suffix != ".toml":
-        raise InputError("--out", f"{out.name!r} is no TOML file", "Give a name that ends in .toml .")
+        raise InputError("--out", f"{out.name!r} is not a TOML file", "Give a name that ends in .toml .")
     check_writable(out.parent)
     task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
     with follow_steps("fitting"):

@@ -21,13 +21,13 @@ from pantocheck.conformance.app.commands.options import (
     TrustOption,
     VerdictsOption,
     build_options,
-    state_administration,
+    read_stated_administration,
 )
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.app.commands.progress_display import report_cases
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES, build_results_output
 from pantocheck.conformance.cases.library import read_limits
-from pantocheck.conformance.cases.limits import spread_limits
+from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
 from pantocheck.conformance.core.files import check_writable
@@ -124,7 +124,7 @@ def run_command(
         accept_unverified=tuple(accept_unverified) if accept_unverified else None,
         baseline=baseline,
         drift_pct=drift,
-        administration=state_administration(administration, report_number),
+        administration=read_stated_administration(administration, report_number),
         jobs=jobs,
         damping_study=damping_study or None,
         timeout_s=timeout,
@@ -214,7 +214,7 @@ def assess_command(
         formats=formats,
         trust=trust,
         drift_pct=drift,
-        administration=state_administration(administration, report_number),
+        administration=read_stated_administration(administration, report_number),
     )
     folder = Path(options.out)
     report_formats = check_formats(options.formats)
@@ -231,7 +231,7 @@ def assess_command(
         if limit.owner > pantographs:
             hint = f"The record has {pantographs}, numbered from 1 at the front."
             raise InputError(f"limits, key limit[{i}].pantograph", f"there is no pantograph {limit.owner}", hint)
-    own_limits = spread_limits(own_limits, pantographs)
+    own_limits = repeat_limits(own_limits, pantographs)
     check_writable(folder)
     places = locate_record(record, profile, limits)
     participation = Participation(accepted_unverified=tuple(accept_unverified or ()))

@@ -51,7 +51,7 @@ def simulate_command(
         outcome = run(chosen)
     if not isinstance(outcome, Delivered) or outcome.record is None:
         reason = missing_record_reason(outcome)
-        raise InputError(f"case '{chosen.id}'", f"no record: {reason}", "Choose another case or system.")
+        raise InputError(f"case '{chosen.id}'", f"gives no record: {reason}", "Choose another case or system.")
     sidecar = write_record(
         out,
         outcome.record,

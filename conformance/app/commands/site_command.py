@@ -15,7 +15,7 @@ from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages.report_writers import write_pages, write_report
-from pantocheck.conformance.pages.site_pages import build_case_page, build_site_index, name_file, publish_results
+from pantocheck.conformance.pages.site_pages import build_case_page, build_site_index, name_file, order_results
 from pantocheck.conformance.results.report_files import FILES
 from pantocheck.conformance.results.results_reading import read_results
 
@@ -44,7 +44,7 @@ def site_command(
         with follow_steps(str(path)):
             results = read_results(path)
             contents.append((results, tuple(find_discrepancies(results))))
-    published = publish_results(contents)
+    published = order_results(contents)
     ids = sorted({case.id for run in published for case in run.results.cases})
     # A number keeps names apart that differ in signs only.
     pages = {case: f"cases/{number:04d}-{name_file(case)}.html" for number, case in enumerate(ids, 1)}
@@ -71,7 +71,7 @@ def _find_results(folders: list[Path], out: Path) -> list[Path]:
         own = {path.resolve(): path for path in _walk_results(folder, out)}
         if not own:
             hint = "Write results with pantocheck run --out DIR."
-            raise InputError(f"folder '{folder}'", "no results.json in it", hint)
+            raise InputError(f"folder '{folder}'", "holds no results.json", hint)
         paths |= {place: path for place, path in own.items() if place not in paths}
     if len(paths) > MOST_RESULTS:
         raise InputError("folders of results", f"more than {MOST_RESULTS} results", "Give folders with fewer results.")
@@ -81,7 +81,7 @@ def _find_results(folders: list[Path], out: Path) -> list[Path]:
 def _walk_results(folder: Path, out: Path) -> Iterator[Path]:
     """Regular files named results.json below a folder, by name; links and the site itself are left out."""
     if not folder.is_dir():
-        raise InputError(f"folder '{folder}'", "not a folder", "Give the folder that holds the results.")
+        raise InputError(f"folder '{folder}'", "is not a folder", "Give the folder that holds the results.")
     site, count = out.resolve(), 0
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if Path(place, name).resolve() != site)

@@ -22,7 +22,7 @@ from pantocheck.conformance.app.commands.options import (
     OutOption,
     ReportNumberOption,
     build_options,
-    state_administration,
+    read_stated_administration,
 )
 from pantocheck.conformance.app.commands.progress_display import report_cases
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
@@ -59,7 +59,7 @@ def validate_command(
     Example: pantocheck validate dossier.toml --out validation
     """
     options = build_options(
-        out=out, formats=formats, administration=state_administration(administration, report_number)
+        out=out, formats=formats, administration=read_stated_administration(administration, report_number)
     )
     folder, report_formats = Path(options.out), check_formats(options.formats)
     content = read_dossier(dossier)

@@ -106,7 +106,7 @@ class FittedPantograph:
 
         out = Path(path)
         if out.suffix != ".toml":
-            raise InputError(str(out), "is no TOML file", "Give a name that ends in .toml .")
+            raise InputError(str(out), "is not a TOML file", "Give a name that ends in .toml .")
         write_atomically(out, tomli_w.dumps(self.tables).encode())
         data = out.with_name(f"{out.stem}-fit.json")
         write_model(data, self.report)

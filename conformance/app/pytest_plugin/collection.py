@@ -9,10 +9,10 @@ import pytest
 from pantocheck.conformance.app.pytest_plugin.session import PlanSession, list_registered
 from pantocheck.conformance.app.pytest_plugin.shared_folder import shared_folder
 from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
-    criterion_line,
+    describe_unmet_criterion,
+    describe_unverified,
     is_unverified,
     list_verdict_criteria,
-    unverified_line,
 )
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
@@ -86,7 +86,7 @@ class CaseNode(pytest.Collector):
             yield BaselineItem.from_parent(self, name="baseline")
 
     def result(self) -> CaseResult:
-        """Result of the case, computed once per session; an error fails the test, and a reason skips it."""
+        """Result of the case, computed once per session. An error fails the test; a case with a reason is skipped."""
         result = self.campaign.result(self.case)
         if result.verdict == "error":
             self.report(f"error: {result.reason}")
@@ -211,9 +211,9 @@ class CriterionItem(OneLineItem):
         if criterion.verdict in {"skip", "info"}:
             pytest.skip(criterion.reason or criterion.verdict)
         if criterion.verdict == "fail":
-            self.case_node.report(criterion_line(criterion))
+            self.case_node.report(describe_unmet_criterion(criterion))
         if is_unverified(result) and not campaign.accepts_unverified:
-            self.case_node.report(unverified_line(result))
+            self.case_node.report(describe_unverified(result))
 
 
 def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:

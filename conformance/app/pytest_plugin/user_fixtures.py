@@ -70,7 +70,7 @@ class GradedCase:
         __tracebackhide__ = True
         criteria = [c for c in self._criteria if not quantities or c.quantity in quantities]
         reasons = self._list_reasons(criteria, accept_unverified)
-        reasons += [criterion_line(c) for c in criteria if quantities and c.verdict == "info"]
+        reasons += [describe_unmet_criterion(c) for c in criteria if quantities and c.verdict == "info"]
         limited = {criterion.quantity for criterion in criteria}
         reasons += [f"{name} has no limits" for name in quantities if name not in limited]
         if reasons:
@@ -81,13 +81,13 @@ class GradedCase:
         result = self.result
         if result.reason:
             return [f"{result.verdict}: {result.reason}"]
-        reasons = [criterion_line(c) for c in criteria if c.verdict not in {"pass", "info"}]
+        reasons = [describe_unmet_criterion(c) for c in criteria if c.verdict not in {"pass", "info"}]
         if all(criterion.verdict == "info" for criterion in criteria):
             reasons.append("no limit counts")
         if "verification" in self.requested and result.verification is not None and result.verification.reason:
             reasons.append(f"verification: {result.verification.verdict}, {result.verification.reason}")
         if is_unverified(result) and not accept_unverified:
-            reasons.append(unverified_line(result))
+            reasons.append(describe_unverified(result))
         return reasons
 
 
@@ -103,12 +103,12 @@ def is_unverified(result: CaseResult) -> bool:
     return result.record is not None and result.record.state == "unverified" and result.record.demanded
 
 
-def unverified_line(result: CaseResult) -> str:
+def describe_unverified(result: CaseResult) -> str:
     """Line of a case with an unverified record."""
     return f"the record is unverified: {'' if result.record is None else result.record.reason}"
 
 
-def criterion_line(criterion: Criterion) -> str:
+def describe_unmet_criterion(criterion: Criterion) -> str:
     """Line of a criterion that does not pass: name, value, limits and reason."""
     name = f"{'verification of ' if criterion.trust == 'computed' else ''}{criterion_name(criterion)}"
     if criterion.value is None:

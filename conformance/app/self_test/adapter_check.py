@@ -21,7 +21,7 @@ FindingState = Literal["ok", "missing", "wrong", "note"]
 
 @dataclass(frozen=True)
 class AdapterFinding:
-    """One line of the check: its state, its subject, and a text that says what to do next."""
+    """One line of the check: its state, its subject, and a text with the next step."""
 
     state: FindingState
     subject: str
@@ -316,7 +316,7 @@ The contact height of the short case varies by 0.05 m. Usual other zeros, the ra
 
 
 def describe_other_position(case: Case, record: Record, stated: StartTable | None) -> str | None:
-    """Text on positions that begin before the stated start, or that of the case; None if they do not."""
+    """Text on positions that begin before the start of the record, by default that of its case; None if they do not."""
     first, place = float(record.position[-1, 0]), (stated or case.start_table).place_m
     if first >= place - PLACE_TOLERANCE_M:
         return None

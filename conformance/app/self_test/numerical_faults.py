@@ -19,7 +19,7 @@ from pantocheck.model.discretisation.discretised_line import with_damping
 
 
 # Lines with one numerical fault each.
-def without_residual_flexibility(line: DiscretisedLine) -> DiscretisedLine:
+def leave_out_residual_flexibility(line: DiscretisedLine) -> DiscretisedLine:
     """Leave out the residual flexibility at contacts, droppers, arms and clamps."""
     beams = line.beams._replace(flexibility=np.zeros_like(line.beams.flexibility))
     return replace(line, beams=beams, connectors=build_connectors(line.catenary, line.mesh, beams, line.state))
@@ -76,17 +76,17 @@ class NumericalResult:
 
 
 def keep_line(line: DiscretisedLine) -> DiscretisedLine:
-    """The same line."""
+    """Leave the line as it is, for a fault elsewhere."""
     return line
 
 
 FAULTS: tuple[NumericalFault, ...] = (
     NumericalFault("mesh of 2 m", 2.0, keep_line, must_be_detected=True),
-    NumericalFault("mesh of 2 m, no residual flexibility", 2.0, without_residual_flexibility, must_be_detected=True),
+    NumericalFault("mesh of 2 m, no residual flexibility", 2.0, leave_out_residual_flexibility, must_be_detected=True),
     NumericalFault("no slackening", None, make_droppers_bilateral, must_be_detected=True),
     NumericalFault("three times the damping", None, lambda line: scale_damping(line, 3.0), must_be_detected=True),
     NumericalFault("no damping", None, lambda line: scale_damping(line, 0.0), must_be_detected=True),
-    NumericalFault("no residual flexibility", None, without_residual_flexibility, must_be_detected=False),
+    NumericalFault("no residual flexibility", None, leave_out_residual_flexibility, must_be_detected=False),
     NumericalFault("half the damping", None, lambda line: scale_damping(line, 0.5), must_be_detected=False),
     NumericalFault("twice the damping", None, lambda line: scale_damping(line, 2.0), must_be_detected=False),
 )

@@ -122,7 +122,7 @@ class TrackCurves(Element):
                 )
 
     def add_to_line(self, catenary: Catenary) -> Catenary:
-        """Add the curves."""
+        """Add the curves of the track."""
         curves = (TrackCurve(c.from_m, c.to_m, c.radius_m, c.transition_m, c.cant_m) for c in self.curves)
         return replace(catenary, curves=tuple(curves))
 

@@ -59,7 +59,7 @@ class DropperTable(DropperSchedule, SourcedTable):
         if (self.stiffness_N_m is None) == (self.axial_stiffness_EA_N is None):
             yield validation_problem(
                 "stiffness_N_m",
-                "the stiffness of the droppers is missing or given twice",
+                f"the stiffness of the droppers is {'missing' if self.stiffness_N_m is None else 'given twice'}",
                 "Give either stiffness_N_m or axial_stiffness_EA_N.",
             )
 
@@ -192,7 +192,7 @@ class Droppers(Element):
 
     @staticmethod
     def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
-        """Droppers."""
+        """Lines of the droppers between their wires."""
         return (DrawnConnection(part.position, part.lower, part.upper) for part in catenary.droppers)
 
 

@@ -1,6 +1,6 @@
 """Element of a line: base class of the declarations in this folder.
 
-An element is a class. Its fields are keys of the line file. Its methods say what the element does wherever the suite
+An element is a class. Its fields are keys of the line file. Its methods do the work of the element wherever the suite
 uses a line: each of them has a default for elements that do nothing there. `element_registry.ELEMENTS` lists all
 elements, and a new one needs no change outside this folder.
 """
@@ -185,7 +185,7 @@ def find_position_problems(
     """
     for number, x in enumerate(positions, 1):
         if not 0.0 < x < line.geometry.length:
-            yield beyond_end(f"{key}[{number}].x_m", x, line)
+            yield build_position_problem(f"{key}[{number}].x_m", x, line)
         for start, end in overlaps:
             if start < x < end:
                 yield validation_problem(
@@ -195,7 +195,7 @@ def find_position_problems(
                 )
 
 
-def beyond_end(key: str, position: float, line: Line) -> PydanticCustomError:
+def build_position_problem(key: str, position: float, line: Line) -> PydanticCustomError:
     """Problem of a position [m] that is not on the line."""
     length = line.geometry.length
     found = f"{position:g} m is not on the line, which ends at {length:g} m"

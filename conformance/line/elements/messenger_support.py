@@ -133,5 +133,5 @@ class MessengerSupports(Element):
 
     @classmethod
     def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
-        """Supports."""
+        """Points of the supports on the messenger wires."""
         return (DrawnMark(cls.symbol, part.wire, part.position) for part in catenary.messenger_supports)

@@ -127,7 +127,7 @@ class SteadyArms(Element):
                 )
 
     def derive(self, section: BuiltSection) -> dict[str, object]:
-        """Arms at rest."""
+        """Steady arms at rest, with their stiffness and damping."""
         from pantocheck.model.discretisation.connectors import arm_direction
 
         catenary, force = section.line.catenary, section.line.state.arm_force
@@ -150,5 +150,5 @@ class SteadyArms(Element):
 
     @classmethod
     def mark(cls, catenary: Catenary) -> Iterator[DrawnMark]:
-        """Arms."""
+        """Points of the arms on the contact wires."""
         return (DrawnMark(cls.symbol, arm.wire, arm.position) for arm in catenary.steady_arms)

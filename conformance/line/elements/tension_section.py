@@ -100,7 +100,7 @@ class OverlapTable(InputTable):
         if (self.anchor_rise_m is None) == (self.support_rises_m is None):
             yield validation_problem(
                 "anchor_rise_m",
-                "the rise of the wires is missing or given twice",
+                f"the rise of the wires is {'missing' if self.anchor_rise_m is None else 'given twice'}",
                 "Give either anchor_rise_m or support_rises_m.",
             )
 
@@ -221,7 +221,7 @@ class TensionSections(Element):
     def _check_overlap(self) -> Problems:
         if (self.section is None) != (self.overlap is None):
             key, other = ("overlap", "section") if self.overlap is None else ("section", "overlap")
-            yield validation_problem(key, f"the table is missing beside {other}", "Give both, or none of them.")
+            yield validation_problem(key, f"missing, although {other} is given", "Give both, or none of them.")
 
     @cross_check
     def _check_terminations(self) -> Problems:

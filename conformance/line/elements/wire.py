@@ -33,7 +33,7 @@ from pantocheck.conformance.line.elements.element import (
     DerivedKeys,
     DrawnMark,
     Element,
-    beyond_end,
+    build_position_problem,
 )
 from pantocheck.conformance.line.elements.line_layout import LineLayout, SpanLimit
 from pantocheck.conformance.line.elements.wire_irregularity import (
@@ -195,7 +195,7 @@ class Wires(Element):
             changes = table.change
             for number, change in enumerate(changes, 1):
                 if change.to_m > self.line.geometry.length:
-                    yield beyond_end(f"{key}.change[{number}].to_m", change.to_m, self.line)
+                    yield build_position_problem(f"{key}.change[{number}].to_m", change.to_m, self.line)
             order = sorted(range(len(changes)), key=lambda n: changes[n].from_m)
             for before, after in pairwise(order):
                 if changes[after].from_m < changes[before].to_m:

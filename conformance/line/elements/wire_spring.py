@@ -102,7 +102,7 @@ class WireSprings(Element):
 
     @staticmethod
     def connect(catenary: Catenary) -> Iterator[DrawnConnection]:
-        """Springs, drawn as droppers are."""
+        """Lines of the springs, drawn as those of droppers."""
         own = (part for part in catenary.springs if part.owner == WireSprings.__name__)
         return (DrawnConnection(part.position, part.lower, part.upper) for part in own)
 

@@ -44,7 +44,7 @@ class ForceChanges:
     values: dict[int, dict[str, Value]]
     """Changes by pantograph (0: the line) and name."""
     shifted: tuple[dict[int, dict[str, Value]], ...] = field(default_factory=tuple)
-    """The same over each of the shifted sections."""
+    """Changes over each of the shifted sections, as `values`."""
 
     @property
     def spread(self) -> dict[int, dict[str, float]]:
@@ -62,13 +62,13 @@ def compare_damping_runs(
 ) -> ForceChanges:
     """Changes from a run with the earlier damping to one with that of the case, also over shifted sections [m, m]."""
     shifted = (
-        force_changes(before.evaluate_section(section).values, after.evaluate_section(section).values)
+        compare_force(before.evaluate_section(section).values, after.evaluate_section(section).values)
         for section in sections
     )
-    return ForceChanges(force_changes(before.evaluation.values, after.evaluation.values), tuple(shifted))
+    return ForceChanges(compare_force(before.evaluation.values, after.evaluation.values), tuple(shifted))
 
 
-def force_changes(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
+def compare_force(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict[str, Value]]:
     """Changes of the statistics of the contact force [%].
 
     Returns:
@@ -176,7 +176,7 @@ def _build_study(
     """Findings, figures and tables of the two runs."""
     values = {model: run.evaluation.values for model, run in signals.items()}
     printed = {(table.model, table.pantograph): table.values for table in study.printed}
-    printed_changes = force_changes(
+    printed_changes = compare_force(
         *({p: dict(table) for (model, p), table in printed.items() if model == run} for run in signals)
     )
     return StudyResult(

@@ -64,7 +64,7 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
     forces = tuple(lift.stated_uplift_force or 0.0 for lift in case.lift_forces)
     if not all(forces):
         raise InputError(
-            f"case '{case.id}', key pantograph", "no uplift_force_N", "Give uplift_force_N of every pantograph."
+            f"case '{case.id}', key pantograph", "uplift_force_N is missing", "Give uplift_force_N of every pantograph."
         )
     mesh = discretise(line, discretisation.element_m)
     passage = _keep_dropper(build_passage(case, mesh, discretisation, forces), case.end, study.x_m)

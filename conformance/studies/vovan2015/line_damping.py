@@ -65,7 +65,7 @@ def identify_tests(identified: IdentifiedDrops, highest: float) -> Population:
 
 
 def build_drop_run_table(case: Case, drops: int, begin: float) -> RunTable:
-    """Run facts of a number of simulated drops that began at `begin` of `time.perf_counter` [s] and end now."""
+    """Run facts of simulated drops; `begin` is the `time.perf_counter` at their start [s], their end is now."""
     mass_drop = require_mass_drop(case)
     return build_run_table(case.file.discretisation, drops * (mass_drop.hanging_s + mass_drop.record_s), begin)
 

@@ -44,10 +44,7 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
         study=StudyResult(
             findings=findings,
             charts=(_draw_damping(modes, study.bands_Hz[-1][0]),),
-            tables=(
-                _band_table(study.bands_Hz, without, damped),
-                build_provenance_table(case),
-            ),
+            tables=(_band_table(study.bands_Hz, without, damped), build_provenance_table(case)),
         ),
     )
 

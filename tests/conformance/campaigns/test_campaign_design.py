@@ -132,18 +132,18 @@ def test_plan_of_a_hundred_thousand_runs_is_computed_run_by_run() -> None:
     ("content", "message"),
     [
         ({"vary": [{"key": "speed", "values": [1]}]}, "campaign, key speed: unknown key.\n  Speeds are given"),
-        ({"vary": [parse_variation("speed_km_h=1,2"), parse_variation("speed_km_h=3")]}, "varies twice"),
+        ({"vary": [parse_variation("speed_km_h=1,2"), parse_variation("speed_km_h=3")]}, "is varied twice"),
         ({"vary": [{"columns": {"speed_km_h": [1], "start_m": [1, 2]}}]}, "lists of different length"),
         ({"vary": [{"key": "speed_km_h", "range": {"start": 2, "stop": 1, "step": 1}}]}, "1 is less than start = 2"),
         ({"vary": [{"key": "speed_km_h", "values": [-1, -2]}]}, "key speed_km_h: -1 must be at least 1"),
         ({"conditions": ["speed_km_h < 3"]}, "'speed_km_h' is not a varied input"),
-        ({"vary": [parse_variation("speed_km_h=250")], "conditions": ["speed_km_h near 3"]}, "is no condition"),
+        ({"vary": [parse_variation("speed_km_h=250")], "conditions": ["speed_km_h near 3"]}, "is not a condition"),
         ({"vary": [parse_variation("speed_km_h=250")], "conditions": ["speed_km_h < 3"]}, "no design meets them"),
         ({"link": [{"key": "start_m", "follows": "speed_km_h"}]}, "'speed_km_h' is not a varied input"),
         ({"systems": ["magic"]}, "system 'magic': there is no such system"),
         (
             {"sampling": {"method": "sobol", "runs": 100, "input": [{"key": "speed_km_h", "distribution": UNIFORM}]}},
-            "100 is no power of two.\n  A Sobol sequence is balanced for powers of two, e.g. 64 or 128.",
+            "100 is not a power of two.\n  A Sobol sequence is balanced for powers of two, e.g. 64 or 128.",
         ),
     ],
 )  # fmt: skip

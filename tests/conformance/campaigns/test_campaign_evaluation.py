@@ -9,7 +9,7 @@ import pytest
 
 from helpers.campaign_columns import build_columns
 from helpers.cheap_campaign import compute_row, fill_store, speed_design
-from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, drop_constant
+from pantocheck.conformance.campaigns.campaign_columns import CampaignColumns, EvaluatedValue, leave_out_constant
 from pantocheck.conformance.campaigns.campaign_design import PlannedRun
 from pantocheck.conformance.campaigns.campaign_evaluation import (
     build_sample_charts,
@@ -126,7 +126,7 @@ def test_inputs_share_a_source_and_constant_values_are_not_drawn(columns: Campai
     columns.values[loss.column] = np.zeros(9)
     tuned = EvaluatedValue("1.mean_force_N")
     columns.values[tuned.column] = 144 + np.linspace(-0.002, 0.002, 9)  # a tuned force differs by its tolerance
-    assert drop_constant([FRONT, loss, tuned], columns) == [FRONT]
+    assert leave_out_constant([FRONT, loss, tuned], columns) == [FRONT]
     facts = {"a": "book (secondary)", "b": "assumed (provisional)", "c": "book (secondary)"}
     assert _join_sources(facts) == {"Source 1": "book (secondary): a, c", "Source 2": "assumed (provisional): b"}
     assert _join_sources({"a": "book"}) == {"Source of the varied inputs": "book"}

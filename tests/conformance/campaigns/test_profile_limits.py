@@ -35,7 +35,7 @@ def test_rule_without_a_bound_is_named_and_another_kind_of_profile_refused(case_
     other = replace(case_250, file=case_250.file.model_copy(update={"filter": Filter(cutoff_Hz=50.0)}))
     with pytest.raises(InputError, match="has another filter"):
         ProfileLimits(PROFILE, None).resolve(other)
-    with pytest.raises(InputError, match="compares with a measured record"):
+    with pytest.raises(InputError, match="needs a measured record; a campaign has none"):
         ProfileLimits(load_profile("line-test"), None).resolve(case_250)
 
 

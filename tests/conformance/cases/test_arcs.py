@@ -106,7 +106,7 @@ def test_filtered_force_lists_no_losses(sidecar: Path) -> None:
     ("arc", "message"),
     [
         ({"pantograph": 3}, "found the pantographs"),
-        ({"nominal_current_A": None}, "current and nominal_current_A belong together"),
+        ({"nominal_current_A": None}, "nominal_current_A is missing"),
         ({"detector": "IR"}, "key arc.detector: there is no column 'IR'"),
         ({"current": {"column": "I", "unit": "V"}}, "'V' is not a unit of this channel"),
     ],

@@ -452,8 +452,8 @@ def test_bad_options_end_with_one_message(train: Train, tmp_path: Path, argument
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"rule.1.tolerance": 1.0}, "has no bound, or several kinds of bounds"),
-        ({"rule.1.upper": None}, "has no bound, or several kinds of bounds"),
+        ({"rule.1.tolerance": 1.0}, "has several kinds of bounds"),
+        ({"rule.1.upper": None}, "has no bound"),
         ({"rule.1.quantity": "cov_2"}, "there is no quantity 'cov_2'"),
         ({"rule.1.quantity": "damping_ratio"}, "damping_ratio is not a quantity of a run"),
         ({"rule.0.upper.constant": None, "rule.0.upper.constant_kN": 0.07}, "constant_kN"),

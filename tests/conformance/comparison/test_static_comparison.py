@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
-from pantocheck.conformance.comparison.static_differences import ValuePair, grade_tolerance
+from pantocheck.conformance.comparison.static_differences import ValuePair, grade_static_difference
 from pantocheck.conformance.comparison.static_record import StaticSidecar, read_static_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -197,7 +197,7 @@ def grade(rows: list[int], sidecar: StaticSidecar) -> str:
     index = np.array(rows, dtype=np.int64)
     pair = ValuePair(POSITION[index], measured[index], model, model, index + 1, np.zeros(0, dtype=np.int64))
     (limit,) = build_tolerances({"elasticity_difference_mm_N": 0.1})
-    return grade_tolerance(limit, {"elasticity": pair} if rows else {}, sidecar, (0.0, 100.0)).verdict
+    return grade_static_difference(limit, {"elasticity": pair} if rows else {}, sidecar, (0.0, 100.0)).verdict
 
 
 def test_failing_record_fails() -> None:

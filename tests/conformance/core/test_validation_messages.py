@@ -42,7 +42,7 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
          "droppers.x_m[3]: 10.5 m is not greater than the preceding 17 m."),
         (LINE, {"droppers.presag_m": [0.0] * 8}, "droppers.presag_m: 8 values for 9 droppers."),
         (LINE, {"droppers.axial_stiffness_EA_N": 200000.0},
-         "droppers.stiffness_N_m: the stiffness of the droppers is missing or given twice."),
+         "droppers.stiffness_N_m: the stiffness of the droppers is given twice."),
         (LINE, {"geometry.spans": 10_000_000}, "geometry.spans: 10000000 must be at most 1000."),
         (LINE, {"geometry.span_m": 60000.0}, "geometry.span_m: 60000 must be at most 120.0."),
         (LINE, {"steady_arm.provisional": ["statics"]},

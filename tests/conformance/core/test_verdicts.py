@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.core.trust import LEVELS, limit_counts
+from pantocheck.conformance.core.trust import LEVELS, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, judge, margin, worst_verdict
 from pantocheck.conformance.line.library_folder import library_folder
 
@@ -81,7 +81,7 @@ def test_worst_verdict_decides_and_limits_count_from_the_lowest_trust_up() -> No
     assert worst_verdict([]) == "info"
     # Rows: trust of the limit; columns: lowest trust that counts; both from primary to provisional.
     assert LEVELS == ("primary", "secondary", "provisional")
-    counts = [[limit_counts(trust, lowest) for lowest in LEVELS] for trust in LEVELS]
+    counts = [[decides_verdict(trust, lowest) for lowest in LEVELS] for trust in LEVELS]
     assert counts == [[True, True, True], [False, True, True], [False, False, True]]
     with pytest.raises(ValueError, match="at least one"):
         margin(1.0, None, None)

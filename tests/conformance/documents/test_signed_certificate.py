@@ -95,7 +95,7 @@ def test_failing_certificate_may_be_authentic(
 def test_unusable_trust_roots(passing_certificate: Path, signers: Signers, tmp_path: Path) -> None:
     signed = sign(passing_certificate, signers.author)
     (tmp_path / "empty.pem").write_text("no certificate")
-    for roots, message in (("none.pem", "cannot be read"), ("empty.pem", "a certificate is damaged")):
+    for roots, message in (("none.pem", "cannot be read"), ("empty.pem", "holds a damaged certificate")):
         result = invoke("verify", signed, "--trust-roots", tmp_path / roots)
         assert result.exit_code == 2
         assert message in result.stderr

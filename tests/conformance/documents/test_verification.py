@@ -190,11 +190,11 @@ def test_copies_without_protection_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "not a PDF, not an HTML page and not JSON"),
+        (b"", "is neither a PDF nor an HTML page nor JSON"),
         (b"%PDF-1.7\ngarbage", "damaged PDF"),
-        (pdf_with(pages=0), "a PDF without pages"),
-        (pdf_with(), "no attachment named results.json"),
-        (pdf_with(("other.json", b"{}")), "no attachment named results.json"),
+        (pdf_with(pages=0), "has no pages"),
+        (pdf_with(), "holds no attachments named results.json"),
+        (pdf_with(("other.json", b"{}")), "holds no attachments named results.json"),
         (pdf_with(("results.json", b"{}"), ("results.json", b"{}")), "2 attachments? named results.json"),
         (pdf_with(("results.json", b"")), "is not valid JSON"),
         (pdf_with(("results.json", b"\xff\xfe\x00")), "is not valid JSON"),
@@ -285,7 +285,7 @@ def test_attachment_behind_another_filter_is_refused(certificate_file: Path, nam
             item[NameObject("/Filter")] = NameObject(name)
     writer.write(certificate_file)
     with pytest.raises(
-        InputError, match=r"certificate\.pdf(: a damaged PDF|, attachment results\.json: is not valid JSON)"
+        InputError, match=r"certificate\.pdf(: is a damaged PDF|, attachment results\.json: is not valid JSON)"
     ):
         verify_document(certificate_file)
 
@@ -298,5 +298,5 @@ def test_every_exception_of_the_parser_is_a_message(
         raise error
 
     monkeypatch.setattr("pypdf.PdfReader", fail)
-    with pytest.raises(InputError, match="a damaged PDF"):
+    with pytest.raises(InputError, match="is a damaged PDF"):
         verify_document(certificate_file)

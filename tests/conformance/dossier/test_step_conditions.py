@@ -12,7 +12,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.dossier.dossier_file import ParameterTable
 from pantocheck.conformance.dossier.line_test_step import LINE_TEST_PROFILE
 from pantocheck.conformance.dossier.model_steps import check_parameters
-from pantocheck.conformance.dossier.run_reading import make_run
+from pantocheck.conformance.dossier.run_reading import run_and_read
 from pantocheck.conformance.dossier.step_result import list_inputs
 from pantocheck.conformance.results.results_format import CaseResult
 
@@ -68,4 +68,4 @@ def test_run_with_another_filter_than_the_line_tests_is_refused(case_250: Case, 
     other = profile.model_copy(update={"filter": profile.filter.model_copy(update={"cutoff_Hz": 19.0})})
     nothing: Any = None
     with pytest.raises(InputError, match="is not that of the line tests"):
-        make_run(case_250, "up", nothing, nothing, other, tmp_path / "run.h5")
+        run_and_read(case_250, "up", nothing, nothing, other, tmp_path / "run.h5")

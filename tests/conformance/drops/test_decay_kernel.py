@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 
 from pantocheck.conformance.drops.decay_kernel import (
     FrequencyBand,
-    complete_overlap,
     decay_kernel,
     drift_columns,
     far_pole_columns,
+    filter_full_overlap,
     filter_gain,
     join_conjugates,
     kernel_and_derivative,
-    low_pass_decay,
+    low_pass_taps,
     real_columns,
 )
 from pantocheck.conformance.drops.decay_search import DecaySearch, ResidualWindows
@@ -95,7 +95,7 @@ def test_band_keeps_its_margins(high: float, rate: float, expected: tuple[float,
 @pytest.mark.parametrize("attenuation", [40.0, 60.0, 80.0])
 def test_low_pass_has_its_attenuation(attenuation: float) -> None:
     """A Kaiser window has ripples of the attenuation in both bands; the estimate of its length misses it by 2 dB."""
-    taps = low_pass_decay(100.0, 5.0, 8.0, attenuation)
+    taps = low_pass_taps(100.0, 5.0, 8.0, attenuation)
     frequency, response = scipy.signal.freqz(taps, fs=100.0, worN=4096)
     ripple = 10 ** (-(attenuation - 2) / 20)
     assert np.abs(np.abs(response[frequency <= 5.0]) - 1).max() < ripple
@@ -107,9 +107,9 @@ def test_low_pass_has_its_attenuation(attenuation: float) -> None:
 def test_filter_gain_is_that_of_a_filtered_decay() -> None:
     """Exact: a decay is an eigenfunction of a finite filter. The middle tap gives the time of a filtered sample."""
     rate, poles = 50.0, np.array([-0.3 + 12.0j, -1.5 + 31.0j])
-    taps = low_pass_decay(rate, 4.0, 7.0, 60.0)
+    taps = low_pass_taps(rate, 4.0, 7.0, 60.0)
     decay = np.exp(np.outer(np.arange(200) / rate, poles))
-    filtered = complete_overlap(decay, taps)
+    filtered = filter_full_overlap(decay, taps)
     assert filtered.shape[0] == 200 - taps.size + 1
     expected = filter_gain(taps, poles, rate) * decay[taps.size // 2 :][: filtered.shape[0]]
     assert filtered == pytest.approx(expected, abs=1e-12)

@@ -262,9 +262,9 @@ def test_lateral_channels_are_those_of_a_line_with_stagger(case_path: Path) -> N
     [
         (("--axes", "z,y"), "its model has no lateral motion (y)"),
         (("--axes", "x"), "the model has no motion along the track (x)"),
-        (("--axes", "up"), "is no list of axes"),
+        (("--axes", "up"), "is not a list of axes"),
         (("--place", "CW:999"), "999 m is not on the line"),
-        (("--place", "40.5"), "is no wire and position"),
+        (("--place", "40.5"), "is not a wire and a position"),
         (("--messenger-tension", "-5"), "messenger_wire.tension_N"),
     ],
 )

@@ -17,7 +17,7 @@ from pantocheck.conformance.drops.drop_record import DropChannel, DropDescriptio
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import _find_longest, _try_start_orders, identify_modes
-from pantocheck.conformance.drops.line_fit import share_blocks
+from pantocheck.conformance.drops.line_fit import group_into_blocks
 from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
@@ -139,7 +139,7 @@ def test_records_of_different_rates_start_from_the_poles_of_the_longest_decay(or
     lengths_and_rates = [(40.0, 30.0), (80.0, 25.0)]
     drops = [drop(random, true, duration=length, rate=rate, weak=0.0) for length, rate in lengths_and_rates[order]]
     decays = [prepare_decay(build_record(synthetic), band) for synthetic in drops]
-    samples, _ = share_blocks(decays)
+    samples, _ = group_into_blocks(decays)
     assert len({dt for _, dt in samples}) == 2
     assert _try_start_orders(samples, band) == ()
     start = _find_longest(decays).poles

@@ -21,7 +21,7 @@ from pantocheck.conformance.drops.projection import (
     eliminate_columns,
     estimate_noise,
     factor_columns,
-    residue_spread,
+    residue_deviation,
     solve_factor,
     solve_least_squares,
     solve_residues,
@@ -66,7 +66,7 @@ def test_spread_of_residues_is_that_of_repeated_noise() -> None:
     poles = np.array([-0.03 + 6.0j, -0.2 + 6.4j, -0.05 + 15.0j])
     residues = solve_residues(poles, block).residues
     measured = np.sqrt((np.var(residues.real, axis=1) + np.var(residues.imag, axis=1)) / 2)
-    assert measured == pytest.approx(residue_spread(poles, block), rel=0.08)
+    assert measured == pytest.approx(residue_deviation(poles, block), rel=0.08)
 
 
 def test_too_few_lines_for_the_modes_are_refused() -> None:

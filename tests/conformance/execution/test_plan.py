@@ -10,7 +10,7 @@ from helpers.command_line import pantocheck
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.trust import limit_counts
+from pantocheck.conformance.core.trust import decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.execution.plan import Plan, prepare_plan, read_plan
 from pantocheck.conformance.execution.study_dispatch import ONLY_BUILTIN, run_study
@@ -48,7 +48,7 @@ def test_required_case_without_limits_is_run_for_information_only(tmp_path: Path
     required = {name for case in cases.values() for name in case.file.requires}
     information = prepare_plan(Plan(out=str(tmp_path))).participation.information
     without_limits = {
-        name for name in required if not any(limit_counts(i.trust, "secondary") for i in cases[name].limits)
+        name for name in required if not any(decides_verdict(i.trust, "secondary") for i in cases[name].limits)
     }
     assert set(information) == without_limits
     prepared = prepare_plan(Plan(trust="secondary"))

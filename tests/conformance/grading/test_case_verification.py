@@ -9,7 +9,7 @@ import pytest
 from helpers.converged_fixtures import StateConverged, build_converged
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.core.trust import LEVELS, limit_counts
+from pantocheck.conformance.core.trust import LEVELS, decides_verdict
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.case_verification import (
     VERIFIED_QUANTITIES,
@@ -86,8 +86,8 @@ def test_tolerance_of_an_extreme_needs_the_mean_and_computed_limits_their_trust(
     with pytest.raises(ValueError, match="max_force_N needs a mean"):
         tolerance("max_force_N", 180.0, None)
     assert "computed" not in LEVELS
-    assert not any(limit_counts("computed", level) or limit_counts(level, "computed") for level in LEVELS)
-    assert limit_counts("computed", "computed")
+    assert not any(decides_verdict("computed", level) or decides_verdict(level, "computed") for level in LEVELS)
+    assert decides_verdict("computed", "computed")
 
 
 def test_values_at_rest_or_of_the_passage_limit_their_own_cases_only(twin: Case) -> None:

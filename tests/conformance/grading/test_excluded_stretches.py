@@ -145,7 +145,7 @@ def test_kilometres_of_events_follow_the_direction(sidecar: Path) -> None:
     ("event", "message"),
     [
         ({"kind": "tunnel"}, "the place is missing"),
-        ({"kind": "tunnel", "from_m": 1.0, "from_km": 1.0}, "stated twice"),
+        ({"kind": "tunnel", "from_m": 1.0, "from_km": 1.0}, "the place is given twice"),
         ({"kind": "tunnel", "from_m": 5.0, "to_m": 1.0}, "the end is before the start"),
         ({"kind": "tunnel", "from_km": 5.0}, "the table track is missing"),
         ({"kind": "tunnel", "from_m": 5.0, "exclude": "because"}, "a place without length"),

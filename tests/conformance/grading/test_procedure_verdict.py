@@ -14,7 +14,7 @@ from pantocheck.conformance.grading.procedure_verdict import (
     describe_closest,
     judge_claim,
     judge_procedure,
-    rest_claim_on_steps,
+    require_steps_for_claim,
 )
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.procedure_format import (
@@ -128,7 +128,7 @@ def judge_line(states: dict[str, str], verdicts: dict[str, Any]) -> ValidityClai
         for name in STEP_NAMES[:-1]
     ]
     line = claim("line", "A")
-    return rest_claim_on_steps(judge_claim(line, [line], [run(1, 160)]), steps)
+    return require_steps_for_claim(judge_claim(line, [line], [run(1, 160)]), steps)
 
 
 @pytest.mark.parametrize(("number", "name"), list(enumerate(STEP_NAMES[:-1], 1)))

@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import DrawnCurve, LineShape
 from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_shape import THINNING_M, build_line_shape, find_deflection, thin_curve
-from pantocheck.conformance.pages.line_figure import line_figures, line_reference
+from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures
 from pantocheck.conformance.results.results_format import CaseResult, RunFacts
 
 LARGEST_SHAPE = 15_000
@@ -81,7 +81,7 @@ def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
     [figure] = line_figures(case, ())
     assert figure.caption.startswith("Line at rest, spans 4 to 7: side view, heights enlarged.")
     assert line_figures(second, (case,)) == ()
-    [text] = line_reference(second, (case,))
+    [text] = find_earlier_drawing(second, (case,))
     assert text.text == "Line: as drawn in first."
     side = shape_250.side
     points = [point.model_copy(update={"text": "12 kg"}) for point in side.points if point.symbol == "steady arm"]
@@ -90,4 +90,4 @@ def test_equal_lines_are_drawn_once(shape_250: LineShape) -> None:
     assert figure.caption.endswith(f"enlarged. With texts: steady arm ({len(points)}).")
     foreign = drawn_case("third", None, None)
     assert line_figures(foreign, (case, foreign)) == ()
-    assert line_reference(foreign, (case, foreign)) == ()
+    assert find_earlier_drawing(foreign, (case, foreign)) == ()

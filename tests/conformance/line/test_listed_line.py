@@ -12,7 +12,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.runs.case_run import build_passage, record_passage, start_forces
+from pantocheck.conformance.runs.case_run import build_passage, list_start_forces, record_passage
 from pantocheck.model import discretise, simulate_passage
 
 LINES = sorted(
@@ -45,7 +45,7 @@ def test_listed_supports_give_the_same_passage_bit_by_bit() -> None:
         short = line.model_copy(update={"geometry": line.geometry.shorten(7)})
         shortened = Case(case.file.model_copy(update=changes), short, case.pantographs, ())
         discretised, coarse = discretise(build_catenary(short), 2.0), case.file.discretisation.scale(4.0)
-        passage = build_passage(shortened, discretised, coarse, start_forces(shortened))
+        passage = build_passage(shortened, discretised, coarse, list_start_forces(shortened))
         records.append(record_passage(shortened, passage, simulate_passage(discretised, passage)))
     for name in ("force", "contact_height", "support_uplift"):
         np.testing.assert_array_equal(*(getattr(record, name) for record in records))

@@ -141,7 +141,7 @@ def test_pantograph_without_a_law_has_no_key_for_it(case_250: Case) -> None:
         (
             MEAN_LAW,
             {"pantograph.0.uplift_force_N": 120.0},
-            r"key pantograph\[1\].force_from: stands beside uplift_force_N",
+            r"key pantograph\[1\].force_from: is given together with uplift_force_N",
         ),
         (MEAN_LAW, {"pantograph.0.force_from": "rule"}, r"pantograph\[1\].force_from: found 'rule', expected 'law'"),
         (MEAN_LAW, {"pantograph.0.force_from": None}, 'or force_from = "law" for the force law of the pantograph'),

@@ -23,7 +23,7 @@ from pantocheck.conformance.records.record_reading import read_record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.runs.case_run import run_passage, start_forces
+from pantocheck.conformance.runs.case_run import list_start_forces, run_passage
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.uplift_tuning import build_pantographs
 from pantocheck.model import Pantograph
@@ -62,7 +62,7 @@ def test_head_inertia_recovers_the_contact_force_up_to_20_hz(tmp_path: Path, cas
     steps = case.file.discretisation.model_copy(update={"time_step_s": 0.002})
     case = replace(case, file=case.file.model_copy(update={"discretisation": steps}))
     line = discretise_line(case.line, steps.element_m)
-    run = run_passage(case, line, steps, start_forces(case))
+    run = run_passage(case, line, steps, list_start_forces(case))
     record = run.record
     pantographs = build_pantographs(case, line, run.uplift_forces)
     channels = {"time_s": record.time, "x": record.position[0]}

@@ -86,7 +86,10 @@ def test_unused_columns_are_listed(foreign: Callable[[str], Path]) -> None:
         ({"force_1_N": {"column": "Kraft", "unit": "N"}}, r"columns.force_1_N.column: there is no column 'Kraft'"),
         ({"force_1_N": {"column": "Kraft_vorn", "unit": "mm"}}, r"columns.force_1_N.unit: 'mm' is not a unit of this"),
         ({"force_1_N": {"column": "Kraft_vorn"}}, r"columns.force_1_N.unit: missing; the file states no unit"),
-        ({"force_1_N": {"column": "Kraft_vorn", "scale": 2.0}}, r"columns.force_1_N.unit: missing beside scale"),
+        (
+            {"force_1_N": {"column": "Kraft_vorn", "scale": 2.0}},
+            r"force_1_N.unit: missing, but the value is scaled",
+        ),
         ({"force_1_kN": {"column": "Kraft_vorn", "unit": "kN"}}, r"columns.force_1_kN: not a channel of a record"),
         ({"force_3_N": {"column": "Kraft_vorn", "unit": "kN"}}, r"columns.force_3_N: the sidecar has no pantograph 3"),
         ({"position_1_m": {"sum": [{"column": "a", "unit": "m"}]}}, r"sensors are summed to a force only"),
@@ -162,5 +165,7 @@ def test_stated_layout_is_used_for_a_text_table_only(tmp_path: Path, two_pantogr
     assert read_record(sidecar)[0].force.shape == two_pantograph_record.force.shape
     FOREIGN_WRITERS["a.mat"](tmp_path / "a.mat", list_channels(two_pantograph_record))
     edit_toml(sidecar, {"file": "a.mat"})
-    with pytest.raises(InputError, match=r"key table: states the layout of a text table, but \.mat is no text table"):
+    with pytest.raises(
+        InputError, match=r"key table: states the layout of a text table, but \.mat is not a text table"
+    ):
         read_record(sidecar)

@@ -28,7 +28,7 @@ def put(values: Any, index: Any, value: float) -> Any:
     return array
 
 
-UNPAIRED = "either the uplift or the positions of the supports are missing"
+UNPAIRED = "uplift and positions of the supports are needed together"
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_largest_and_smallest_record(two_pantograph_record: Record, monkeypatch:
     monkeypatch.setattr(record_module, "MAX_SAMPLES", 1200)
     assert change(two_pantograph_record).support_uplift is not None
     monkeypatch.setattr(record_module, "MAX_SAMPLES", 1199)
-    with pytest.raises(RecordInvalid, match="support_uplift: has 1200 values, accepted are 1199"):
+    with pytest.raises(RecordInvalid, match="support_uplift: has 1200 values, at most 1199 are accepted"):
         change(two_pantograph_record)
 
 

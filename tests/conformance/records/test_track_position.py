@@ -69,7 +69,7 @@ def test_pulses_and_marks_give_the_distance_between_them() -> None:
     ("read", "signal", "message"),
     [
         (count_distance, np.r_[np.arange(50.0), 48.0, np.arange(50.0, 90)], "runs backwards at sample 51"),
-        (count_distance, np.zeros(100), "0 pulses are counted"),
+        (count_distance, np.zeros(100), "the counter counts 0 pulses; at least 2 are needed"),
         (count_distance, np.r_[0.0, np.nan, 1, 2], "sample 2 of the counter is missing"),
         (pulse_distance, np.ones(100), "is constant"),
         (pulse_distance, np.r_[np.zeros(50), np.ones(50)], "has 1 rising edges"),
@@ -146,9 +146,12 @@ PULSES = {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"track": None}, "key track: missing beside kilometre marks"),
+        ({"track": None}, "key track: missing, but needed for kilometre marks"),
         ({"track": {"zero_km": ZERO_KM, "kilometres": "decreasing"}}, "the kilometres are not decreasing"),
-        ({"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}}, "position stands in columns, too"),
+        (
+            {"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}},
+            "gives the position as well",
+        ),
         ({"position": PULSES | {"column": "x"}}, "no column 'x'"),
         ({"position": PULSES, "track": None}, None),
         ({"position": PULSES | {"kind": "pulses"}, "track": None}, "has 1 rising edges"),

@@ -10,7 +10,7 @@ from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from pantocheck.conformance.app.commands.command_list import app
-from pantocheck.conformance.app.commands.options import build_options, state_administration
+from pantocheck.conformance.app.commands.options import build_options, read_stated_administration
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.ci_reports import render_junit
@@ -57,10 +57,10 @@ def test_options_replace_the_plan_key_by_key(tmp_path: Path) -> None:
     plan, file = tmp_path / "plan.toml", tmp_path / "administration.toml"
     plan.write_text('system = "builtin"\n[administration]\nissuer = "A"\nassessor = "C"\nreport_number = "1"')
     file.write_text('issuer = "B"\nreport_number = "2"')
-    stated = build_options(plan, administration=state_administration(file, "3")).administration
+    stated = build_options(plan, administration=read_stated_administration(file, "3")).administration
     assert stated is not None
     assert (stated.issuer, stated.assessor, stated.report_number) == ("B", "C", "3")
-    assert build_options(None, administration=state_administration(None, None)).administration is None
+    assert build_options(None, administration=read_stated_administration(None, None)).administration is None
 
 
 def test_run_stores_the_data_without_another_verdict_or_digest(tmp_path: Path) -> None:

@@ -16,8 +16,8 @@ from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import CheckName, Finding
-from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, fit_motion
-from pantocheck.conformance.runs.record_checks import check_record, record_state
+from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, compare_motion
+from pantocheck.conformance.runs.record_checks import check_record, judge_record_state
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -90,7 +90,7 @@ def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, sampl
 
 def test_constant_force_and_exact_fit(case_250: Case, record: Record) -> None:
     """The response to straight lines between samples is exact up to (w dt)^2/12 = 4e-6 at 1.16 Hz and 1 ms."""
-    fit = fit_motion(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
+    fit = compare_motion(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
     assert_allclose([fit.gain, fit.misfit], [1.0, 0.0], atol=1e-4)
     # A dead channel: 119 N throughout, while the contact point goes up and down.
     ((name, finding),) = findings(case_250, replace(record, force=np.full_like(record.force, 119.0))).items()
@@ -141,13 +141,13 @@ def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, 
 # State of a record by the findings of its checks.
 def test_state_follows_from_the_worst_finding() -> None:
     """Beside a contradiction, a missing channel is not the reason: the record cannot be graded even with it."""
-    assert record_state({}) == ("verified", "every consistency check that applies confirms the record")
+    assert judge_record_state({}) == ("verified", "every consistency check that applies confirms the record")
     findings: dict[CheckName, Finding] = {"support passing": Finding("unchecked", "no uplift")}
-    assert record_state(findings | {"dynamics": Finding("doubt", "late force")}) == (
+    assert judge_record_state(findings | {"dynamics": Finding("doubt", "late force")}) == (
         "unverified",
         "no uplift; late force",
     )
-    assert record_state(findings | {"dynamics": Finding("contradiction", "gain")}) == ("contradicted", "gain")
+    assert judge_record_state(findings | {"dynamics": Finding("contradiction", "gain")}) == ("contradicted", "gain")
 
 
 # Dynamics check: thresholds on both sides, the stated cause, and either pantograph alone.
@@ -169,7 +169,7 @@ def fit_pantograph(case: Case, train_record: Record, row: int) -> ResponseFit:
         low_pass(channel[row], train_record.rate)[first:last:2]
         for channel in (train_record.force, train_record.contact_height)
     )
-    return fit_motion(case.pantographs[row], force, height, 2 / train_record.rate)
+    return compare_motion(case.pantographs[row], force, height, 2 / train_record.rate)
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.runs.case_run import build_passage, start_forces
+from pantocheck.conformance.runs.case_run import build_passage, list_start_forces
 from pantocheck.conformance.runs.derived_values import Derived, build_derived
 from pantocheck.model import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
@@ -104,7 +104,7 @@ def test_forces_carry_the_wire_and_the_uplift() -> None:
 def test_start_is_that_of_the_reference_simulator(name: str) -> None:
     """Heights of all masses and contact forces; elements of 0.5 m leave 0.2 mm of uplifts of 30 to 100 mm."""
     case = shorten(library_case(name), 5)
-    values, forces = build_derived(case).train, start_forces(case)
+    values, forces = build_derived(case).train, list_start_forces(case)
     line = discretise(build_catenary(case.line), 0.5)
     passage = build_passage(case, line, case.file.discretisation, forces)
     _, start = start_motion(line, build_kernel_arrays(line, passage.time_step), passage)

@@ -26,7 +26,7 @@ from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs import case_run
-from pantocheck.conformance.runs.case_run import PassageRun, build_passage, run_passage, start_forces
+from pantocheck.conformance.runs.case_run import PassageRun, build_passage, list_start_forces, run_passage
 from pantocheck.conformance.runs.static_quantities import sample_span
 from pantocheck.conformance.runs.uplift_tuning import (
     MAX_RUNS,
@@ -148,7 +148,7 @@ def test_estimate_gives_nearly_the_required_mean_forces(name: str, speed: float)
     case = short_case(name, speed)
     line, target = discretised(case), case.lift_forces[0].target_mean_force
     error = mean_forces(case, line, estimate_uplift_forces(case, line)) - target
-    untuned = mean_forces(case, line, start_forces(case)) - target
+    untuned = mean_forces(case, line, list_start_forces(case)) - target
     assert np.abs(error).max() < 2.0
     assert np.abs(error).max() < np.abs(untuned).min()
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.lines import PANTOGRAPH_2002, simple_line
-from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, chain, simulate_passage
+from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, build_chain, simulate_passage
 from pantocheck.model.description.failures import DidNotConverge, NoInitialState
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
@@ -54,7 +54,7 @@ def test_simulate_passage_fails_for_nan_in_a_pantograph(where: str) -> None:
     """The simulation raises DidNotConverge or rejects a matrix before; it never returns a history of NaN."""
     values = {"uplift": 120.0, "mass": 7.2, "contact": 50e3} | {where: np.nan}
     masses, stiffness, damping = np.array([15.0, values["mass"]]), np.array([50.0, 4200.0]), np.array([90.0, 10.0])
-    pantograph = chain(masses, stiffness, damping, values["uplift"], 0, values["contact"])
+    pantograph = build_chain(masses, stiffness, damping, values["uplift"], 0, values["contact"])
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
         simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
 

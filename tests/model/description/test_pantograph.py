@@ -7,7 +7,7 @@ from scipy.linalg import eigh
 from pantocheck.model.description.pantograph import (
     Pantograph,
     apparent_mass,
-    chain,
+    build_chain,
     frequencies,
     from_modes,
     preload_springs,
@@ -18,7 +18,7 @@ MASSES, STIFFNESS, DAMPING = (np.array(v) for v in ([6.0, 9.0, 7.5], [160.0, 155
 
 def pantograph(damping: float = 1.0) -> Pantograph:
     """The EN 50318:2018 chain, with its damping multiplied."""
-    return chain(MASSES, STIFFNESS, damping * DAMPING, 169.0, 0, 50e3)
+    return build_chain(MASSES, STIFFNESS, damping * DAMPING, 169.0, 0, 50e3)
 
 
 def test_frequencies_of_the_undamped_chain_are_the_published_ones() -> None:
@@ -55,7 +55,7 @@ def test_apparent_mass_vanishes_at_the_frequencies() -> None:
 def test_from_modes_gives_the_apparent_mass_of_the_chain() -> None:
     """One system as a chain and by its modes, with stiffness-proportional damping: equal apparent mass and rest."""
     beta = 1e-3
-    by_chain = preload_springs(chain(MASSES, STIFFNESS, beta * STIFFNESS, 169.0, 0, 50e3), np.full(3, 0.055))
+    by_chain = preload_springs(build_chain(MASSES, STIFFNESS, beta * STIFFNESS, 169.0, 0, 50e3), np.full(3, 0.055))
     w2, shapes = eigh(by_chain.stiffness, by_chain.mass)
     omega = np.sqrt(w2)
     by_modes = from_modes(
@@ -70,12 +70,12 @@ def test_from_modes_gives_the_apparent_mass_of_the_chain() -> None:
 
 def test_preload_springs_leaves_the_chain_at_rest_at_the_unstretched_height() -> None:
     """Without uplift force no force moves the chain from that height."""
-    at_rest = preload_springs(chain(MASSES, STIFFNESS, DAMPING, 0.0, 0, 50e3), np.full(len(MASSES), 0.055))
+    at_rest = preload_springs(build_chain(MASSES, STIFFNESS, DAMPING, 0.0, 0, 50e3), np.full(len(MASSES), 0.055))
     np.testing.assert_allclose(np.linalg.solve(at_rest.stiffness, at_rest.force), 0.055, rtol=1e-9)
 
 
 def test_uplift_force_acts_on_the_chosen_mass() -> None:
     """On the head it stretches every spring, on the lowest mass only the first."""
-    low, high = (chain(MASSES, STIFFNESS, DAMPING, 100.0, mass, 50e3) for mass in (0, 2))
+    low, high = (build_chain(MASSES, STIFFNESS, DAMPING, 100.0, mass, 50e3) for mass in (0, 2))
     np.testing.assert_allclose(np.linalg.solve(low.stiffness, low.force), 100.0 / STIFFNESS[0], rtol=1e-9)
     np.testing.assert_allclose(np.linalg.solve(high.stiffness, high.force), np.cumsum(100.0 / STIFFNESS), rtol=1e-9)

@@ -109,7 +109,7 @@ def test_pantograph_at_working_height_presses_with_its_static_force(tmp_path: Pa
         (
             "[matrices]\nmass_kg = [[1.0]]\ndamping_N_s_m = [[0.0]]\nstiffness_N_m = [[1.0, 0.0]]\nhead = [1.0]\n"
             + PROVENANCE,
-            "not 1 rows of 1 values",
+            "does not have 1 rows of 1 values",
         ),
     ],
 )

@@ -19,7 +19,7 @@ def imported_by(statement: str) -> set[str]:
 @pytest.mark.parametrize(
     "statement",
     [
-        "from pantocheck.model import Catenary, ModalBand, Pantograph, Passage, Wire, chain",
+        "from pantocheck.model import Catenary, ModalBand, Pantograph, Passage, Wire, build_chain",
         "from pantocheck.model.description.failures import SimulationError",
         "from pantocheck.model.fem.beam import wave_speed",
     ],

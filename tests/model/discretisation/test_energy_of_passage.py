@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from helpers.lines import overlapping_line, simple_line
-from pantocheck.model import Passage, chain, make_droppers_bilateral
+from pantocheck.model import Passage, build_chain, make_droppers_bilateral
 from pantocheck.model.discretisation.discretised_line import discretise
 from verification.guide.topics.passage_balance import measure_balances
 
-HEAD = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.0, 0, 50e3)
+HEAD = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.0, 0, 50e3)
 """Pantograph of EN 50318:2002 without dampers."""
 
 

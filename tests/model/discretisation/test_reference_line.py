@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from helpers.lines import PANTOGRAPH_2002, Array, simple_line
-from pantocheck.model import History, Kind, Passage, Rayleigh, chain, simulate_passage
+from pantocheck.model import History, Kind, Passage, Rayleigh, build_chain, simulate_passage
 from pantocheck.model.discretisation.discretised_line import discretise
 
 # Damping and limits: published_values.toml, en50318_2002.
@@ -69,7 +69,7 @@ def test_simulate_passage_is_reproducible_to_the_last_bit() -> None:
 
 def test_simulate_passage_at_speed_zero_stays_at_rest() -> None:
     """Without a base spring the start is an equilibrium: the force stays 120 N, the line at rest."""
-    free = chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+    free = build_chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
     line = discretise(simple_line(spans=3, damping=DAMPING), 0.5)
     history = simulate_passage(line, Passage((free,), (83.7,), 0.0, 0.5, 1e-3, (("contact", 60.0),)))
     np.testing.assert_allclose(history.force, 120.0, rtol=1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 from helpers.lines import Array, bare_wire, simple_line
-from pantocheck.model import Passage, chain
+from pantocheck.model import Passage, build_chain
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
@@ -53,7 +53,7 @@ def test_free_vibration_converges_with_second_order() -> None:
 
 
 # Without a base spring the pantograph rests at any height with its uplift force: the start is an equilibrium.
-PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.zeros(2), 120.0, 0, 5e3)
+PANTOGRAPH = build_chain(np.array([15.0, 7.2]), np.array([0.0, 4200.0]), np.zeros(2), 120.0, 0, 5e3)
 
 
 def test_contact_force_converges_with_second_order() -> None:

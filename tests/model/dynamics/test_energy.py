@@ -17,9 +17,9 @@ from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,
+    correct_mass,
     free_unknowns,
     point_load,
-    stepping_mass,
     stretch_directions,
 )
 from pantocheck.model.statics.static_solver import StaticSolver
@@ -35,7 +35,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
     work of its preload is potential energy, too: it balances the weights.
     """
     rows, load = without_connectors(line), point_load(line, 0, 20.0)
-    matrices, mass = assemble_matrices(rows), stepping_mass(line, time_step)
+    matrices, mass = assemble_matrices(rows), correct_mass(line, time_step)
     place, bars = bandwidth_order(line)[matrices.free], csc_array(connector_directions(line)[matrices.free])
     stretches = csc_array(stretch_directions(line)[matrices.free])
     stiffness, preload = line.connectors.stiffness, line.connectors.preload
@@ -60,7 +60,7 @@ def free_decay(line: DiscretisedLine, time_step: float, steps: int) -> tuple[Arr
 def _release(line: DiscretisedLine, kernel: KernelArrays, load: Array) -> Motion:
     """State at the release: deflected by 600 N, with the acceleration M^-1 times the removed weight."""
     deflection = StaticSolver(line).deflection(-600.0 * load)
-    mass, free = stepping_mass(line, kernel.time_step).toarray(), free_unknowns(line)
+    mass, free = correct_mass(line, kernel.time_step).toarray(), free_unknowns(line)
     acceleration = np.zeros(line.beams.free.size)
     acceleration[bandwidth_order(line)[free]] = np.linalg.solve(mass, 600.0 * load[free])
     fields = np.zeros((3, *line.beams.free.shape))

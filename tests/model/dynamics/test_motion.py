@@ -3,7 +3,7 @@
 import numpy as np
 
 from pantocheck.model.dynamics.active_window import Window
-from pantocheck.model.dynamics.motion import Layout, Motion, build_motion, end_of_step, hold_left_stations
+from pantocheck.model.dynamics.motion import Layout, Motion, build_motion, end_of_step, hold_passed_stations
 
 STEP = 2e-3
 LAYOUT = Layout(stations=50, width=64)
@@ -38,7 +38,7 @@ def test_stations_that_leave_the_window_are_held_where_they_are() -> None:
     """At rest at their last displacement; the others, and all stations in a second call, stay as they are."""
     motion, w, r = random_motion()
     motion.active[:] = 8, 47
-    hold_left_stations(STEP, motion, Window(16, 39))
+    hold_passed_stations(STEP, motion, Window(16, 39))
     left = np.r_[8:16, 40:48]
     stay = np.setdiff1d(np.arange(50), left)
     assert motion.active.tolist() == [16, 39]
@@ -47,7 +47,7 @@ def test_stations_that_leave_the_window_are_held_where_they_are() -> None:
         assert not field[1:, :, left].any()
         np.testing.assert_allclose(field[..., stay], expected[..., stay], rtol=0, atol=1e-15)
     before = motion.w.copy()
-    hold_left_stations(STEP, motion, Window(16, 39))
+    hold_passed_stations(STEP, motion, Window(16, 39))
     np.testing.assert_array_equal(motion.w, before)
 
 
@@ -56,7 +56,7 @@ def test_a_window_that_jumps_leaves_all_its_stations() -> None:
     for window in (Window(32, 47), Window(0, 7)):
         motion, w, _ = random_motion()
         motion.active[:] = 8, 23
-        hold_left_stations(STEP, motion, window)
+        hold_passed_stations(STEP, motion, window)
         held, _ = end_of_step(motion, LAYOUT, STEP)
         assert not held[1:, :, 8:24].any()
         np.testing.assert_allclose(held[0], w[0], rtol=0, atol=1e-15)

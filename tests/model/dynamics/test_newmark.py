@@ -10,7 +10,7 @@ from numba.core.runtime._nrt_python import memsys_enable_stats
 
 from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, fix_along_track, overlapping_line, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
-from pantocheck.model import Catenary, Kind, Passage, Rayleigh, chain
+from pantocheck.model import Catenary, Kind, Passage, Rayleigh, build_chain
 from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.active_window import build_window_arrays
@@ -171,7 +171,9 @@ def pantographs(draw: st.DrawFn) -> Pantograph:
         np.array(draw(st.lists(st.floats(low, high), min_size=n, max_size=n)))
         for low, high in ((2.0, 20.0), (50.0, 2e4), (0.0, 100.0))
     )
-    return chain(masses, stiffness, damping, draw(st.floats(20.0, 300.0)), 0, draw(st.sampled_from([5e3, 5e4, 2e5])))
+    return build_chain(
+        masses, stiffness, damping, draw(st.floats(20.0, 300.0)), 0, draw(st.sampled_from([5e3, 5e4, 2e5]))
+    )
 
 
 @settings(max_examples=15)

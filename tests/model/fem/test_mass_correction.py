@@ -9,7 +9,7 @@ from scipy.sparse import csc_array
 from helpers.lines import Array, bare_wire
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.fem import beam
-from pantocheck.model.statics.assembly import assemble_matrices, stepping_mass
+from pantocheck.model.statics.assembly import assemble_matrices, correct_mass
 
 
 def stepped_frequencies(mass: csc_array, stiffness: csc_array, time_step: float, count: int) -> Array:
@@ -30,7 +30,7 @@ def test_mass_correction_removes_the_frequency_error_of_waves_up_to_50_hz() -> N
         assemble_matrices(line).stiffness,
         2 * np.pi * beam.pinned_frequencies(count, 40.0, 20e3, 195.0, 1.35),
     )
-    error = stepped_frequencies(stepping_mass(line, time_step), stiffness, time_step, count) / exact - 1
+    error = stepped_frequencies(correct_mass(line, time_step), stiffness, time_step, count) / exact - 1
     plain = stepped_frequencies(assemble_matrices(line).mass, stiffness, time_step, count) / exact - 1
     assert exact[-1] > 2 * np.pi * 50
     np.testing.assert_allclose(plain, -((exact * time_step) ** 2) / 12, rtol=0.05, atol=1e-6)
@@ -48,5 +48,5 @@ def test_corrected_mass_is_positive_definite_at_any_time_step(
     Average acceleration is stable at any time step if the mass is positive definite.
     """
     line = discretise(bare_wire(60.0), element, tuple(map(float, np.cumsum(gaps))))
-    masses = eigvalsh(stepping_mass(line, time_step).toarray())
+    masses = eigvalsh(correct_mass(line, time_step).toarray())
     assert masses[0] > -1e-14 * masses[-1]

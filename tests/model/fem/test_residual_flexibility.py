@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 
 from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import (
+    combine_in_series,
     element_flexibility,
-    in_series,
     residual_flexibility,
     station_flexibility,
 )
@@ -90,7 +90,7 @@ def test_row_without_a_wire_has_no_residual_flexibility() -> None:
 def test_parts_in_series() -> None:
     """1 / (1 / k + R); a negative transverse stiffness stays negative, a missing one stays missing."""
     stiffness, flexibility, none = np.array([2e5, 1e8, -300.0, 0.0]), np.full(4, 5e-7), np.zeros(4)
-    series, damping = in_series(stiffness, none, flexibility, none)
+    series, damping = combine_in_series(stiffness, none, flexibility, none)
     assert series[:3] == pytest.approx(1 / (1 / stiffness[:3] + 5e-7), rel=1e-12)
     assert series[3] == 0.0
     assert not damping.any()
@@ -101,7 +101,7 @@ def test_damping_in_series_is_the_loss_of_both_parts() -> None:
     stiffness, flexibility = np.array([2e5, 5e4]), np.array([6e-7, 4e-7])
     damping, beta = np.array([200.0, 10.0]), np.array([1e-4, 3e-4])
     exact = 1 / (1 / (stiffness + 1j * damping) + flexibility / (1 + 1j * beta))
-    series = in_series(stiffness, damping, flexibility, flexibility * beta)
+    series = combine_in_series(stiffness, damping, flexibility, flexibility * beta)
     assert series[0] == pytest.approx(exact.real, rel=1e-6)
     assert series[1] == pytest.approx(exact.imag, rel=1e-6)
 
@@ -109,5 +109,5 @@ def test_damping_in_series_is_the_loss_of_both_parts() -> None:
 def test_one_coefficient_for_all_parts_is_kept() -> None:
     """c = beta k before and after."""
     stiffness, flexibility, beta = np.array([2e5, 1e8]), np.array([6e-7, 3e-7]), 1e-4
-    series = in_series(stiffness, beta * stiffness, flexibility, beta * flexibility)
+    series = combine_in_series(stiffness, beta * stiffness, flexibility, beta * flexibility)
     assert series[1] == pytest.approx(beta * series[0], rel=1e-12)

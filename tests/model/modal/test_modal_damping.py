@@ -12,7 +12,7 @@ from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import build_empty_train
 from pantocheck.model.modal.modal_damping import apply_modal_bands, build_modal_terms
 from pantocheck.model.modal.modes import compute_modes, damping_ratios
-from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, stepping_mass
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, correct_mass
 
 UNIFORM = dict.fromkeys(Kind, Rayleigh(0.05, 1e-4))
 BAND = ModalBand(0.8, 1.5, 0.02)
@@ -64,7 +64,7 @@ def test_step_with_modal_damping_equals_the_full_matrix() -> None:
     """
     line, dt = damped_line(), 2e-3
     matrices, damping = assemble_matrices(line), full_damping(line)
-    mass, stiffness = stepping_mass(line, dt).toarray(), matrices.stiffness.toarray()
+    mass, stiffness = correct_mass(line, dt).toarray(), matrices.stiffness.toarray()
     place = bandwidth_order(line)[matrices.free]
     start = np.zeros(line.beams.free.size)
     start[place] = 1e-4 * np.linalg.solve(stiffness, mass @ np.ones(matrices.free.size))

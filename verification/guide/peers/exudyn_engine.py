@@ -24,8 +24,8 @@ from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
     connector_directions,
+    correct_mass,
     point_load,
-    stepping_mass,
 )
 
 
@@ -51,7 +51,7 @@ class DroppersAndContact:
         self.mass, self.damping, self.stiffness = (
             sp.csr_matrix(sp.block_diag([line_matrix, *pantograph_matrices]))
             for line_matrix, pantograph_matrices in (
-                (stepping_mass(line, passage.time_step), [p.mass for p in passage.pantographs]),
+                (correct_mass(line, passage.time_step), [p.mass for p in passage.pantographs]),
                 (matrices.damping, [p.damping for p in passage.pantographs]),
                 (matrices.stiffness, [p.stiffness for p in passage.pantographs]),
             )

@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from pantocheck.model import Passage, chain, discretise, simulate_passage
+from pantocheck.model import Passage, build_chain, discretise, simulate_passage
 from verification.guide.comparisons import compare_absolute
 from verification.guide.guide_format import CheckedValue
 from verification.guide.topics.bare_wires import build_short_line
 
-RUNNING_PANTOGRAPH = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+RUNNING_PANTOGRAPH = build_chain(
+    np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3
+)
 """Pantograph of the EN 50318:2002 reference model."""
 
 FORCE_TOLERANCE_N = 1e-6

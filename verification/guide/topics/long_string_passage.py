@@ -6,7 +6,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Series
-from pantocheck.model import Passage, chain, discretise, simulate_passage
+from pantocheck.model import Passage, build_chain, discretise, simulate_passage
 from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.fem.beam import wave_speed
 from verification.guide.comparisons import build_study, compare_absolute, relative_rms
@@ -32,7 +32,7 @@ _DISCRETISATIONS = ((1.0, 2e-3), (0.5, 1e-3), (0.25, 5e-4))
 _FINE_STEP = 1e-4
 """Time step of the delay equations [s]: the error of the method of Runge and Kutta is below 1e-8 of the force."""
 
-_HEAD = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
+_HEAD = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 120.0, 0, 50e3)
 """Pantograph of the EN 50318:2002 reference model."""
 
 

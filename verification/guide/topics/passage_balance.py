@@ -9,7 +9,7 @@ from pantocheck.model import (
     DiscretisedLine,
     Passage,
     SimulationError,
-    chain,
+    build_chain,
     discretise,
     make_droppers_bilateral,
 )
@@ -18,13 +18,13 @@ from pantocheck.model.dynamics.motion import end_of_step
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.dynamics.train import Train
-from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, point_load, stepping_mass
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, correct_mass, point_load
 from pantocheck.model.statics.contact_wires import locate_contact_wires
 from verification.guide.comparisons import compare_absolute
 from verification.guide.guide_format import Topic
 from verification.guide.topics.bare_wires import build_short_line
 
-_HEAD = chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.0, 0, 50e3)
+_HEAD = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.zeros(2), 120.0, 0, 50e3)
 """Pantograph of EN 50318:2002 without dampers."""
 
 
@@ -86,7 +86,7 @@ def measure_balances(line: DiscretisedLine, passage: Passage) -> PassageBalance:
     kernel = build_kernel_arrays(line, passage.time_step)
     motion, train = start_motion(line, kernel, passage)
     work = build_workspace(kernel, train)
-    matrices, mass = assemble_matrices(line), stepping_mass(line, passage.time_step)
+    matrices, mass = assemble_matrices(line), correct_mass(line, passage.time_step)
     place = bandwidth_order(line)[matrices.free]
     upwards = (bandwidth_order(line) % 2 == 0)[matrices.free].astype(np.float64)
 

@@ -7,7 +7,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Kind, Rayleigh, discretise
 from pantocheck.model.discretisation.discretised_line import with_damping
 from pantocheck.model.fem.beam import wave_speed
-from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, stepping_mass
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, correct_mass
 from verification.guide.comparisons import build_study, compare_relative, relative_rms
 from verification.guide.guide_format import Topic
 from verification.guide.topics.bare_wires import WIRE_MASS, WIRE_TENSION, build_short_line, build_wire
@@ -94,7 +94,7 @@ def _start_at_rest(line: DiscretisedLine, time_step: float, displacement: RealAr
     place = bandwidth_order(line)[matrices.free]
     force = -(matrices.stiffness @ displacement.ravel()[place])
     acceleration = np.zeros(displacement.size)
-    acceleration[place] = np.linalg.solve(stepping_mass(line, time_step).toarray(), force)
+    acceleration[place] = np.linalg.solve(correct_mass(line, time_step).toarray(), force)
     fields = np.stack([displacement, np.zeros_like(displacement), acceleration.reshape(displacement.shape)])
     return fields[..., 0].copy(), fields[..., 1].copy()
 

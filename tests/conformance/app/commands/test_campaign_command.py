@@ -90,9 +90,9 @@ def test_interrupted_campaign_writes_its_finished_runs(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["campaign.toml", "--vary", "speed_km_h=200"], "option --vary: stands beside a campaign file"),
+        (["campaign.toml", "--vary", "speed_km_h=200"], "option --vary: is given together with a campaign file"),
         (["en50318-2002/251"], "there is no case with this id"),
-        (["en50318-2002/250", "--vary", "speed_km_h"], "is no variation"),
+        (["en50318-2002/250", "--vary", "speed_km_h"], "is not a variation"),
         (["en50318-2002/250", "--workers", "0"], "command line, key execution.workers: 0 must be at least 1"),
         (["campaign.toml", "--workers", "0"], "command line, key workers: 0 must be at least 1"),
     ],

@@ -119,8 +119,8 @@ def test_repeated_comparison_gives_the_same_bytes(folder: Path, monkeypatch: pyt
 @pytest.mark.usefixtures("folder")
 def test_message_names_the_fault() -> None:
     for arguments, message in (
-        (["first.csv"], "one subject"),
-        (["first.csv", "builtin"], "a system without a case"),
+        (["first.csv"], "names one subject only"),
+        (["first.csv", "builtin"], "names a system, but no case"),
         (["first.csv", "missing.csv"], "missing.toml"),
         (["first", "other", "--case", "en50318-2002/300"], "no common case: en50318-2002/250"),
     ):

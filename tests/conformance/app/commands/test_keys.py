@@ -62,18 +62,18 @@ def small_rsa(signers: Signers, folder: Path) -> Path:
 
 
 FAULTS: dict[str, tuple[Callable[[Signers, Path], Path], str]] = {
-    "wrong passphrase of PKCS#12": (lambda s, f: s.author.write_pkcs12(f / "key", b"other"), "wrong passphrase"),
-    "wrong passphrase of PEM": (lambda s, f: s.author.write_key(f / "key", b"other"), "wrong passphrase"),
+    "wrong passphrase of PKCS#12": (lambda s, f: s.author.write_pkcs12(f / "key", b"other"), "passphrase is wrong"),
+    "wrong passphrase of PEM": (lambda s, f: s.author.write_key(f / "key", b"other"), "passphrase is wrong"),
     "text": (lambda _, f: write_text(f / "key", b"hello"), "neither PKCS#12 nor PEM"),
     "empty": (lambda _, f: write_text(f / "key", b""), "neither PKCS#12 nor PEM"),
     "missing": (lambda _, f: f / "key", "cannot be read"),
     "folder": (lambda _, f: f, "not a regular file"),
     "damaged PEM": (
         lambda _, f: write_text(f / "key", b"-----BEGIN PRIVATE KEY-----\nAAAA\n-----END PRIVATE KEY-----\n"),
-        "no private key in PEM format, or one that is damaged",
+        "the file holds no intact private key in PEM format",
     ),
-    "PEM without certificate": (lambda s, f: s.author.write_key(f / "key", None), "no certificate found"),
-    "certificate alone": (lambda s, f: s.author.write_certificate(f / "key"), "no private key in PEM format"),
+    "PEM without certificate": (lambda s, f: s.author.write_key(f / "key", None), "holds no certificate"),
+    "certificate alone": (lambda s, f: s.author.write_certificate(f / "key"), "no intact private key"),
     "certificate of another key": (
         lambda s, f: write_text(
             f / "key", s.author.write_key(f / "a", None).read_bytes() + s.root.write_certificate(f / "b").read_bytes()
@@ -90,7 +90,7 @@ FAULTS: dict[str, tuple[Callable[[Signers, Path], Path], str]] = {
         lambda s, f: s.issue("Host", purpose=server_purpose()).write_pkcs12(f / "key", b"secret"),
         r"is for other purposes \(server auth\)",
     ),
-    "small RSA key": (small_rsa, "an RSA key of 1024 bits"),
+    "small RSA key": (small_rsa, "holds an RSA key of 1024 bits"),
 }
 
 
@@ -154,8 +154,8 @@ def test_failures_of_the_command(signers: Signers, tmp_path: Path) -> None:
         (("--key", key, "--role", " "), "is not the name of a role"),
         (("--key", key, "--role", "x\x1b[31m"), "is not the name of a role"),
         (("--key", key, "--role", "x" * 61), "Give 1 to 60 printable characters"),
-        (("--key", key, "--timestamp-url", "ftp://host/"), "not an address of a server"),
-        (("--key", key, "--timestamp-url", "file:///etc/passwd"), "not an address of a server"),
+        (("--key", key, "--timestamp-url", "ftp://host/"), "is not the address of a server"),
+        (("--key", key, "--timestamp-url", "file:///etc/passwd"), "is not the address of a server"),
         (("--key", key, "--timestamp-url", "http://127.0.0.1:1/"), "gave no time stamp"),
     ]:
         result = pantocheck("sign", document, *arguments, **{PASSPHRASE_VARIABLE: "secret"})

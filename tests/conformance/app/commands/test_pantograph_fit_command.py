@@ -74,7 +74,7 @@ def test_fixed_value_is_written_and_a_needless_mass_warned_of(folder: Path) -> N
         (["--masses", "2", "--fix", "masses_kg.1=1", "--fix", "masses_kg.1=2"], "--fix: masses_kg.1 is given 2 times"),
         (["--band", "50"], "--band: '50' is not a band"),
         (["--band", "5:1"], "--band: '5:1' is not a band"),
-        (["--out", "fitted.json"], "--out: 'fitted.json' is no TOML file"),
+        (["--out", "fitted.json"], "--out: 'fitted.json' is not a TOML file"),
     ],
 )
 def test_wrong_option_is_named(folder: Path, arguments: list[str], message: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from helpers.short_cases import shorten_case
 from pantocheck.conformance.app.commands import progress_display
-from pantocheck.conformance.app.commands.command_output import write_log
+from pantocheck.conformance.app.commands.command_output import print_log
 from pantocheck.conformance.app.commands.output_settings import OutputSettings, use_settings
 from pantocheck.conformance.app.commands.progress_display import REDRAWS_PER_S, TaskProgress, follow_steps, show_line
 from pantocheck.conformance.cases.library import select_cases
@@ -142,7 +142,7 @@ def test_line_is_printed_periodically_outside_of_a_terminal(
     assert ("case 1? of 2" in captured.err) == lines
 
 
-@pytest.mark.parametrize("prepare", [write_log, lambda: follow_steps("running cases")])
+@pytest.mark.parametrize("prepare", [print_log, lambda: follow_steps("running cases")])
 def test_long_lines_of_a_log_stay_whole(
     prepare: Callable[[], AbstractContextManager[object]],
     monkeypatch: pytest.MonkeyPatch,

@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.results_building import build_results
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.pages.site_pages import name_file, publish_results
+from pantocheck.conformance.pages.site_pages import name_file, order_results
 from pantocheck.conformance.results.results_format import SystemIdentity
 
 RUNS = (
@@ -131,7 +131,7 @@ def test_a_folder_without_results_is_named(tmp_path: Path, make: bool) -> None:
         folder.mkdir()
     done = build(folder, "--out", tmp_path / "site")
     assert done.exit_code == 2
-    assert ("no results.json in it" if make else "not a folder") in " ".join(done.output.split())
+    assert ("holds no results.json" if make else "not a folder") in " ".join(done.output.split())
 
 
 def test_several_folders_give_the_site_of_all_their_results_once(results: Path, tmp_path: Path) -> None:
@@ -154,5 +154,5 @@ def test_runs_are_ordered_by_date_and_named_safely() -> None:
         (build_results([], system, "secondary", "").model_copy(update={"started": started}), ())
         for system, started in zip(systems, ("2026-02-01", None), strict=True)
     ]
-    assert [run.folder for run in publish_results(contents)] == ["runs/0001-unnamed", "runs/0002-etc"]
+    assert [run.folder for run in order_results(contents)] == ["runs/0001-unnamed", "runs/0002-etc"]
     assert len(name_file("x" * 500)) == 60

@@ -23,7 +23,7 @@ from helpers.outside_cases import write_case
 from helpers.toml_edit import edit_toml, write_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.app.pytest_plugin import collection  # noqa: F401 - once here, or anew in every session below
-from pantocheck.conformance.app.pytest_plugin.user_fixtures import GradedCase, criterion_line
+from pantocheck.conformance.app.pytest_plugin.user_fixtures import GradedCase, describe_unmet_criterion
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.converged_file import find_converged
 from pantocheck.conformance.cases.library import load_case, select_cases
@@ -325,7 +325,7 @@ def test_line_of_a_criterion(
     value: float | None, lower: float | None, upper: float | None, name: str, line: str
 ) -> None:
     requirement, reason = build_requirement(name, lower, upper, trust="primary"), None if value else "not delivered"
-    assert criterion_line(build_criterion(requirement, value, reason, "primary")) == line
+    assert describe_unmet_criterion(build_criterion(requirement, value, reason, "primary")) == line
 
 
 def test_invalid_plan_is_reported_with_a_hint(pytester: pytest.Pytester, plan: Path) -> None:

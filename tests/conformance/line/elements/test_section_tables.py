@@ -73,14 +73,14 @@ def test_lowest_rise_is_that_of_the_wire_under_the_head() -> None:
 @pytest.mark.parametrize(
     ("changes", "messages"),
     [
-        ({"overlap": None}, ["overlap: the table is missing beside section"]),
-        ({"section": None}, ["section: the table is missing beside overlap"]),
+        ({"overlap": None}, ["overlap: missing, although section is given"]),
+        ({"section": None}, ["section: missing, although overlap is given"]),
         ({"section": [{"spans": 6}]}, ["section"]),
         ({"overlap.spans": 6}, ["overlap.spans: 6 must be"]),
-        ({"overlap.anchor_rise_m": None}, ["overlap.anchor_rise_m: the rise of the wires is missing or given twice"]),
+        ({"overlap.anchor_rise_m": None}, ["overlap.anchor_rise_m: the rise of the wires is missing"]),
         (
             {"overlap.support_rises_m": [0.5]},
-            ["overlap.anchor_rise_m: the rise of the wires is missing or given twice"],
+            ["overlap.anchor_rise_m: the rise of the wires is given twice"],
         ),
         (
             {"overlap": {"spans": 2, "support_rises_m": [0.1, 0.2, 0.3]}},

@@ -16,7 +16,7 @@ from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, StudyResult
 from pantocheck.conformance.studies.damping_sensitivity import draw_band_bars
-from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, force_changes
+from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, compare_force
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ FRONT, REAR = ("change_rms_20_50_pct", 1), ("change_rms_20_50_pct", 2)
 
 def printed_changes(case: Case) -> dict[int, dict[str, float]]:
     printed = {(table.model, table.pantograph): dict(table.values) for table in case.file.study.printed}
-    return force_changes(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
+    return compare_force(*({p: printed[name, p] for p in (1, 2)} for name in ("initial", "updated")))
 
 
 def test_changes_of_the_printed_table(case: Case) -> None:
@@ -94,16 +94,16 @@ def test_changes_need_a_value_on_both_sides_and_the_order_both_runs() -> None:
     """Values of the line, of a pantograph on one side alone, and zeros before the change give no change."""
     before = {0: {"rms_0_5_N": 1.0}, 1: {"rms_0_5_N": 20.0, "rms_5_20_N": 0.0, "rms_20_50_N": 10.0}, 2: {}}
     after = {0: {"rms_0_5_N": 2.0}, 1: {"rms_0_5_N": 30.0, "rms_5_20_N": 5.0, "rms_20_50_N": 9.0}, 3: {}}
-    assert force_changes(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
-    assert force_changes(after, {}) == {}
+    assert compare_force(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
+    assert compare_force(after, {}) == {}
     # Without values of the front pantograph there is no difference between rear and front.
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
-    assert force_changes(*values) == {2: {"change_rms_20_50_pct": 25.0}}
+    assert compare_force(*values) == {2: {"change_rms_20_50_pct": 25.0}}
     # The smaller ratio counts: 0.30 over 0.26 under the updated damping, not 0.33 over 0.23 under the initial one.
     before, after = ({1: {"cov_20": front}, 2: {"cov_20": rear}} for front, rear in ((0.33, 0.23), (0.3, 0.26)))
-    assert force_changes(before, after)[0] == {"front_over_rear_cov_20": pytest.approx(0.3 / 0.26)}
-    assert 0 not in force_changes(before, {1: {"cov_20": 0.3}, 2: {}})
-    assert 0 not in force_changes({1: before[1]}, {1: after[1]})
+    assert compare_force(before, after)[0] == {"front_over_rear_cov_20": pytest.approx(0.3 / 0.26)}
+    assert 0 not in compare_force(before, {1: {"cov_20": 0.3}, 2: {}})
+    assert 0 not in compare_force({1: before[1]}, {1: after[1]})
 
 
 def test_updated_damping_raises_the_force_above_20_hz_in_table_and_chart(case: Case, delivered: Delivered) -> None:

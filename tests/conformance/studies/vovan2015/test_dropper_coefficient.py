@@ -22,7 +22,7 @@ from pantocheck.conformance.studies.vovan2015.dropper_coefficient import (
     run_dropper_damping,
     run_dropper_oscillation,
 )
-from pantocheck.model import Kind, Passage, Rayleigh, chain, discretise, simulate_passage
+from pantocheck.model import Kind, Passage, Rayleigh, build_chain, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_viscous_part, with_damping
 
 COEFFICIENTS = np.geomspace(1e-6, 1e-1, 51)
@@ -122,7 +122,7 @@ class RunComparison:
 
 def compare_runs(mesh: DiscretisedLine, other: DiscretisedLine, uplift: float) -> RunComparison:
     """Compare passages of a head with a constant uplift force [N] over most of two lines."""
-    head = chain(np.array([5.0]), np.array([0.0]), np.array([20.0]), uplift, 0, 50e3)
+    head = build_chain(np.array([5.0]), np.array([0.0]), np.array([20.0]), uplift, 0, 50e3)
     droppers = mesh.catenary.droppers
     watched = tuple((wire, dropper.position) for dropper in droppers for wire in (dropper.upper, dropper.lower))
     passage = Passage((head,), (20.0,), 50.0, 1.0, 0.002, watched)
