@@ -14,10 +14,10 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 66_750,
+    ("model", "conformance"): 66_780,
     ("templates",): 1_550,
     ("verification",): 14_000,
-    ("tests",): 47_460,
+    ("tests",): 47_550,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 

@@ -298,7 +298,8 @@ class Run:
         source = (self.snapshot / mutant.file).read_text("utf-8")
         diff = list_changes(self.snapshot, mutant)
         tests: dict[str, float] = {}
-        for file in self.related.select(mutant.file, name_definitions(source, int(re.findall(r"\d+", diff[0])[0]))):
+        related = self.related.select(mutant.file, name_definitions(source, int(re.findall(r"\d+", diff[0])[0])))
+        for file in islice(related, 2 * self.tests):  # each new one is timed first
             seconds = self._time_tests(file, worker)
             if seconds is not None and sum(tests.values()) + seconds <= self.budget_s:
                 tests[file] = seconds
