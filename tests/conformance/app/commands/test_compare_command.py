@@ -121,7 +121,7 @@ def test_message_names_the_fault() -> None:
     for arguments, message in (
         (["first.csv"], "names one subject only"),
         (["first.csv", "builtin"], "names a system, but no case"),
-        (["first.csv", "missing.csv"], "missing.toml"),
+        (["first.csv", "missing.csv"], "missing.csv"),
         (["first", "other", "--case", "en50318-2002/300"], "no common case: en50318-2002/250"),
     ):
         done = run(*arguments)
