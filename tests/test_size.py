@@ -14,7 +14,7 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 66_780,
+    ("model", "conformance"): 66_800,
     ("templates",): 1_550,
     ("verification",): 14_000,
     ("tests",): 47_550,

@@ -12,7 +12,7 @@ from pantocheck.conformance.core.figure_style import GREY, INK, PALE, marker_sty
 from pantocheck.conformance.line.elements.element import DrawnMark
 from pantocheck.conformance.line.elements.tension_section import SectionPlace
 from pantocheck.conformance.line.geometry import Geometry
-from pantocheck.conformance.line.line_shape import LineView, list_element_marks
+from pantocheck.conformance.line.line_shape import LineView, list_element_marks, list_symbols
 from pantocheck.model import Catenary, DiscretisedLine, Kind
 
 # Rows and pages of the drawing of a line: spans that stand side by side, at one scale.
@@ -179,7 +179,7 @@ def _write_heading(figure: Figure, drawing: LineDrawing, height: float) -> None:
     marks = (*list_element_marks(drawing.line.catenary), *drawing.marks)
     handles = [
         Line2D([], [], markersize=4, label=symbol.name, **marker_style(symbol))
-        for symbol in dict.fromkeys(mark.symbol for mark in marks if mark in drawing.marks or not mark.text)
+        for symbol in list_symbols(mark for mark in marks if mark in drawing.marks or not mark.text)
     ]
     figure.legend(
         handles=handles, loc="upper right", bbox_to_anchor=(1 - RIGHT / SHEET[0], 1 - 0.05 / height),

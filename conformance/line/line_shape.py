@@ -1,14 +1,22 @@
 """Shape of a line at rest between two positions, for its drawings; the elements name their points and lines."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.figure_data import DrawnCurve, DrawnDroppers, DrawnPoint, DrawnView, LineShape
+from pantocheck.conformance.core.figure_data import (
+    DrawnCurve,
+    DrawnDroppers,
+    DrawnPoint,
+    DrawnSymbol,
+    DrawnView,
+    LineShape,
+)
 from pantocheck.conformance.line.elements.element import DrawnConnection, DrawnMark
 from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, DiscretisedLine, Wire
 
@@ -41,10 +49,15 @@ def find_deflection(line: DiscretisedLine, wire: str, field: str, position: Real
 
 
 def list_element_marks(catenary: Catenary) -> list[DrawnMark]:
-    """Points of all elements of a line, the element that was added last first; points with a text behind the others."""
-    return sorted(
-        (mark for element in ELEMENTS[::-1] for mark in element.mark(catenary)), key=lambda mark: mark.text != ""
-    )
+    """Points of all elements of a line: ends of the wires, points without a text, and those with one."""
+    marks = (mark for element in ELEMENTS[::-1] for mark in element.mark(catenary))
+    return sorted(marks, key=lambda mark: (mark.text != "", mark.symbol != Wires.symbol))
+
+
+def list_symbols(marks: Iterable[DrawnMark]) -> list[DrawnSymbol]:
+    """Symbols of points in the order of a legend: that of the points, but the ends of the wires follow the supports."""
+    ordered = sorted(marks, key=lambda mark: (mark.text != "", mark.symbol == Wires.symbol))
+    return list(dict.fromkeys(mark.symbol for mark in ordered))
 
 
 def list_connections(catenary: Catenary) -> list[DrawnConnection]:
@@ -112,7 +125,7 @@ def build_line_shape(file: LineFile, analysed_spans: tuple[int, int], line: Disc
         supports_m=[round(x, 2) for x in geometry.span_limits if side.contains(x)],
         side=_store_view(side, tolerance),
         plan=_store_view(LineView(line, "y", *limits), tolerance) if line.catenary.has_lateral_field else None,
-        symbols=list(dict.fromkeys(mark.symbol for mark, _ in side.marks())),
+        symbols=list_symbols(mark for mark, _ in side.marks()),
     )
 
 

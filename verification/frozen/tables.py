@@ -92,6 +92,7 @@ ADDED = (
     Omission(_COMPARISON + r"/(model|record)/(source|digest)", _SOURCES),
     Omission(r"show/request\.json/features/\d+", "a program answers with the features that it simulates"),
     Omission(r".*/campaign\.parquet", "written if pyarrow is installed"),
+    Omission(r".*/line_shape/symbols/.*", "the elements of the line name the symbols of its drawing"),
     Omission(_COMPARISON + r"/warnings", "every comparison states its warnings"),
     Omission(
         _COMPARISON + r"/criteria/\d+/(where/.*|unit|lower|upper|source)",
