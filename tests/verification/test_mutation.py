@@ -87,7 +87,9 @@ def test_tests_run_on_the_changed_copy(toy: Path, tmp_path: Path) -> None:
     assert worker.run_tests(tests, 60.0)[0] == 1
     worker.write(reverse.file, SOURCE)
     assert worker.run_tests(tests, 60.0)[0] == 0
+    (worker.place / tests[0]).write_text("while True:\n    pass\n", "utf-8")
     assert worker.run_tests(tests, 0.01)[0] is None
+    worker.close()
 
 
 def test_interval_is_that_of_wilson() -> None:

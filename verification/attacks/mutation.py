@@ -16,7 +16,6 @@ import math
 import os
 import queue
 import re
-import resource
 import shutil
 import signal
 import subprocess
@@ -42,6 +41,7 @@ TESTED = ("tests/model", "tests/conformance")
 COPIED = ("conformance", "model", "pantocheck", "reference_cases", "templates", "tests", "verification", "docs")
 COPIED += ("examples", "pyproject.toml", "pytest_pantocheck.py", "README.md", "CHANGELOG.md")
 SEED = 20261122
+SERVER = Path(__file__).with_name("fork_server.py")
 SUFFICIENT = 0.9
 """Share of killed mutants that every folder needs."""
 Z_95 = 1.959964
@@ -92,6 +92,8 @@ class Worker:
 
     place: Path
     environment: dict[str, str] = field(default_factory=dict)
+    server: "subprocess.Popen[str] | None" = None
+    """Process that runs the tests (`fork_server.py`), once it is needed."""
 
     @classmethod
     def create(cls, snapshot: Path, place: Path) -> "Worker":
@@ -115,20 +117,29 @@ class Worker:
 
         The code is None if a process needs more time than the limit [s], or if the tests wait for ever.
         """
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *files]
-        process = subprocess.Popen(
-            command, cwd=self.place, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )  # fmt: skip
-        resource.prlimit(process.pid, resource.RLIMIT_CPU, (math.ceil(limit_s), math.ceil(limit_s) + 5))
-        clock = threading.Timer(IDLE * limit_s, process.kill)
+        if self.server is None or self.server.poll() is not None:
+            program = [sys.executable, "-c", SERVER.read_text("utf-8")]
+            pipe = subprocess.PIPE
+            self.server = subprocess.Popen(
+                program, cwd=self.place, env=self.environment, stdin=pipe, stdout=pipe, text=True
+            )
+        assert self.server.stdin is not None
+        assert self.server.stdout is not None
+        print(json.dumps([files, limit_s]), file=self.server.stdin, flush=True)
+        group = int(self.server.stdout.readline())
+        clock = threading.Timer(IDLE * limit_s, os.kill, (group, signal.SIGKILL))
         clock.start()
-        _, status, usage = os.wait4(process.pid, 0)
+        status, seconds = json.loads(self.server.stdout.readline())
         clock.cancel()
         with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.returncode = code = os.waitstatus_to_exitcode(status)
-        return None if code in {-signal.SIGXCPU, -signal.SIGKILL} else code, usage.ru_utime + usage.ru_stime
+            os.killpg(group, signal.SIGKILL)
+        code = os.waitstatus_to_exitcode(status)
+        return None if code in {-signal.SIGXCPU, -signal.SIGKILL} else code, seconds
+
+    def close(self) -> None:
+        """End the server."""
+        if self.server is not None:
+            self.server.communicate()
 
     def write(self, file: str, source: str) -> None:
         """Write a source, and remove its compiled files, which Python compares by the second only."""
@@ -391,6 +402,8 @@ def main() -> int:
             list(pool.map(judge, sample))
         rows = [run.outcomes[mutant.order] for mutant in sample if mutant.order in run.outcomes]
         sufficient = (not rows or report(folder, rows)) and sufficient
+    for _ in range(options.jobs):
+        workers.get().close()
     return 0 if sufficient else 1
 
 
