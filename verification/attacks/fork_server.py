@@ -13,7 +13,7 @@ import sys
 
 import pytest
 
-LOADED = ("numba", "pydantic", "hypothesis", "typer", "scipy.io", "scipy.linalg", "scipy.optimize", "scipy.signal")
+LOADED = ("numba", "pydantic", "typer", "scipy.stats", "scipy.io", "scipy.linalg", "scipy.optimize", "scipy.signal")
 """Packages that most tests load, which takes longer than the median test."""
 
 
