@@ -84,9 +84,7 @@ class Criterion(Requirement):
     reason: str | None
     """Data that are missing, or distance beyond a limit."""
     uncertainty: float | None = None
-    """Half-width of the 95 % interval, the root of the sum of squares of `components`; before `components` existed, it
-    was that from the length of the record.
-    """
+    """Half-width of the 95 % interval, the root of the sum of squares of `components`."""
     components: dict[ComponentName, float] = {}
     limit_uncertainty: float | None = 0.0
     """Half-width of the 95 % interval of a limit from a measured record; null: the record states none."""

@@ -121,7 +121,8 @@ def convert_read_errors(path: Path, where: str) -> Iterator[None]:
         yield
     except OSError as error:
         place = "" if str(path) in where else f" from {path}"
-        raise InputError(where, f"cannot be read{place} ({error.strerror or error})", "Check the path.") from None
+        hint = "Check the path." if error.errno else "Give a regular file."
+        raise InputError(where, f"cannot be read{place} ({error.strerror or error})", hint) from None
     except UnicodeDecodeError as error:
         raise InputError(where, f"byte {error.start + 1} is not UTF-8 text", "Save the file as UTF-8.") from None
 

@@ -21,7 +21,7 @@ TableName = Annotated[str, Field(min_length=1, max_length=500, description="name
 
 
 def find_table_name_problems(name: str) -> Problems:
-    """Problem of the name of a table that is a path."""
+    """Problem of a name of a table that is a path."""
     # On Windows, `C:table.csv` is a path, too; the same record must be valid on all systems.
     if "/" in name or "\\" in name or name in {".", ".."} or "\0" in name or PureWindowsPath(name).drive:
         yield validation_problem(
