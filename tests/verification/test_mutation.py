@@ -1,5 +1,6 @@
 """The mutation sample: its mutants, its choice of tests, its interval, and one mutant of a toy package."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -7,12 +8,13 @@ import pytest
 pytest.importorskip("cosmic_ray", reason="cosmic-ray is optional: pip install 'pantocheck[mutation]'")
 
 from verification.attacks.mutation import (
+    CoveringTests,
     Mutant,
-    RelatedTests,
     Worker,
     draw_sample,
     list_folders,
     list_mutants,
+    list_statement_lines,
     name_definitions,
     wilson_interval,
 )
@@ -71,11 +73,28 @@ def test_sample_is_seeded_and_leaves_kernels_and_listed_mutants_out(toy: Path) -
     assert draw_sample(toy, folders["model"], 4, []) == []  # the type checker finds a change of `frozen`
 
 
-def test_related_tests_import_the_file_and_those_that_name_the_definition_come_first(toy: Path) -> None:
-    assert name_definitions(SOURCE, 8) == name_definitions(SOURCE, 3) == ["grade"]
-    tests = ["tests/model/grading/test_grade.py", "tests/conformance/test_all.py", "tests/conformance/test_use.py"]
-    assert RelatedTests(toy).select("model/grading/grade.py", ["grade"]) == tests
-    assert RelatedTests(toy).select("model/grading/grade.py", ["use"]) == [tests[0], tests[2], tests[1]]
+def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy: Path) -> None:
+    assert name_definitions(SOURCE, 8) == ["grade"]
+    assert name_definitions(SOURCE, 3) == ["LIMIT"]
+    assert list(list_statement_lines(SOURCE, 6)) == [6]  # the body of a function is other statements
+    file, named, near = "model/grading/grade.py", "tests/model/grading/test_grade.py", "tests/model/test_near.py"
+    use = "tests/conformance/test_use.py"
+    record = {"lines": {file: {"8": [use, named, near], "6": [use]}}, "seconds": {named: 9.0, near: 2.0, use: 1.0}}
+    tests = CoveringTests(toy, [record])
+    assert tests.select(file, 8) == [named, use, near]
+    assert tests.select(file, 6) == [use]
+    assert tests.select(file, 3) == [named, use, near]  # a constant: every test of the file
+    assert tests.select("model/use.py", 6) == []
+
+
+def test_coverage_of_the_tests_is_recorded_by_line(toy: Path, tmp_path: Path) -> None:
+    worker = Worker.create(toy, tmp_path / "worker")
+    worker.run_tests(["tests/model/test_near.py"], 60.0, tmp_path / "coverage.json")
+    worker.close()
+    record = json.loads((tmp_path / "coverage.json").read_text("utf-8"))
+    assert record["lines"]["model/grading/grade.py"]["8"] == ["tests/model/test_near.py"]
+    assert record["lines"]["model/grading/grade.py"]["6"] == []  # at import
+    assert record["seconds"]["tests/model/test_near.py"] > 0
 
 
 def test_tests_run_on_the_changed_copy(toy: Path, tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 """Server of test runs: it loads the packages of others once, and runs pytest in a copy of its process.
 
-It reads a line of JSON from standard input, `[test files, limit of processor time [s]]`, and answers with the number of
-the process, then with its status and its processor time [s].
+It reads a line of JSON from standard input: arguments of pytest, limit of processor time [s], and a file for the
+coverage or null. It answers with the number of the process, then with its status and its processor time [s].
 """
 
 import importlib
@@ -10,14 +10,52 @@ import math
 import os
 import resource
 import sys
+import time
+from collections import defaultdict
+from pathlib import Path
 
+import coverage
 import pytest
 
 LOADED = ("numba", "pydantic", "typer", "scipy.stats", "scipy.io", "scipy.linalg", "scipy.optimize", "scipy.signal")
 """Packages that most tests load, which takes longer than the median test."""
 
 
-def run_tests(files: list[str], limit_s: float) -> int:
+class CoverageRecorder:
+    """Plug-in of pytest: lines of the product that each test file executes, and its processor time."""
+
+    def __init__(self, folder: Path) -> None:
+        sources = [str(folder / name / "*") for name in ("model", "conformance")]
+        self.folder, self.file, self.begin = folder, "", time.process_time()
+        self.seconds: defaultdict[str, float] = defaultdict(float)
+        self.coverage = coverage.Coverage(data_file=None, config_file=False, include=sources)
+        self.coverage.start()
+
+    def pytest_runtest_logstart(self, nodeid: str) -> None:
+        """Begin a test."""
+        self.switch(nodeid.partition("::")[0])
+
+    def switch(self, file: str) -> None:
+        """Begin a test file."""
+        now = time.process_time()
+        self.seconds[self.file] += now - self.begin
+        self.begin = now
+        if file != self.file:
+            self.file = file
+            self.coverage.switch_context(file)
+
+    def write(self, path: Path) -> None:
+        """Write test files by line of every product file, and the seconds of every test file."""
+        self.switch("")
+        self.coverage.stop()
+        data, lines = self.coverage.get_data(), {}
+        for name in data.measured_files():
+            tests = {line: sorted(filter(None, files)) for line, files in data.contexts_by_lineno(name).items()}
+            lines[Path(name).relative_to(self.folder.resolve()).as_posix()] = tests
+        path.write_text(json.dumps({"lines": lines, "seconds": self.seconds}), "utf-8")
+
+
+def run_tests(arguments: list[str], limit_s: float, record: str | None) -> int:
     """Run pytest without output in a session of its own, with a limit of processor time [s]."""
     os.setsid()
     resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit_s), math.ceil(limit_s) + 5))
@@ -25,7 +63,13 @@ def run_tests(files: list[str], limit_s: float) -> int:
     for stream in (0, 1, 2):
         os.dup2(nothing, stream)
     importlib.invalidate_caches()
-    return int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *files]))
+    options = ["-q", "-p", "no:cacheprovider", *arguments]
+    if record is None:
+        return int(pytest.main(options))
+    recorder = CoverageRecorder(Path.cwd())
+    code = int(pytest.main(options, plugins=[recorder]))
+    recorder.write(Path(record))
+    return code
 
 
 def main() -> None:

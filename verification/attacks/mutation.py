@@ -23,8 +23,7 @@ import sys
 import threading
 import time
 import tomllib
-from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import islice
@@ -45,6 +44,8 @@ SERVER = Path(__file__).with_name("fork_server.py")
 SUFFICIENT = 0.9
 """Share of killed mutants that every folder needs."""
 Z_95 = 1.959964
+COVERAGE_S = 7200.0
+"""Largest processor time of the tests with their coverage [s]."""
 SLOWER, EXTRA_S = 3.0, 30.0
 """A mutant whose tests need more than this multiple of their processor time, and this time [s], counts as killed."""
 IDLE = 20.0
@@ -112,8 +113,10 @@ class Worker:
         settings = {"PYTHONPATH": path, "HYPOTHESIS_STORAGE_DIRECTORY": str(place / ".hypothesis")}
         return cls(place, {**os.environ, **settings})
 
-    def run_tests(self, files: list[str], limit_s: float) -> tuple[int | None, float]:
-        """Exit code of pytest on test files, and its processor time [s], which other programs hardly change.
+    def run_tests(self, tests: list[str], limit_s: float, record: Path | None = None) -> tuple[int | None, float]:
+        """Exit code of pytest, and its processor time [s], which other programs hardly change.
+
+        With a file for the coverage, all tests run; else the run ends with the first failure.
 
         The code is None if a process needs more time than the limit [s], or if the tests wait for ever.
         """
@@ -125,7 +128,9 @@ class Worker:
             )
         assert self.server.stdin is not None
         assert self.server.stdout is not None
-        print(json.dumps([files, limit_s]), file=self.server.stdin, flush=True)
+        arguments = ["-x", *tests] if record is None else tests
+        request = [arguments, limit_s, None if record is None else str(record)]
+        print(json.dumps(request), file=self.server.stdin, flush=True)
         group = int(self.server.stdout.readline())
         clock = threading.Timer(IDLE * limit_s, os.kill, (group, signal.SIGKILL))
         clock.start()
@@ -149,59 +154,64 @@ class Worker:
             compiled.unlink()
 
 
-class RelatedTests:
-    """Test files by their distance from a file of the product in the graph of imports."""
+class CoveringTests:
+    """Test files that execute each line of the product, from the coverage of one run of all tests."""
 
-    def __init__(self, root: Path) -> None:
-        files = [path for folder in (*ROOTS, "tests", "verification") for path in sorted((root / folder).rglob("*.py"))]
-        names = {_module_name(path.relative_to(root)): path.relative_to(root).as_posix() for path in files}
-        self.importers: dict[str, set[str]] = {}
-        for path in files:
-            for name in names.keys() & set(_list_imports(path)):
-                self.importers.setdefault(names[name], set()).add(path.relative_to(root).as_posix())
-        tests = [path.relative_to(root).as_posix() for path in files if path.name.startswith("test_")]
-        self.texts = {name: (root / name).read_text("utf-8") for name in tests if name.startswith(TESTED)}
+    def __init__(self, root: Path, records: Iterable[dict[str, Any]]) -> None:
+        self.root = root
+        self.lines: dict[str, dict[int, set[str]]] = {}
+        self.seconds: dict[str, float] = {}
+        for record in records:
+            self.seconds |= record["seconds"]
+            for file, lines in record["lines"].items():
+                known = self.lines.setdefault(file, {})
+                for line, tests in lines.items():
+                    known.setdefault(int(line), set()).update(tests)
 
-    def select(self, file: str, names: list[str]) -> list[str]:
-        """Test files that import a file: the one of its name, those with a name of the definition, the nearest."""
-        distance, waiting = {file: 0}, deque([file])
-        while waiting:
-            name = waiting.popleft()
-            for importer in self.importers.get(name, set()) - distance.keys():
-                distance[importer] = distance[name] + 1
-                waiting.append(importer)
-        path, mention = Path(file), re.compile(rf"\b({'|'.join(names)})\b")
+    def select(self, file: str, line: int) -> list[str]:
+        """Test files that execute a line: the one of its name, then the fastest.
 
-        def rank(test: str) -> tuple[bool, bool, int, bool, str]:
-            named, mentioned = Path(test).name == f"test_{path.name}", mention.search(self.texts[test]) is not None
-            return not named, not mentioned, distance[test], Path(test).parent != "tests" / path.parent, test
+        A line that runs at import belongs to every test of its file; those that mention its definition come first.
+        """
+        source = (self.root / file).read_text("utf-8")
+        lines, names = self.lines.get(file, {}), name_definitions(source, line)
+        found = set().union(*(lines.get(number, set()) for number in list_statement_lines(source, line)))
+        found = found or set().union(*lines.values())
+        mention = re.compile(rf"\b({'|'.join(names)})\b")
 
-        return sorted(self.texts.keys() & distance.keys(), key=rank)
+        def rank(test: str) -> tuple[bool, bool, float]:
+            text = (self.root / test).read_text("utf-8")
+            return Path(test).name != f"test_{Path(file).name}", not mention.search(text), self.seconds[test]
+
+        return sorted(found, key=rank)
 
 
-def _module_name(path: Path) -> str:
-    parts = path.with_suffix("").parts
-    parts = parts[:-1] if parts[-1] == "__init__" else parts
-    if parts[0] in ROOTS:
-        return ".".join(("pantocheck", *parts))
-    return ".".join(parts[1:] if parts[:2] == ("tests", "helpers") else parts)
+def list_statement_lines(source: str, line: int) -> range:
+    """Lines of the innermost statement at a line; of a compound statement, those before its first inner one."""
+    inside = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.stmt)]
+    inside = [node for node in inside if node.lineno <= line <= (node.end_lineno or 0)]
+    if not inside:
+        return range(line, line + 1)
+    node = max(inside, key=lambda item: item.lineno)
+    body = getattr(node, "body", None)
+    return range(node.lineno, body[0].lineno if body else (node.end_lineno or line) + 1)
 
 
 def _list_imports(path: Path) -> Iterator[str]:
-    """Names of imported modules, and of names that may be modules, anywhere in a file."""
+    """Names of imported modules anywhere in a file."""
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
             yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
 def name_definitions(source: str, line: int) -> list[str]:
-    """Name of the public function or class at a line; elsewhere those of all public ones of the file."""
+    """Name of the public function, class or constant at a line; elsewhere those of all public ones of the file."""
     public = [n for n in ast.parse(source).body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
     changed = [node.name for node in public if node.lineno <= line <= (node.end_lineno or 0)]
-    return changed or [node.name for node in public]
+    constant = re.match(r"[A-Z][A-Z0-9_a-z]+", source.splitlines()[line - 1])
+    return changed or ([constant[0]] if constant else []) or [node.name for node in public]
 
 
 def list_folders(root: Path) -> dict[str, list[str]]:
@@ -266,7 +276,7 @@ def wilson_interval(killed: int, total: int) -> tuple[float, float]:
 
 @dataclass
 class Run:
-    """Mutation run: snapshot, times of the test files without a mutant, and outcomes, all stored in OUT."""
+    """Mutation run: snapshot, coverage of the test files, and outcomes, all stored in OUT."""
 
     out: Path
     tests: int
@@ -289,9 +299,7 @@ class Run:
                 else:
                     shutil.copyfile(CHECKOUT / name, partial / name)
             partial.rename(self.snapshot)
-        self.related = RelatedTests(self.snapshot)
         self.lock = threading.Lock()
-        self.times = {row["file"]: row for row in _read_rows(self.out / "tests.jsonl")}
         self.outcomes = {row["order"]: row for row in _read_rows(self.out / "outcomes.jsonl")}
 
     def _forget(self) -> None:
@@ -300,22 +308,34 @@ class Run:
         same = filecmp.cmpfiles(self.snapshot, CHECKOUT, {row["file"] for row in rows}, shallow=False)[0]
         rows = [row for row in rows if row["outcome"] == "killed" and row["file"] in same]
         (self.out / "outcomes.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows), "utf-8")
-        (self.out / "tests.jsonl").unlink(missing_ok=True)
+        for record in self.out.glob("coverage-*.json"):
+            record.unlink()
         for folder in (self.snapshot, *self.out.glob("worker-*")):
             shutil.rmtree(folder, ignore_errors=True)
 
+    def measure_coverage(self, workers: list[Worker]) -> None:
+        """Run all tests once, shared between the workers; files that were measured before stay."""
+        paths = [path for name in TESTED for path in sorted((self.snapshot / name).rglob("test_*.py"))]
+        tests = [path.relative_to(self.snapshot).as_posix() for path in paths]
+        records = [self.out / f"coverage-{number}.json" for number in range(len(workers))]
+
+        def measure(number: int) -> None:
+            if not records[number].exists():
+                workers[number].run_tests(tests[number :: len(workers)], COVERAGE_S, records[number])
+
+        with ThreadPoolExecutor(len(workers)) as pool:
+            list(pool.map(measure, range(len(workers))))
+        self.covering = CoveringTests(self.snapshot, [json.loads(record.read_text("utf-8")) for record in records])
+
     def judge(self, mutant: Mutant, worker: Worker) -> None:
-        """Run the related tests of a mutant, and store its outcome."""
+        """Run the tests that execute the line of a mutant, and store its outcome."""
         source = (self.snapshot / mutant.file).read_text("utf-8")
         diff = list_changes(self.snapshot, mutant)
         tests: dict[str, float] = {}
-        related = self.related.select(mutant.file, name_definitions(source, int(re.findall(r"\d+", diff[0])[0])))
-        for file in islice(related, 2 * self.tests):  # each new one is timed first
-            seconds = self._time_tests(file, worker)
-            if seconds is not None and sum(tests.values()) + seconds <= self.budget_s:
+        for file in self.covering.select(mutant.file, int(re.findall(r"\d+", diff[0])[0])):
+            seconds = self.covering.seconds[file]
+            if sum(tests.values()) + seconds <= self.budget_s and len(tests) < self.tests:
                 tests[file] = seconds
-            if len(tests) == self.tests:
-                break
         worker.write(mutant.file, mutant.mutate(source))
         try:
             code, _ = worker.run_tests([*tests], SLOWER * sum(tests.values()) + EXTRA_S) if tests else (0, 0.0)
@@ -326,17 +346,6 @@ class Run:
         with self.lock:
             self.outcomes[mutant.order] = row
             _append_row(self.out / "outcomes.jsonl", row)
-
-    def _time_tests(self, file: str, worker: Worker) -> float | None:
-        """Processor time of a test file without a mutant [s]; None if it fails, has no test, or exceeds the budget."""
-        if file not in self.times:
-            code, seconds = worker.run_tests([file], 2 * self.budget_s + EXTRA_S)
-            row = {"file": file, "seconds": seconds, "passed": code == 0}
-            with self.lock:
-                self.times[file] = row
-                _append_row(self.out / "tests.jsonl", row)
-        row = self.times[file]
-        return row["seconds"] if row["passed"] else None
 
 
 def _read_rows(path: Path) -> list[dict[str, Any]]:
@@ -373,16 +382,18 @@ def main() -> int:
     parser.add_argument("--folders", nargs="*", help="default: all")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--tests", type=int, default=8, help="largest number of test files of a mutant")
-    parser.add_argument("--budget", type=float, default=60.0, help="largest processor time of these [s]")
+    parser.add_argument("--budget", type=float, default=30.0, help="largest processor time of these [s]")
     parser.add_argument("--renew", action="store_true", help="copy the checkout anew, and judge what it may change")
     parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     run = Run(options.out.resolve(), options.tests, options.budget, options.renew)
     known = tomllib.loads(Path(__file__).with_name("equivalent_mutants.toml").read_text("utf-8"))["equivalent"]
+    all_workers = [Worker.create(run.snapshot, run.out / f"worker-{number}") for number in range(options.jobs)]
+    run.measure_coverage(all_workers)
     workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
-    for number in range(options.jobs):
-        workers.put(Worker.create(run.snapshot, run.out / f"worker-{number}"))
+    for worker in all_workers:
+        workers.put(worker)
     end = time.monotonic() + options.seconds
 
     def judge(mutant: Mutant) -> None:
@@ -402,8 +413,8 @@ def main() -> int:
             list(pool.map(judge, sample))
         rows = [run.outcomes[mutant.order] for mutant in sample if mutant.order in run.outcomes]
         sufficient = (not rows or report(folder, rows)) and sufficient
-    for _ in range(options.jobs):
-        workers.get().close()
+    for worker in all_workers:
+        worker.close()
     return 0 if sufficient else 1
 
 
