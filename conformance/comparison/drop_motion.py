@@ -6,8 +6,7 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import next_fast_len
-from scipy.signal import periodogram, resample_poly
+import scipy
 
 from pantocheck.conformance.comparison.recorded_drop import RecordedDrop
 from pantocheck.conformance.core.array_types import RealArray
@@ -80,7 +79,7 @@ def filter_motion(
     fade = min(round(TAPER_S * rate), n)
     tapered = np.array(samples, dtype=np.float64)
     tapered[n - fade :] *= (0.5 + 0.5 * np.cos(np.pi * (np.arange(fade) + 0.5) / fade))[:, None]
-    length = next_fast_len(n + round(PADDING_S * rate), real=True)
+    length = scipy.fft.next_fast_len(n + round(PADDING_S * rate), real=True)
     frequency: RealArray = np.asarray(np.fft.rfftfreq(length, 1 / rate), dtype=np.float64)
     gain = np.zeros(frequency.size, dtype=np.complex128)
     inside = frequency > 0
@@ -101,7 +100,7 @@ def noise_rms(rest: RealArray, rate: float, derivatives: int, band: MotionBand) 
     Returns:
         RMS in the band, (c,).
     """
-    frequency, density = periodogram(rest, rate, "hann", detrend="linear", axis=0)
+    frequency, density = scipy.signal.periodogram(rest, rate, "hann", detrend="linear", axis=0)
     inside = frequency > 0
     gain = band_gain(frequency[inside], band) * (2 * np.pi * frequency[inside]) ** derivatives
     return np.asarray(np.sqrt(frequency[1] * (gain**2 @ density[inside])))
@@ -335,7 +334,7 @@ def align_release(record: RealArray, simulated: RealArray, rate: float, estimate
         Release in the time of the record [s], and correlation over `ALIGNED_S` from this release [-].
     """
     model = simulated[: round(ALIGNED_S * rate)]
-    fine = resample_poly(record, UPSAMPLING, 1, axis=0)
+    fine = scipy.signal.resample_poly(record, UPSAMPLING, 1, axis=0)
     middle, reach = round(estimate * rate * UPSAMPLING), round(SEARCH_S * rate * UPSAMPLING)
     last = fine.shape[0] - UPSAMPLING * (model.shape[0] - 1) - 1
     starts = np.arange(max(middle - reach, 0), min(max(middle, 0) + reach, last) + 1)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-import scipy.signal
+import scipy
 
 from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
 

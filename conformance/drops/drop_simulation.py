@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import firwin, kaiserord, resample_poly
+import scipy
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import MassDrop
@@ -100,10 +100,10 @@ def decimate(signals: RealArray, every: int) -> RealArray:
     """
     if every == 1:
         return signals
-    length, beta = kaiserord(STOP_BAND_DB, (1 - PASS_BAND) / every)
-    taps = firwin(length | 1, (1 + PASS_BAND) / 2 / every, window=("kaiser", beta))
+    length, beta = scipy.signal.kaiserord(STOP_BAND_DB, (1 - PASS_BAND) / every)
+    taps = scipy.signal.firwin(length | 1, (1 + PASS_BAND) / 2 / every, window=("kaiser", beta))
     # The signals are extended by a straight line: the line is at rest before the start.
-    return np.asarray(resample_poly(signals, 1, every, axis=0, window=taps, padtype="line"))
+    return np.asarray(scipy.signal.resample_poly(signals, 1, every, axis=0, window=taps, padtype="line"))
 
 
 def _first_wire(catenary: Catenary, kind: str, x: float) -> str:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
@@ -78,7 +78,7 @@ def pair_modes(
     factor = _common_factor(measured_frequency, computed_frequency, similarity)
     distance = np.abs(np.log(measured_frequency[:, None] / (factor * computed_frequency[None, :])))
     cost = np.where(distance < LARGEST_FREQUENCY_GAP, (distance / 0.01) ** 2 + 4 * (1 - similarity), 1e6)
-    rows, columns = linear_sum_assignment(cost)
+    rows, columns = scipy.optimize.linear_sum_assignment(cost)
     return tuple(
         ModePair(int(i), int(j), float(similarity[i, j]))
         for i, j in zip(rows, columns, strict=True)

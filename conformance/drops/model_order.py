@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import scipy.stats
+import scipy
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.stats
+import scipy
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.drops.mode_groups import find_group_outliers

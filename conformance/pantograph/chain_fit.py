@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
-from scipy.stats import t
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
@@ -92,7 +91,7 @@ def _thin_rows(frequency: RealArray) -> NDArray[np.int64]:
 
 def _solve(problem: ChainProblem, start: RealArray, evaluations: int) -> tuple[RealArray, float]:
     """Free parameters and sum of squares of the minimum that a start reaches."""
-    found = least_squares(
+    found = scipy.optimize.least_squares(
         problem.residuals,
         start,
         problem.jacobian,
@@ -151,7 +150,8 @@ def compute_intervals(fit: ChainFit, is_noise_stated: bool) -> FitIntervals:
     freedom = max(fit.size - fit.free_count, 1)
     noise = max(fit.variance_ratio, 1.0) if is_noise_stated else fit.variance_ratio
     half_width = np.zeros(fit.values.shape)
-    half_width[fit.problem.free] = t.ppf((1 + INTERVAL_CONFIDENCE) / 2, freedom) * np.sqrt(noise) * deviation / scale
+    quantile = scipy.stats.t.ppf((1 + INTERVAL_CONFIDENCE) / 2, freedom)
+    half_width[fit.problem.free] = quantile * np.sqrt(noise) * deviation / scale
     return FitIntervals(half_width, covariance / np.outer(deviation, deviation))
 
 

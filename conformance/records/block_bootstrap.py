@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.bands import Band
@@ -55,7 +55,7 @@ class BlockReplicates(Sampling):
     def largest(self, series: RealArray) -> RealArray:
         """Largest value of each replicate."""
         # The filter is centred; its origin is moved so that it looks forward from the start of a block.
-        ahead = maximum_filter1d(series, self.length, origin=-(self.length // 2), mode="nearest")
+        ahead = scipy.ndimage.maximum_filter1d(series, self.length, origin=-(self.length // 2), mode="nearest")
         return np.asarray(ahead[self.starts].max(axis=1))
 
     def smallest(self, series: RealArray) -> RealArray:

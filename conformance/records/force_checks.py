@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import medfilt, welch
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.filters import is_observable
@@ -39,7 +39,7 @@ def find_outliers(force: RealArray) -> NDArray[np.intp]:
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)
-    distance = np.abs(force - medfilt(force, NEIGHBOURS))
+    distance = np.abs(force - scipy.signal.medfilt(force, NEIGHBOURS))
     # 1.4826: standard deviation of a normal variable over the median of its absolute value.
     deviation = 1.4826 * float(np.median(distance))
     inner = distance[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # medfilt pads its ends with zeros
@@ -75,7 +75,7 @@ def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSi
 def _leakage_free_rms(signals: PantographSignals, low: float, high: float) -> float:
     """RMS in a band [N] through a Hann window, so that the ends of a section do not appear as content."""
     rate, force = signals.force.rate, signals.delivered
-    frequency, density = welch(force, rate, nperseg=min(force.size, round(2 * rate)))
+    frequency, density = scipy.signal.welch(force, rate, nperseg=min(force.size, round(2 * rate)))
     inside = (frequency >= low) & (frequency <= high)
     return float(np.sqrt(density[inside].sum() * frequency[1]))
 

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
-from scipy.ndimage import uniform_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M, supports_inside
@@ -46,7 +45,7 @@ def local_speed(time: RealArray, position: RealArray) -> RealArray:
     """Speed of the train at each sample, averaged over about a second [m/s]."""
     speed = np.gradient(position, time)
     width = max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time)))))
-    return np.asarray(uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
+    return np.asarray(scipy.ndimage.uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
 
 
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
@@ -93,7 +92,7 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
     even[-1] = min(even[-1], time[-1])
 
     def interpolate(values: RealArray) -> RealArray:
-        return np.asarray(PchipInterpolator(time, values)(even))
+        return np.asarray(scipy.interpolate.PchipInterpolator(time, values)(even))
 
     nearest = np.clip(np.searchsorted((time[1:] + time[:-1]) / 2, even), 0, time.size - 1)
     return UsableSection(

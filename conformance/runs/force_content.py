@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
-from scipy.signal import correlate
+import scipy
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
@@ -201,7 +201,7 @@ def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
     energy = float(deviation @ deviation)
     if n < 2 or n > force.size or energy == 0.0:
         return None
-    products = correlate(whole, deviation, mode="valid", method="fft")
+    products = scipy.signal.correlate(whole, deviation, mode="valid", method="fft")
     sums, squares = (np.cumsum(np.concatenate([[0.0], values])) for values in (whole, whole**2))
     variance = squares[n:] - squares[:-n] - (sums[n:] - sums[:-n]) ** 2 / n
     varies = variance > SMALLEST_VARIANCE * variance.max()

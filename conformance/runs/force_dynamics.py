@@ -8,7 +8,7 @@ its amplitude and its lag reveal a wrong gain or unit of the force, or a shift i
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lsim
+import scipy
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
@@ -133,7 +133,7 @@ def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple
     drive = np.concatenate([np.zeros(m), -inverse @ model.head])[:, None]
     head = np.concatenate([model.head, np.zeros(m)])[None]
     time = step * np.arange(force.size)
-    response = lsim((state, drive, head, np.zeros((1, 1))), force - force.mean(), time)[1]
+    response = scipy.signal.lsim((state, drive, head, np.zeros((1, 1))), force - force.mean(), time)[1]
     poles = np.linalg.eigvals(state)
     slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]
     modes = np.exp(time[:, None] * slow)

@@ -12,9 +12,8 @@ removed first: the check of the dynamics limits them.
 """
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.signal.windows import tukey
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
@@ -86,7 +85,7 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
     inside[:taper] = inside[-taper:] = False
 
     def smooth(channel: RealArray) -> RealArray:
-        return np.asarray(CubicSpline(record.time, low_pass(channel, record.rate))(time))
+        return np.asarray(scipy.interpolate.CubicSpline(record.time, low_pass(channel, record.rate))(time))
 
     heights = [height]
     heights += [applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)]
@@ -98,7 +97,7 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
         motion = smooth(candidate)
         for compliance in (0.0, 1 / file.contact.stiffness_N_m):
             difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
-            difference *= tukey(force.size, min(1.0, 2 * taper / force.size))
+            difference *= scipy.signal.windows.tukey(force.size, min(1.0, 2 * taper / force.size))
             error = _multiply_by_dynamic_stiffness(file, difference, step, compliance)
             errors.append(_largest_remainder(error, force, inside, step) / spread)
     return min(errors)
@@ -126,7 +125,7 @@ def _multiply_by_dynamic_stiffness(
 def _largest_remainder(error: RealArray, force: RealArray, inside: NDArray[np.bool_], step: float) -> float:
     """Largest error inside the analysis section that neither a gain, a constant nor a small lag explains [N]."""
     time = step * np.arange(force.size)
-    implied = CubicSpline(time, force + error)
+    implied = scipy.interpolate.CubicSpline(time, force + error)
     known = np.column_stack([np.ones(force.size), force, np.gradient(force, step)])[inside]
     lag, remainder = 0.0, error[inside]
     for _ in range(LAG_ITERATIONS):

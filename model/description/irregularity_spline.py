@@ -1,7 +1,7 @@
 """Cubic spline of an irregularity: its height has no kink, so that it excites no short waves of its own."""
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.irregularity import Irregularity
@@ -29,5 +29,5 @@ def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
     return np.asarray(_spline(irregularity)(inside))
 
 
-def _spline(irregularity: Irregularity) -> CubicSpline:
-    return CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")
+def _spline(irregularity: Irregularity) -> "scipy.interpolate.CubicSpline":
+    return scipy.interpolate.CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")

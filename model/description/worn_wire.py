@@ -9,7 +9,7 @@
 
 import math
 
-from scipy.optimize import brentq
+import scipy
 
 
 def worn_stiffness_share(wear_share: float) -> float:
@@ -25,7 +25,8 @@ def worn_stiffness_share(wear_share: float) -> float:
     Returns:
         Share of the bending stiffness [-].
     """
-    angle = float(brentq(lambda a: a - math.sin(a) * math.cos(a) - math.pi * wear_share, 0.0, math.pi, xtol=1e-14))
+    segment = math.pi * wear_share
+    angle = float(scipy.optimize.brentq(lambda a: a - math.sin(a) * math.cos(a) - segment, 0.0, math.pi, xtol=1e-14))
     missing = angle - math.sin(angle) * math.cos(angle)
     second_moment = (missing + 2 * math.sin(angle) ** 3 * math.cos(angle)) / 4
     first_moment = 2 / 3 * math.sin(angle) ** 3

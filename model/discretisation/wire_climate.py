@@ -10,7 +10,7 @@ For a flat wire this is T = T0 - EA alpha dtheta; for a slack wire the sag takes
 """
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.catenary import Catenary, Wire
@@ -48,7 +48,7 @@ def fixed_tension(tension: float, excess_length: float, axial_stiffness: float, 
 
     highest = max(tension, flat)
     lowest = tension / (1 + (highest - flat) / (axial_stiffness * excess_length)) ** 0.5
-    return float(brentq(missing_length, lowest, highest, xtol=1e-9 * tension))
+    return float(scipy.optimize.brentq(missing_length, lowest, highest, xtol=1e-9 * tension))
 
 
 def excess_lengths(catenary: Catenary, element_length: float) -> dict[str, float]:
