@@ -1,12 +1,19 @@
 """Settings of every test run, made before numpy is imported."""
 
 import os
+import sys
+from typing import Any
 
+import pytest
 from hypothesis import settings
 
 # On matrices of a few hundred unknowns, the threads of a linear algebra library wait for each other.
 for _library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
+
+# Every process of the tests would compile the sources again.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Property tests try the same examples in every run, and have no time limit on a loaded machine.
 settings.register_profile("suite", deadline=None, derandomize=True, database=None)
@@ -18,6 +25,14 @@ def pytest_report_header() -> str:
     import pantocheck.conformance
 
     return f"pantocheck.conformance: {pantocheck.conformance.__path__[0]}"
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Each process takes neighbouring tests, so that the fixtures of a file and of a session are made once."""
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
 
 
 pytest_plugins = [

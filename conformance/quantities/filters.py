@@ -3,6 +3,7 @@
 A transfer function in polynomial form overflows at high sampling rates and low cut-offs; sections do not.
 """
 
+from functools import lru_cache
 from typing import Annotated, Literal
 
 import numpy as np
@@ -75,8 +76,7 @@ class Filter(InputTable):
             BandNotObservable: The cut-off is too high for the rate.
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
-        order, cutoff = self.single_run(rate)
-        return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
+        return _design_sections(*self.single_run(rate), rate)
 
     @property
     def runs(self) -> int:
@@ -118,6 +118,11 @@ class Filter(InputTable):
         """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
         _, response = scipy.signal.sosfreqz(self.sections(rate), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** self.runs)
+
+
+@lru_cache
+def _design_sections(order: int, cutoff: float, rate: float) -> RealArray:
+    return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
 
 
 def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:

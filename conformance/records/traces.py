@@ -71,7 +71,7 @@ def thin_series(series: RealArray) -> list[float]:
 
 def round_series(series: RealArray) -> list[float]:
     """Every value, rounded to six significant digits."""
-    return [float(f"{value:.6g}") for value in series]
+    return [float(f"{value:.6g}") for value in series.tolist()]
 
 
 def _build_traces(signals: PantographSignals, position: RealArray, supports: list[float]) -> Traces:

@@ -4,20 +4,26 @@ import ast
 import inspect
 import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pantocheck.conformance
 import pantocheck.model
 
 FOLDERS = [Path(module.__file__).parent for module in (pantocheck.conformance, pantocheck.model)]
-NODES = [
-    (f"{path.parent.name}/{path.name}:{node.lineno} {node.name}", node)
-    for folder in FOLDERS
-    for path in sorted(folder.rglob("*.py"))
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
-]
-"""Place and syntax tree of every function and class."""
+
+
+@cache
+def list_nodes() -> list[tuple[str, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef]]:
+    """Place and syntax tree of every function and class."""
+    return [
+        (f"{path.parent.name}/{path.name}:{node.lineno} {node.name}", node)
+        for folder in FOLDERS
+        for path in sorted(folder.rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+    ]
+
 
 ENTRY = re.compile(r"^ {4}(\*{0,2}\w+(?:, \w+)*)(.*)$", re.MULTILINE)
 EXCEPTION = re.compile(r"[\w.]+(?:, [\w.]+)*: \S")
@@ -65,18 +71,20 @@ def public_functions() -> Iterator[tuple[str, Callable[..., object]]]:
 
 
 def test_sections_are_those_of_google_style_without_types() -> None:
-    wrong = [place for place, node in NODES if re.search(r"^-{3,}$", ast.get_docstring(node) or "", re.MULTILINE)]
+    wrong = [
+        place for place, node in list_nodes() if re.search(r"^-{3,}$", ast.get_docstring(node) or "", re.MULTILINE)
+    ]
     assert wrong == []
     wrong = [
         f"{place}: {match[0].strip()}"
-        for place, node in NODES
+        for place, node in list_nodes()
         for match in ENTRY.finditer(read_section(ast.get_docstring(node) or "", "Args"))
         if not re.match(r": \S", match[2])
     ]
     assert wrong == []
     wrong = [
         f"{place}: {line.strip()}"
-        for place, node in NODES
+        for place, node in list_nodes()
         for line in read_section(ast.get_docstring(node) or "", "Raises").splitlines()
         if re.match(r" {4}\S", line) and not EXCEPTION.match(line.strip())
     ]
@@ -85,7 +93,7 @@ def test_sections_are_those_of_google_style_without_types() -> None:
 
 def test_documented_arguments_are_those_of_the_signature() -> None:
     wrong = []
-    for place, node in NODES:
+    for place, node in list_nodes():
         documented = list_arguments(ast.get_docstring(node) or "")
         function = find_init(node) if isinstance(node, ast.ClassDef) else node
         if documented and (function is None or sorted(documented) != sorted(list_signature(function))):
@@ -106,7 +114,7 @@ def test_public_functions_document_their_arguments() -> None:
 def test_fields_are_described_below_them() -> None:
     """One text for a field: neither a section of the class nor a description in `Field`."""
     wrong = []
-    for place, node in NODES:
+    for place, node in list_nodes():
         if isinstance(node, ast.ClassDef) and list_fields(node) and find_init(node) is None:
             docstring = ast.get_docstring(node) or ""
             sections = [title for title in ("Args", "Attributes") if read_section(docstring, title)]

@@ -1,8 +1,10 @@
 """Example dossier in a folder of its own, and a system whose runs are computed once for all tests."""
 
+import pickle
 import shutil
 import tomllib
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,6 +15,7 @@ from pantocheck.conformance.dossier.validation import Validation
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered
+from pantocheck.model import Catenary, DiscretisedLine, discretise
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "dossier"
 
@@ -34,6 +37,14 @@ class CachedSimulator:
         if case.digest not in self.runs:
             self.runs[case.digest] = ReferenceSimulator().run_unrefined(case)
         return self.runs[case.digest]
+
+
+_discretise = cache(lambda catenary, element: discretise(pickle.loads(catenary), element))
+
+
+def discretise_once(catenary: Catenary, element: float) -> DiscretisedLine:
+    """Line of the static check, whose responses to forces are computed once for all tests."""
+    return _discretise(pickle.dumps(catenary), element)
 
 
 def copy_example(folder: Path, changes: dict[str, Any] | None = None) -> Path:

@@ -20,8 +20,8 @@ class Waiting:
     """Id of the case that ends as soon as `others` cases have begun."""
     others: int
     """Number of the other cases."""
-    deaf: bool = False
-    """Whether the others ignore the signals that end a process."""
+    deaf: str
+    """Id of the case that ignores the signals that end a process."""
     name: str = "waiting"
     version: str = "1"
     kind: Literal["builtin"] = "builtin"
@@ -33,7 +33,7 @@ class Waiting:
             while len(list(self.folder.glob("begun-*"))) < self.others and time.monotonic() < limit:
                 time.sleep(0.02)
             return Skipped("all have begun")
-        if self.deaf:
+        if case.id == self.deaf:
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
         name = case.id.replace("/", "-")
         (self.folder / f"begun-{name}").touch()

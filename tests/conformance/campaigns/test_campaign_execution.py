@@ -72,7 +72,8 @@ def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Pa
     assert (killed / "campaign.csv").read_bytes() == build_table(tmp_path / "undisturbed", RUNS)
 
 
-def test_failing_runs_become_rows_with_their_reason(tmp_path: Path) -> None:
+def test_failing_runs_become_rows_with_their_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pantocheck.conformance.campaigns.run_executors.MOST_ATTEMPTS", 2)
     design = speed_design(5)
     with open_store(tmp_path, {}) as store:
         drive_campaign(design, misbehave, store, LocalWorkers(2, 2.0), Execution(), lambda _: None)

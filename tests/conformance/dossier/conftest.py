@@ -4,8 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from helpers.example_dossier import CachedSimulator, copy_example, validate_example
+from helpers.example_dossier import CachedSimulator, copy_example, discretise_once, validate_example
 from pantocheck.conformance.results.results_format import Results
+
+
+@pytest.fixture(autouse=True)
+def _keep_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pantocheck.conformance.comparison.static_comparison.discretise", discretise_once)
 
 
 @pytest.fixture(scope="session")
