@@ -1,10 +1,9 @@
 """Settings of every test run, made before numpy is imported."""
 
+import gc
 import os
 import sys
-from typing import Any
 
-import pytest
 from hypothesis import settings
 
 # On matrices of a few hundred unknowns, the threads of a linear algebra library wait for each other.
@@ -27,12 +26,10 @@ def pytest_report_header() -> str:
     return f"pantocheck.conformance: {pantocheck.conformance.__path__[0]}"
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Each process takes neighbouring tests, so that the fixtures of a file and of a session are made once."""
-    from xdist.scheduler import WorkStealingScheduling
-
-    return WorkStealingScheduling(config, log)
+def pytest_collection_finish() -> None:
+    """Leave the modules and tests, which stay, out of the garbage collection."""
+    gc.freeze()
+    gc.set_threshold(20_000)
 
 
 pytest_plugins = [

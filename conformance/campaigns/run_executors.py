@@ -139,10 +139,6 @@ def _end_children() -> Iterator[None]:
         end_workers(set(multiprocessing.active_children()) - others)
 
 
-def _take(waiting: deque[PlannedRun], runs: Iterator[PlannedRun]) -> PlannedRun | None:
-    return waiting.popleft() if waiting else next(runs, None)
-
-
 def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
     """Give a run to an idle worker, or to a new one; an idle worker that has ended is forgotten."""
     while idle:

@@ -68,16 +68,9 @@ def request(name: str, days: tuple[float, float] = (-1, 365), **content: Any) ->
 
 
 USAGES = (
-    "digital_signature",
-    "content_commitment",
-    "key_encipherment",
-    "data_encipherment",
-    "key_agreement",
-    "key_cert_sign",
-    "crl_sign",
-    "encipher_only",
-    "decipher_only",
-)
+    "digital_signature", "content_commitment", "key_encipherment", "data_encipherment", "key_agreement",
+    "key_cert_sign", "crl_sign", "encipher_only", "decipher_only",
+)  # fmt: skip
 
 
 def issue(wanted: Request, issuer: Holder | None = None, key: Any = None) -> Holder:

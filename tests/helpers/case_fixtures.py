@@ -11,8 +11,9 @@ import pytest
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.records.record import Record
 
 EditedCase = Callable[[str, dict[str, Any]], Path]
 """Function that copies the case at 250 km/h with values changed in one of its files; gives the path of the case."""
@@ -23,9 +24,14 @@ def wave() -> type[Wave]:
     return Wave
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def case_250() -> Case:
     return load_case(library_folder() / "en50318-2002" / "250.toml")
+
+
+@pytest.fixture
+def cases() -> list[Case]:
+    return select_cases(["en50318-2002/*"])
 
 
 @pytest.fixture
@@ -46,3 +52,9 @@ def two_pantograph_case(case_250: Case) -> Case:
     """The 250 km/h case with a second pantograph 150 m behind the first."""
     file = case_250.file.model_copy(update={"spacing_m": (150.0,), "pantograph": case_250.file.pantograph * 2})
     return replace(case_250, file=file, pantographs=case_250.pantographs * 2)
+
+
+@pytest.fixture
+def record(two_pantograph_case: Case) -> Record:
+    """Run of the case with two pantographs."""
+    return Wave().record(two_pantograph_case)

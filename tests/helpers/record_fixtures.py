@@ -1,9 +1,12 @@
 """Fixtures for all tests: a record of two pantographs, and the same record in other units."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.core.csv_table import write_csv_table
@@ -53,3 +56,12 @@ def converted_record(request: pytest.FixtureRequest, tmp_path: Path, two_pantogr
         }
         write_csv_table(path, list(columns), np.column_stack(list(columns.values())), 15)
     return sidecar
+
+
+def change(
+    record: Record, channel: str, row: int, edit: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+) -> Record:
+    """The record with one channel of one pantograph changed."""
+    channels = getattr(record, channel).copy()
+    channels[row] = edit(channels[row])
+    return replace(record, **{channel: channels})

@@ -95,16 +95,8 @@ def test_pantographs_and_required_cases_are_changed_together() -> None:
 def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Path, case_250: Case) -> None:
     """Another filter could move a value into a limit that was published for the filter of the case."""
     write_record(tmp_path / "records" / "a.csv", wave().record(case_250), case_250.id)
-    arguments = (
-        "run",
-        case_250.id,
-        "--system",
-        f"record:{tmp_path / 'records'}",
-        "--formats",
-        "json",
-        "--out",
-        tmp_path,
-    )
+    source = f"record:{tmp_path / 'records'}"
+    arguments = ("run", case_250.id, "--system", source, "--formats", "json", "--out", tmp_path)
     result = pantocheck(*arguments, "--verdicts", "criteria", "--set", "filter.cutoff_Hz=5")
     assert (result.exit_code, result.output.split()[0]) == (1, "INFO")
     assert "The limits of the library do not apply." in result.output

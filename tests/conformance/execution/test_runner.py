@@ -47,11 +47,6 @@ class Scripted:
         return step
 
 
-@pytest.fixture
-def cases() -> list[Case]:
-    return select_cases(["en50318-2002/*"])
-
-
 def limited(case: Case, *bounds: tuple[str, float | None, float | None], trust: Trust = "secondary") -> Case:
     """Case with the given limits only, each as (quantity, lower, upper)."""
     limits = tuple(

@@ -22,11 +22,6 @@ from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.runs.record_checks import check_record
 
 
-@pytest.fixture
-def record(two_pantograph_case: Case, wave: Any) -> Record:
-    return wave().record(two_pantograph_case)
-
-
 def _scale_second(values: np.ndarray | None, factor: float) -> np.ndarray:
     return values * np.array([[1.0], [factor]])
 

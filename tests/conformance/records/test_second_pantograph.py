@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from helpers.wave_system import Wave
+from helpers.record_fixtures import change
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
@@ -16,15 +15,6 @@ from pantocheck.conformance.runs.record_checks import check_record
 
 NOISE = Filter(cutoff_Hz=100.0)(np.random.default_rng(1).normal(0.0, 12.0, 20_000), 1000.0)
 """Force between the cut-off of 20 Hz and 100 Hz from a fixed seed [N]."""
-
-
-def change(
-    record: Record, channel: str, row: int, edit: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-) -> Record:
-    """The record with one channel of one pantograph changed."""
-    channels = getattr(record, channel).copy()
-    channels[row] = edit(channels[row])
-    return replace(record, **{channel: channels})
 
 
 FAULTS: dict[str, tuple[str, Callable[[Record, int], Record]]] = {
@@ -41,11 +31,6 @@ FAULTS: dict[str, tuple[str, Callable[[Record, int], Record]]] = {
     "gain": ("dynamics", lambda record, row: change(record, "force", row, lambda force: 1.05 * force)),
     "dead height": ("dynamics", lambda record, row: change(record, "contact_height", row, lambda z: 0.0 * z)),
 }
-
-
-@pytest.fixture
-def record(wave: type[Wave], two_pantograph_case: Case) -> Record:
-    return wave().record(two_pantograph_case)
 
 
 def contradictions(case: Case, record: Record) -> dict[str, str]:

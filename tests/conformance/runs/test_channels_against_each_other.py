@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from helpers.extreme_runs import build_case, list_kinds, simulate
+from helpers.record_fixtures import change
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
@@ -23,15 +24,6 @@ Series = NDArray[np.float64]
 Run = tuple[Case, Record]
 """Case and record of its passage."""
 FILTER = Filter(cutoff_Hz=20.0)
-
-
-def change(
-    record: Record, channel: str, row: int, edit: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-) -> Record:
-    """The record with one channel of one pantograph changed."""
-    channels = getattr(record, channel).copy()
-    channels[row] = edit(channels[row])
-    return replace(record, **{channel: channels})
 
 
 @pytest.fixture(scope="module")

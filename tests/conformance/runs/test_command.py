@@ -23,7 +23,6 @@ from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.app.schemas import build_schema
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.execution.plan import read_plan
@@ -148,11 +147,6 @@ for line in sys.stdin:
     if how == "late error":
         say(message="errored", id=number, reason="the licence ended")
 """
-
-
-@pytest.fixture
-def cases() -> list[Case]:
-    return select_cases(["en50318-2002/*"])
 
 
 @pytest.fixture

@@ -114,11 +114,6 @@ def test_system_of_all_sidecars(
 
 
 # Record against its case, on both sides of every tolerance of speed, section, number of pantographs and spacing.
-@pytest.fixture
-def record(two_pantograph_case: Case, wave: Any) -> Record:
-    return wave().record(two_pantograph_case)
-
-
 def test_record_of_another_train_does_not_match(two_pantograph_case: Case, record: Record, case_250: Case) -> None:
     assert find_record_mismatch(two_pantograph_case, record) is None
     # A digest counts to its last character. A record that states none is not refused here.

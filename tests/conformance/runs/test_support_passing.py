@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.record_writing import write_record
@@ -139,17 +137,14 @@ UPLIFT = "max_uplift_at_support_mm"
 
 
 @pytest.fixture(scope="module")
-def case() -> Case:
-    return load_case(library_folder() / "en50318-2002" / "250.toml")
-
-
-@pytest.fixture(scope="module")
-def records(case: Case) -> tuple[Record, Record]:
+def records(case_250: Case) -> tuple[Record, Record]:
     """The case with its active window, and with the whole line active."""
-    line = discretise(build_catenary(case.line), case.file.discretisation.element_m)
-    windowed = build_passage(case, line, case.file.discretisation, (120.0,))
+    line = discretise(build_catenary(case_250.line), case_250.file.discretisation.element_m)
+    windowed = build_passage(case_250, line, case_250.file.discretisation, (120.0,))
     whole = replace(windowed, kept_behind=math.inf)
-    first, second = (record_passage(case, passage, simulate_passage(line, passage)) for passage in (windowed, whole))
+    first, second = (
+        record_passage(case_250, passage, simulate_passage(line, passage)) for passage in (windowed, whole)
+    )
     return first, second
 
 
@@ -164,11 +159,11 @@ def test_record_of_a_case_holds_the_uplift_of_the_whole_line_or_none(records: tu
     assert np.abs(windowed.force - whole.force).max() < 1e-8
 
 
-def test_missing_uplift_changes_no_grade(case: Case, records: tuple[Record, Record], tmp_path: Path) -> None:
+def test_missing_uplift_changes_no_grade(case_250: Case, records: tuple[Record, Record], tmp_path: Path) -> None:
     """The same verdict and uplift from the windowed record, from the whole one and from a written file."""
-    windowed, whole = (grade_case(case, Delivered(record), "secondary") for record in records)
-    write_record(tmp_path / "run.csv", records[0], case.id, further={"case_digest": case.digest})
-    read = run_case(case, open_record_folder(tmp_path), "secondary")
+    windowed, whole = (grade_case(case_250, Delivered(record), "secondary") for record in records)
+    write_record(tmp_path / "run.csv", records[0], case_250.id, further={"case_digest": case_250.digest})
+    read = run_case(case_250, open_record_folder(tmp_path), "secondary")
     for result in (windowed, whole, read):
         assert result.verdict == "pass"
         assert result.record.state == "verified"
