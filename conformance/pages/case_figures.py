@@ -23,8 +23,9 @@ from pantocheck.conformance.core.figure_style import (
     add_legend,
     render_svg,
 )
-from pantocheck.conformance.core.results_part import Number, select_item, select_single
+from pantocheck.conformance.core.results_part import Number, select_single
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.criteria_table import name_figure
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.quantities.bands import BANDS
@@ -74,11 +75,6 @@ def _describe_uplift(supports: Sequence[UpliftTrace]) -> str:
 
 def _describe_peak(support: UpliftTrace) -> str:
     return f"{format_plain(round(max(support.uplift_mm)))} mm at {format_plain(support.support_m)} m"
-
-
-def name_figure(anchor: str, owner: str) -> str:
-    """Anchor of the figure with the force of a pantograph, or with the uplift for the line "0"."""
-    return f"{anchor}-uplift" if owner == "0" else f"{anchor}-force-{owner}"
 
 
 def _chart_figures(charts: Sequence[Chart]) -> Iterator[doc.Figure]:
@@ -280,49 +276,6 @@ def _draw_largest(axes: Axes, supports: Sequence[UpliftTrace]) -> None:
         axes.plot(support.time_s, support.uplift_mm, color=SHADES[2], linewidth=0.8, label=name)
     name = f"largest: support at {largest.support_m:g} m"
     axes.plot(largest.time_s, largest.uplift_mm, color=INK, linewidth=1.3, label=name)
-
-
-# Values of the reference simulator beside those of the system under test, on request; they decide no verdict.
-REFERENCE_PLACE = 4
-"""Place of the column in a table of criteria: behind value and error."""
-
-
-def reference_note(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Sentence on the reference of a case; empty if none was requested."""
-    reference = case.reference
-    if reference is None:
-        return ()
-    name = f"{reference.name} {reference.version}"
-    if reference.reason is not None:
-        return (doc.Paragraph(f"{name}: no values for comparison, {reference.reason}."),)
-    return (doc.Paragraph(f"Reference: values of the {name}, for information. They take part in no verdict."),)
-
-
-def insert_reference(case: CaseResult, table: doc.Table, criteria: Sequence[Criterion]) -> doc.Table:
-    """Table of criteria with a column of the values of the reference, if the case has them."""
-    if not has_reference(case):
-        return table
-    column = doc.Column("Reference", number=True, short="Refer-\nence")
-    values = [format_value(find_reference(case, item)) for item in criteria]
-    return replace(
-        table,
-        columns=(*table.columns[:REFERENCE_PLACE], column, *table.columns[REFERENCE_PLACE:]),
-        rows=tuple(
-            (*row[:REFERENCE_PLACE], value, *row[REFERENCE_PLACE:])
-            for row, value in zip(table.rows, values, strict=True)
-        ),
-    )
-
-
-def has_reference(case: CaseResult) -> bool:
-    """Whether a case has values of the reference."""
-    return case.reference is not None and case.reference.reason is None
-
-
-def find_reference(case: CaseResult, criterion: Criterion) -> float | None:
-    """Value of the reference for a criterion; None if it has none."""
-    quantities = {} if case.reference is None else case.reference.quantities
-    return select_item(quantities.get(str(criterion.pantograph), {}).get(criterion.quantity), criterion.item)
 
 
 def select_reference_force(case: CaseResult, key: str) -> list[float]:

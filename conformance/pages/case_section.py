@@ -9,8 +9,8 @@ from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import draw_case_figures, reference_note
-from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.case_figures import draw_case_figures
+from pantocheck.conformance.pages.criteria_table import criteria_blocks, reference_note
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (

@@ -1,13 +1,13 @@
 """Table of the criteria of a case."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from pantocheck.conformance.core.criterion import ComponentName, Criterion
 from pantocheck.conformance.core.findings import GradedFinding
+from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import insert_reference, name_figure
 from pantocheck.conformance.pages.words import (
     format_beside_limits,
     format_plain,
@@ -315,3 +315,51 @@ def _describe_outcome(finding: GradedFinding) -> str:
     """Outcome of a finding, and its role if the outcome does not state it."""
     outcome = finding.outcome.replace("_", " ")
     return f"imposed, {outcome}" if finding.role == "imposed" != outcome else outcome
+
+
+def name_figure(anchor: str, owner: str) -> str:
+    """Anchor of the figure with the force of a pantograph, or with the uplift for the line "0"."""
+    return f"{anchor}-uplift" if owner == "0" else f"{anchor}-force-{owner}"
+
+
+# Values of the reference simulator beside those of the system under test, on request; they decide no verdict.
+REFERENCE_PLACE = 4
+"""Place of the column in a table of criteria: behind value and error."""
+
+
+def reference_note(case: CaseResult) -> tuple[doc.Block, ...]:
+    """Sentence on the reference of a case; empty if none was requested."""
+    reference = case.reference
+    if reference is None:
+        return ()
+    name = f"{reference.name} {reference.version}"
+    if reference.reason is not None:
+        return (doc.Paragraph(f"{name}: no values for comparison, {reference.reason}."),)
+    return (doc.Paragraph(f"Reference: values of the {name}, for information. They take part in no verdict."),)
+
+
+def insert_reference(case: CaseResult, table: doc.Table, criteria: Sequence[Criterion]) -> doc.Table:
+    """Table of criteria with a column of the values of the reference, if the case has them."""
+    if not has_reference(case):
+        return table
+    column = doc.Column("Reference", number=True, short="Refer-\nence")
+    values = [format_value(find_reference(case, item)) for item in criteria]
+    return replace(
+        table,
+        columns=(*table.columns[:REFERENCE_PLACE], column, *table.columns[REFERENCE_PLACE:]),
+        rows=tuple(
+            (*row[:REFERENCE_PLACE], value, *row[REFERENCE_PLACE:])
+            for row, value in zip(table.rows, values, strict=True)
+        ),
+    )
+
+
+def has_reference(case: CaseResult) -> bool:
+    """Whether a case has values of the reference."""
+    return case.reference is not None and case.reference.reason is None
+
+
+def find_reference(case: CaseResult, criterion: Criterion) -> float | None:
+    """Value of the reference for a criterion; None if it has none."""
+    quantities = {} if case.reference is None else case.reference.quantities
+    return select_item(quantities.get(str(criterion.pantograph), {}).get(criterion.quantity), criterion.item)

@@ -8,7 +8,7 @@ from typing import Any
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
 from pantocheck.conformance.core.results_part import select_single
-from pantocheck.conformance.pages.case_figures import has_reference
+from pantocheck.conformance.pages.criteria_table import has_reference
 from pantocheck.conformance.pages.document import Block, BulletList, Code, Column, Drawing, RichText, SmallPrint, Table
 from pantocheck.conformance.pages.two_verdicts import list_criteria
 from pantocheck.conformance.pages.words import (

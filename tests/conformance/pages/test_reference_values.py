@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from helpers.shown_page import print_certificate, show_certificate
 from pantocheck.conformance.core.figure_data import Traces
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.case_figures import draw_force, find_reference, reference_note
-from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.case_figures import draw_force
+from pantocheck.conformance.pages.criteria_table import criteria_blocks, find_reference, reference_note
 from pantocheck.conformance.pages.quantity_tables import build_quantity_table
 from pantocheck.conformance.results.results_format import CaseResult
 

@@ -142,9 +142,7 @@ def records(case_250: Case) -> tuple[Record, Record]:
     line = discretise(build_catenary(case_250.line), case_250.file.discretisation.element_m)
     windowed = build_passage(case_250, line, case_250.file.discretisation, (120.0,))
     whole = replace(windowed, kept_behind=math.inf)
-    first, second = (
-        record_passage(case_250, passage, simulate_passage(line, passage)) for passage in (windowed, whole)
-    )
+    first, second = (record_passage(case_250, run, simulate_passage(line, run)) for run in (windowed, whole))
     return first, second
 
 
