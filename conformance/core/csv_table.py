@@ -140,9 +140,8 @@ def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int
         values: Samples, (n, c).
         digits: Significant digits.
     """
-    row = ",".join([f"%.{digits}g"] * len(names))
-    lines = [",".join(names), *(row % tuple(cells) for cells in values.tolist()), ""]
-    path.write_text("\n".join(lines), encoding="utf-8", newline="\n")
+    head = ",".join(names)
+    np.savetxt(path, values, f"%.{digits}g", ",", header=head, comments="", encoding="utf-8")
 
 
 def _list_columns(layout: TextLayout) -> tuple[TableColumn, ...]:
