@@ -16,7 +16,6 @@ from verification.attacks.mutation import (
     list_mutants,
     list_statement_lines,
     name_definitions,
-    wilson_interval,
 )
 
 SOURCE = '''"""A docstring with 1 number."""
@@ -109,9 +108,3 @@ def test_tests_run_on_the_changed_copy(toy: Path, tmp_path: Path) -> None:
     (worker.place / tests[0]).write_text("while True:\n    pass\n", "utf-8")
     assert worker.run_tests(tests, 0.01)[0] is None
     worker.close()
-
-
-def test_interval_is_that_of_wilson() -> None:
-    """Newcombe (1998), Statistics in Medicine 17, 857-872, Table I: 81 of 263 and 0 of 20."""
-    assert wilson_interval(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
-    assert wilson_interval(0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)

@@ -12,7 +12,6 @@ import difflib
 import filecmp
 import hashlib
 import json
-import math
 import os
 import queue
 import re
@@ -21,7 +20,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 import tomllib
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -33,6 +31,7 @@ from typing import Any
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator
+from scipy.stats import binomtest
 
 CHECKOUT = Path(__file__).parents[2]
 ROOTS = ("model", "conformance")
@@ -43,7 +42,6 @@ SEED = 20261122
 SERVER = Path(__file__).with_name("fork_server.py")
 SUFFICIENT = 0.9
 """Share of killed mutants that every folder needs."""
-Z_95 = 1.959964
 COVERAGE_S = 7200.0
 """Largest processor time of the tests with their coverage [s]."""
 SLOWER, EXTRA_S = 3.0, 30.0
@@ -259,21 +257,6 @@ def list_changes(root: Path, mutant: Mutant) -> list[str]:
     return [line for line in lines if not line.startswith(("---", "+++"))]
 
 
-def wilson_interval(killed: int, total: int) -> tuple[float, float]:
-    """95 % interval of a share by Wilson's score.
-
-    Args:
-        killed: Number of killed mutants.
-        total: Number of mutants, at least 1.
-
-    Returns:
-        Lower and upper end of the share [-].
-    """
-    share, spread = killed / total, Z_95**2 / total
-    half = Z_95 * math.sqrt(share * (1 - share) / total + spread / (4 * total))
-    return (share + spread / 2 - half) / (1 + spread), (share + spread / 2 + half) / (1 + spread)
-
-
 @dataclass
 class Run:
     """Mutation run: snapshot, coverage of the test files, and outcomes, all stored in OUT."""
@@ -364,7 +347,7 @@ def _append_row(path: Path, row: dict[str, Any]) -> None:
 def report(folder: str, rows: list[dict[str, Any]]) -> bool:
     """Print the share of a folder and its survivors; whether enough mutants are killed."""
     killed = sum(row["outcome"] in {"killed", "timeout"} for row in rows)
-    low, high = wilson_interval(killed, len(rows))
+    low, high = binomtest(killed, len(rows)).proportion_ci(method="wilson")
     share = killed / len(rows)
     print(f"{folder}: {killed} of {len(rows)} killed, {share:.0%} (95 % interval {low:.0%} to {high:.0%})", flush=True)
     for row in rows:
@@ -384,7 +367,6 @@ def main() -> int:
     parser.add_argument("--tests", type=int, default=8, help="largest number of test files of a mutant")
     parser.add_argument("--budget", type=float, default=30.0, help="largest processor time of these [s]")
     parser.add_argument("--renew", action="store_true", help="copy the checkout anew, and judge what it may change")
-    parser.add_argument("--seconds", type=float, default=math.inf, help="start no mutant after this time")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     run = Run(options.out.resolve(), options.tests, options.budget, options.renew)
@@ -394,10 +376,9 @@ def main() -> int:
     workers: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     for worker in all_workers:
         workers.put(worker)
-    end = time.monotonic() + options.seconds
 
     def judge(mutant: Mutant) -> None:
-        if time.monotonic() < end and mutant.order not in run.outcomes:
+        if mutant.order not in run.outcomes:
             worker = workers.get()
             try:
                 run.judge(mutant, worker)

@@ -5,8 +5,9 @@ A place is the path of the file below the folder of artefacts with the JSON poin
 """
 
 import re
+import tomllib
 from collections import Counter
-from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 from verification.frozen.commands import OLD_WORDS
@@ -16,7 +17,7 @@ class Rename(NamedTuple):
     """Pattern of the old place, file or text, its replacement in the syntax of `re.sub`, and the reason."""
 
     pattern: str
-    replacement: str | Callable[[re.Match[str]], str]
+    replacement: str
     reason: str
 
 
@@ -36,152 +37,44 @@ class Omission(NamedTuple):
     reason: str
 
 
-def _rename_source(place: re.Match[str]) -> str:
-    """Place of the name, source or digest of a source for a key such as `record`, `record_source` or `line_digest`."""
-    subject = "record" if place[2] == "record" else "model"
-    return f"{place[1]}/{subject}/{(place[3] or '_name').removeprefix('_')}"
+_TABLES = tomllib.loads(Path(__file__).with_name("differences.toml").read_text("utf-8"))
 
 
-_SOURCES = "one type for the sources of all comparisons"
-_CRITERIA = "one type and one table for the criteria of all comparisons, by label, with a limit that has its sign"
-_CRITERION = "criteria of comparisons have the keys of all criteria, and a reason that names the side of the limit"
-_EVIDENCE = "evidence has its own place"
-_WIRE_SPRINGS = "springs between the wires are a new element"
-_DOSSIER = r"(?:validate|site/runs/[\w-]+)/\w+\.(?:json|html)/procedure"
-_STATIC = rf"^(line-statics/static_comparison\.(?:json|html)|{_DOSSIER}/statics/\d+)"
-_RESPONSE = (
-    r"^(pantograph-(?:compare|graded)/response_comparison\.(?:json|html)"
-    rf"|pantograph-fit/fitted-fit\.(?:json|html)/comparison|{_DOSSIER}/responses/\d+)"
-)
-_DROP = r"^(drop-(?:compare|graded)/drop_comparison\.(?:json|html))"
-_COMPARISON = (
-    r"(line-statics|pantograph-(compare|graded|fit)|drop-(compare|graded)"
-    r"|(?:validate|site/runs/[\w-]+)/\w+\.\w+/procedure/(statics|responses))/.*"
-)
+def _read_renames(name: str) -> tuple[Rename, ...]:
+    return tuple(Rename(**row) for row in _TABLES.get(name, ()))
 
-RENAMED_FILES = (Rename(r"^show/line\.svg$", "line-draw/line.svg", "`show --drawing` is the command `line draw`"),)
+
+def _read_omissions(name: str) -> tuple[Omission, ...]:
+    return tuple(Omission(**row) for row in _TABLES.get(name, ()))
+
+
+RENAMED_FILES = _read_renames("renamed_files")
 """Files by their path, searched in the path of the old state."""
 
-RENAMED = (
-    Rename(_STATIC + r"/(line|record)(_digest)?$", _rename_source, _SOURCES),
-    Rename(_STATIC + r"/criteria/(\d+)/tolerance$", r"\1/criteria/\2/upper", _CRITERIA),
-    Rename(_RESPONSE + r"/(pantograph)(_digest)?$", _rename_source, _SOURCES),
-    Rename(_RESPONSE + r"/criteria/(\d+)/response$", r"\1/criteria/\2/where/record", _CRITERIA),
-    Rename(
-        r"((?:-graded/\w+\.(?:json|html)|/procedure/responses/\d+)/criteria/\d+)/(motion|sensor|window_s|band_Hz|static_force_N|height_m)(?=/|$)",
-        r"\1/where/\2",
-        _CRITERIA,
-    ),
-    Rename(_DROP + r"/(line|record)(_digest|_source)?$", _rename_source, _SOURCES),
-    *(
-        Rename(comparison + r"/criteria/(\d+)/measurement$", r"\1/criteria/\2/limit_uncertainty", _CRITERION)
-        for comparison in (_STATIC, _RESPONSE, _DROP)
-    ),
-    *(
-        Rename(comparison + r"/criteria/(\d+)/discretisation$", r"\1/criteria/\2/uncertainty", _CRITERION)
-        for comparison in (_STATIC, _DROP)
-    ),
-)
+RENAMED = _read_renames("renamed")
 """Keys of JSON files, searched in the place of the old state."""
 
-REMOVED: tuple[Omission, ...] = ()
+REMOVED = _read_omissions("removed")
 """Places of JSON files, or files, of the old state only."""
 
-ADDED = (
-    Omission(r"line-draw/output\.txt", "`show --drawing` is the command `line draw`"),
-    Omission(_COMPARISON + r"/(model|record)/(source|digest)", _SOURCES),
-    Omission(r"show/request\.json/features/\d+", "a program answers with the features that it simulates"),
-    Omission(r".*/campaign\.parquet", "written if pyarrow is installed"),
-    Omission(r".*/line_shape/symbols/.*", "the elements of the line name the symbols of its drawing"),
-    Omission(_COMPARISON + r"/warnings", "every comparison states its warnings"),
-    Omission(
-        _COMPARISON + r"/criteria/\d+/(where/.*|unit|lower|upper|source)",
-        _CRITERIA,
-    ),
-    Omission(_COMPARISON + r"/criteria/\d+/(pantograph|item|trust|baseline|finding|spread)", _CRITERION),
-    Omission(_COMPARISON + r"/criteria/\d+/(discretisation_error|uncertainty|components(/.*)?)", _CRITERION),
-)
+ADDED = _read_omissions("added")
 """Places of JSON files, or files, of the new state only."""
 
-CHANGED = (
-    Change(
-        r"compare-(results|systems)/comparison\.(?:json|html)/subjects/\d+/digest",
-        "''",
-        "None",
-        "null is the word for no digest",
-    ),
-)
+CHANGED = tuple(Change(**row) for row in _TABLES["changed"])
 """Values of JSON files that state the same fact in another way; never a number or a verdict."""
 
-RENAMED_TEXT = (
-    Rename(
-        r"\bbenchmarks/(dossier_measurements|finite\\?_ ?differences)\.py",
-        r"verification/formulations/\1.py",
-        _EVIDENCE,
-    ),
-    Rename(r"\bbenchmarks/(stand_in_search)\.py", r"verification/tables/\1.py", _EVIDENCE),
-    Rename(r"\bbenchmarks/table_ ?search\.py", "verification/tables/table_search.py", _EVIDENCE),
-    Rename(r"(?<=thresholds of )fit-damping\b", "drop fit", "commands stand in groups"),
-    Rename(r"(?<=[%°Nm] )beyond the limit\b", "above the upper limit", _CRITERION),
-    Rename(r"(?<=\d )beyond the limit\b", "below the lower limit", _CRITERION),
-    Rename(r"(?<=Criterion Value )Tolerance(?= ± model ± measured)", "Limit", _CRITERIA),
-    Rename(
-        r"((?:to the measured one|contact wire height) ?\[(?:%|mm)\] [\d.]+ )(?=\d+ [\d.]+ [\d.]+ ✓)",
-        r"\1≤ ",
-        _CRITERIA,
-    ),
-    Rename(
-        r"\bcriterion value tolerance verdict\b",
-        "criterion value limit verdict",
-        _CRITERIA,
-    ),
-    Rename(r"(?<=Criterion Value )Limits(?= ± model ±)", "Limit", _CRITERIA),
-    Rename(r"(?<=Criterion Value Limit ± model ± )noise\b", "measured", _CRITERIA),
-    Rename(r"\bcriterion value limits verdict\b", "criterion value limit verdict", _CRITERIA),
-    Rename(r"(?<= Hz )(\S+) ([\d.]+) to -(?= )", r"\1 >= \2", _CRITERIA),
-    Rename(r"(?<= N \[[%°]\] )(\S+) (?=[\d.]+ (?:PASS|FAIL|SKIP))", r"\1 <= ", _CRITERIA),
-    Rename(r" show/line\.svg\b", "", "`show --drawing` is the command `line draw`"),
-    Rename(
-        r"\belasticity_difference_pct ([\d.]+) (?=\d+ (?:PASS|FAIL))",
-        r"Largest difference of the elasticity, relative to the measured one [%] \1 <= ",
-        _CRITERIA,
-    ),
-    Rename(
-        r"\bcontact_wire_height_difference_mm ([\d.]+) (?=\d+ (?:PASS|FAIL))",
-        r"Largest difference of the contact wire height [mm] \1 <= ",
-        _CRITERIA,
-    ),
-)
+RENAMED_TEXT = _read_renames("renamed_text")
 """Words of pages and texts, searched in the old text after placeholders are set; removed words have no replacement."""
 
-ADDED_TEXT = (
-    Omission(
-        r"(?m)^# Spring between messenger and contact wire.*\n(?:# .*\n)+\n",
-        _WIRE_SPRINGS,
-    ),
-    Omission(r"[\w-]+/campaign\.parquet\b ?", "written if pyarrow is installed"),
-    Omission(
-        r" further_sections every tension section behind the first one, .*? Absent: one section\b",
-        "the message to a program describes every tension section",
-    ),
-    Omission(r" wire_springs springs between the wires; absent: none\b", _WIRE_SPRINGS),
-)
+ADDED_TEXT = _read_omissions("added_text")
 """Words of pages and texts of the new state only."""
 
 _ADDED_WORDS = tuple(Rename(added.pattern, "", added.reason) for added in ADDED_TEXT)
 
-MOVED = (
-    Omission(r"show(-drop)?/output\.txt", "the keys of a line are listed in the order of its elements"),
-    Omission(r"line-statics/static_comparison\.pdf", "a label has one line now: a row moves to the page before"),
-)
+MOVED = _read_omissions("moved")
 """Files that have the same words in another order or on another page."""
 
-NOT_COMPARED = (
-    Omission(r".*/campaign\.sqlite", "store of the runs; campaign.json and campaign.csv hold its values"),
-    Omission(r".*/campaign\.lock", "lock of a running campaign"),
-    Omission(r".*\.json(/.*)?/(wall_s|started|commit)", "fact of one run"),
-    Omission(r".*\.json/(suite/version|system/version|platform/.*|renderer/.*)", "version or platform"),
-)
+NOT_COMPARED = _read_omissions("not_compared")
 """Files and places that are left out of the comparison."""
 
 _WORDS = {old: new for new, old in OLD_WORDS.items()}
