@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
+from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import compare_profile_with_library, profile_limits_digest
 from pantocheck.conformance.grading.case_verdict import EVERY_CASE, Participation, judge_case
 from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places
@@ -49,7 +51,7 @@ def assess_record(
         InputError: A measured record is missing, not needed, or does not fit the record.
     """
     check_pair(subject, measured, profile)
-    case = grade_record(subject, profile, trust, measured, limits)
+    case = grade_record(subject, profile, trust, measured, limits, participation.decision)
     system = SystemIdentity(name=subject.system.name, version=subject.system.version, kind="record")
     return build_results([case], system, trust, utc_now(), participation)
 
@@ -60,9 +62,10 @@ def grade_record(
     trust: Trust,
     measured: AssessedRecord | None = None,
     limits: Sequence[Limit] = (),
+    rule: DecisionRule = SIMPLE,
 ) -> CaseResult:
     """Result of a record by the rules of a profile; parameters as in `assess_record`."""
-    grading = RuleGrading(subject, measured, trust)
+    grading = RuleGrading(subject, measured, trust, rule)
     criteria = grading.grade_profile(profile, limits)
     records = [record for record in (subject, measured) if record is not None]
     digest = join_digests(subject.digest, measured.digest if measured else "", profile.model_dump_json())
@@ -95,6 +98,7 @@ def grade_record(
         profile=profile.name,
         steps=["line_test"] if profile.compares else [],
         criteria=criteria,
+        conformity=find_case_conformity(criteria),
         quantities=key_by_owner(select_finite(subject.values.values)),
         skipped=key_by_owner(subject.values.skipped),
         spread={},

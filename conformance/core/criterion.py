@@ -12,8 +12,10 @@ from pantocheck.conformance.core.verdicts import Verdict
 BASELINE = "baseline"
 """Quantity of a criterion that states why a comparison with a baseline is impossible."""
 
-ComponentName = Literal["discretisation", "start", "section", "length"]
-"""Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; record length."""
+ComponentName = Literal["discretisation", "start", "section", "length", "sampling", "resolution"]
+"""Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; length, sampling
+rate and resolution of the record.
+"""
 
 COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)
 
@@ -84,7 +86,11 @@ class Criterion(Requirement):
     reason: str | None
     """Data that are missing, or distance beyond a limit."""
     uncertainty: float | None = None
-    """Half-width of the 95 % interval, the root of the sum of squares of `components`."""
+    """Half-width of the 95 % interval: it holds 95 % of the joint sample of all components."""
+    conformity: Annotated[float | None, Field(ge=0, le=1)] = None
+    """Probability that the value lies inside its limits, from `draws`; null: not known."""
+    draws: Annotated[list[FiniteNumber], Field(exclude_if=lambda draws: not draws)] = []
+    """Joint sample of the value; draws of the same number belong together in all criteria of a case. Missing: none."""
     components: dict[ComponentName, float] = {}
     limit_uncertainty: float | None = 0.0
     """Half-width of the 95 % interval of a limit from a measured record; null: the record states none."""
@@ -100,7 +106,7 @@ class Criterion(Requirement):
     @property
     def is_close(self) -> bool:
         """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
-        return bool(self.close) and self.verdict in ("pass", "fail")
+        return bool(self.close) and self.verdict in ("pass", "undecided", "fail")
 
     @property
     def error(self) -> float | None:

@@ -1,11 +1,23 @@
 """Near-limit rule: a value closer to a limit than its uncertainty is marked, as its verdict could be reversed."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import NormalDist
 from types import MappingProxyType
 
+import numpy as np
+
 from pantocheck.conformance.core.criterion import ComponentName
+
+CONFIDENCE = 0.95
+"""Share of the joint sample inside an interval."""
+
+NORMAL_QUANTILE = 1.959964
+"""Half-width of a 95 % interval in standard deviations."""
+
+Limits = tuple[float | None, float | None]
+"""Lower and upper limit; None: none on this side."""
 
 REMEDIES: Mapping[str, str] = MappingProxyType(
     {
@@ -13,6 +25,8 @@ REMEDIES: Mapping[str, str] = MappingProxyType(
         "start": "another start or run-in",
         "section": "another analysis section",
         "length": "a longer record",
+        "sampling": "a higher sampling rate",
+        "resolution": "a finer resolution",
         "limit": "another record behind the limit",
     }
 )
@@ -28,17 +42,53 @@ class ValueErrors:
     spread: float | None = None
     """Largest change when the analysis section is shifted span by span; None: not known."""
     components: Mapping[ComponentName, float] = field(default_factory=dict)
-    """Half-widths of the 95 % interval by component; unknown components are left out."""
+    """Half-widths by component; unknown components are left out."""
     limit_uncertainty: float | None = 0.0
     """Half-width of the 95 % interval of the limit itself, if it comes from a measured record; None: not stated."""
+    draws: tuple[float, ...] = ()
+    """Values of the joint sample; empty: no sample was drawn."""
+    unknown: tuple[ComponentName, ...] = ()
+    """Components that are not known."""
+
+    def find_half_width(self, value: float) -> float | None:
+        """Half-width of the 95 % interval around the value; None if no component is known.
+
+        It holds 95 % of the joint sample. Without a sample, the components are independent.
+        """
+        if self.draws:
+            return interval_half_width(value, self.draws)
+        return math.hypot(*self.components.values()) if self.components else None
+
+    def find_expanded(self, value: float) -> float:
+        """Half-width of the 95 % interval of the distance between value and limit."""
+        return math.hypot(self.find_half_width(value) or 0.0, self.limit_uncertainty or 0.0)
+
+    def find_conformity(self, value: float, limits: Limits) -> float | None:
+        """Probability that the value lies inside its limits (JCGM 106:2012, 7.2); None if no error is known.
+
+        It is the share of the joint sample inside the limits. An uncertain limit, and a value without a sample, have a
+        normal distribution.
+        """
+        widths = self.limit_uncertainty or 0.0 if self.draws else self.find_expanded(value)
+        lower, upper = (-math.inf if limits[0] is None else limits[0]), (math.inf if limits[1] is None else limits[1])
+        draws = self.draws or (value,)
+        if not widths:
+            return sum(lower <= x <= upper for x in draws) / len(draws) if self.draws else None
+        normal = NormalDist(0.0, widths / NORMAL_QUANTILE)
+        return math.fsum(normal.cdf(upper - x) - normal.cdf(lower - x) for x in draws) / len(draws)
 
     @property
-    def uncertainty(self) -> float | None:
-        """Combined half-width of the 95 % interval of the value; None if no component is known."""
-        return math.hypot(*self.components.values()) if self.components else None
+    def record_bound(self) -> float:
+        """Largest change of the value by sampling rate and resolution of its record."""
+        return self.components.get("sampling", 0.0) + self.components.get("resolution", 0.0)
 
 
 NO_ERRORS = ValueErrors()
+
+
+def interval_half_width(value: float, draws: Sequence[float]) -> float:
+    """Half-width of the interval around a value that holds 95 % of a joint sample."""
+    return float(np.quantile(np.abs(np.subtract(draws, value)), CONFIDENCE))
 
 
 def near_limit_remarks(
@@ -59,14 +109,13 @@ def near_limit_remarks(
     if value is None or lower == upper:
         return []
     distance = min(abs(value - limit) for limit in limits if limit is not None)
-    widths = {str(component): width for component, width in errors.components.items()}
-    parts = {"limit": errors.limit_uncertainty or 0.0} | widths
-    combined = math.hypot(*parts.values())
-    if not distance < combined:
+    expanded = errors.find_expanded(value)
+    if not distance < expanded:
         return []
+    parts = {"limit": errors.limit_uncertainty or 0.0} | {str(name): width for name, width in errors.components.items()}
     largest = max(parts, key=lambda name: parts[name])
     return [
-        f"lies {_format(distance, unit)} from a limit, less than its uncertainty of {_format(combined, unit)} "
+        f"lies {_format(distance, unit)} from a limit, less than its uncertainty of {_format(expanded, unit)} "
         f"(mostly {largest}): {REMEDIES[largest]} could reverse the verdict"
     ]
 

@@ -4,18 +4,21 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, judge_by_rule, parse_decision
 from pantocheck.conformance.core.findings import count_findings, judge_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
-from pantocheck.conformance.core.verdicts import Verdict, judge, margin
+from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
+from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
+from pantocheck.conformance.quantities.uncertainty import RECORD_COMPONENTS, UNKNOWN
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents
@@ -25,7 +28,8 @@ from pantocheck.model.statics.wave_factors import amplification_coefficient, dop
 
 def find_discrepancies(results: Results) -> list[str]:
     """Find contradictions between the numbers and verdicts of results."""
-    discrepancies = [text for case in results.cases for text in _check_case(case, results.trust)]
+    rule = parse_decision(results.decision, "results, key decision")
+    discrepancies = [text for case in results.cases for text in _check_case(case, results.trust, rule)]
     decided = read_participation(results).decide_run(results)
     pairs: list[tuple[str, Verdict | None, Verdict | None]] = [
         (f"{case.id}: ", case.verdict, other.verdict) for case, other in zip(results.cases, decided.cases, strict=True)
@@ -33,6 +37,9 @@ def find_discrepancies(results: Results) -> list[str]:
     pairs.append(("", results.verdict, decided.verdict))
     pairs.append(("verification: ", results.verification_verdict, decided.verification_verdict))
     pairs.append(("baseline: ", results.baseline_verdict, decided.baseline_verdict))
+    if results.conformity != decided.conformity:
+        stated, follows = format_exact(results.conformity), format_exact(decided.conformity)
+        discrepancies.append(f"probability of conformity {stated} stated, {follows} follows from the joint samples")
     pairs.append(("EN 50318 criteria: ", results.criteria_verdict, decided.criteria_verdict))
     findings = count_findings(row.finding for case in results.cases for row in case.criteria)
     if results.statement != STATEMENT:
@@ -49,13 +56,14 @@ def find_discrepancies(results: Results) -> list[str]:
     ]
 
 
-def _check_case(case: CaseResult, trust: Trust | Computed) -> Iterator[str]:
+def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -> Iterator[str]:
     stated, verification = case.criteria_verdict or case.verdict, case.verification
     yield from (f"{case.id}, {text}" for text in check_combination(case))
     record = case.record
     graded = [row for row in case.criteria if not row.is_drift]
     ungraded = not graded and case.reason and stated in ("skip", "error")
-    yield from _check_criteria(case, case.criteria, trust)
+    yield from _check_criteria(case, case.criteria, trust, rule)
+    yield from _check_conformity(case)
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
     verdict = judge_case((row.verdict for row in graded), record)
     if stated != verdict and not ungraded:
@@ -73,13 +81,16 @@ def _check_case(case: CaseResult, trust: Trust | Computed) -> Iterator[str]:
             yield f"{case.id}, pantograph {key}: {text}"
 
 
-def _check_criteria(case: CaseResult, criteria: Sequence[Criterion], trust: Trust | Computed) -> Iterator[str]:
+def _check_criteria(
+    case: CaseResult, criteria: Sequence[Criterion], trust: Trust | Computed, rule: DecisionRule = SIMPLE
+) -> Iterator[str]:
     start = None if case.record is None else case.record.start
     names = list_verification_components(start) if trust == "computed" else COMPONENT_NAMES
     for row in criteria:
         where = f"{case.id}, {row.quantity} of pantograph {row.pantograph}"
+        unknown = list_unknown_components(case, row, names)
         components = check_components(row, case.uncertainty_components, names)
-        for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust)):
+        for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust, rule, unknown)):
             yield f"{where}: {text}"
 
 
@@ -99,7 +110,9 @@ def _check_value(row: Criterion, quantities: Mapping[str, Mapping[str, Number]])
         yield f"value {format_exact(row.value)} graded, {format_exact(reported)} reported among the quantities"
 
 
-def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
+def _check_grade(
+    row: Criterion, trust: Trust | Computed, rule: DecisionRule = SIMPLE, unknown: tuple[ComponentName, ...] = ()
+) -> Iterator[str]:
     """Verdict, margin and remarks on a close limit must follow from value, limits, errors and trust."""
     quantity = QUANTITIES.get(row.quantity)
     if quantity is not None and row.unit != quantity.unit:
@@ -113,7 +126,10 @@ def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
     if lower is not None and upper is not None and lower > upper:
         yield f"lower limit {format_exact(lower)} above upper limit {format_exact(upper)}"
         return
-    judged = "skip" if value is None else judge(value, lower, upper)
+    errors = ValueErrors(
+        row.discretisation_error, row.spread, row.components, row.limit_uncertainty, tuple(row.draws), unknown
+    )
+    judged: Verdict = "skip" if value is None else judge_by_rule(value, (lower, upper), errors, rule)[0]
     finding = row.finding
     if finding is not None and finding.outcome != judge_finding(finding.role, judged):
         yield f"finding '{finding.outcome}' stated, '{judge_finding(finding.role, judged)}' follows"
@@ -124,15 +140,39 @@ def _check_grade(row: Criterion, trust: Trust | Computed) -> Iterator[str]:
     expected = None if value is None else margin(value, lower, upper)
     if not same_number(row.margin, expected, EXACT):
         yield f"margin {format_exact(row.margin)} stated, {format_exact(expected)} follows from value and limits"
-    errors = ValueErrors(row.discretisation_error, row.spread, row.components, row.limit_uncertainty)
-    if row.components and not same_number(row.uncertainty, errors.uncertainty, EXACT):
-        printed, combined = format_exact(row.uncertainty), format_exact(errors.uncertainty)
-        yield f"uncertainty {printed} stated, {combined} follows from its components"
+    half_width = None if value is None else errors.find_half_width(value)
+    if row.components and not same_number(row.uncertainty, half_width, EXACT):
+        printed, combined = format_exact(row.uncertainty), format_exact(half_width)
+        yield f"uncertainty {printed} stated, {combined} follows from its joint sample and components"
+    conformity = None if value is None else errors.find_conformity(value, (lower, upper))
+    if not same_number(row.conformity, conformity, EXACT):
+        printed, found = format_exact(row.conformity), format_exact(conformity)
+        yield f"probability of conformity {printed} stated, {found} follows from its joint sample"
     remarks = near_limit_remarks(value, (lower, upper), row.unit, errors)
     if row.close != remarks:
         stated, follow = len(row.close), len(remarks)
         texts = " with other texts" if stated == follow else ""
         yield f"{stated} remarks on a close limit stated, {follow}{texts} follow from value, limits and errors"
+
+
+def _check_conformity(case: CaseResult) -> Iterator[str]:
+    """The probability of a case must follow from the joint samples of its criteria."""
+    stated = case.conformity
+    found = find_case_conformity(case.criteria, (0, 0) if stated is None else (stated.starts, stated.passing_starts))
+    if stated != found:
+        yield f"{case.id}: the probability of conformity does not follow from the joint samples of the criteria"
+    elif stated is not None and stated.passing_starts > stated.starts:
+        yield f"{case.id}: {stated.passing_starts} of {stated.starts} starts pass"
+
+
+def list_unknown_components(
+    case: CaseResult, row: Criterion, names: Collection[ComponentName]
+) -> tuple[ComponentName, ...]:
+    """Components of a criterion that are not known: of the whole case, or one of the record that the quantity lacks."""
+    unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN)]
+    parts = [part for quantities in case.uncertainty_components.values() for part in quantities.values()]
+    lacking = [name for name in RECORD_COMPONENTS if name in names and any(name in part for part in parts)]
+    return (*unknown, *(name for name in lacking if name not in row.components))
 
 
 def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:
@@ -187,14 +227,19 @@ def check_components(
 
 
 def check_combination(case: CaseResult) -> Iterator[str]:
-    """Check that every combined uncertainty is the root of the sum of the squares of its components."""
+    """Check the uncertainty of every quantity: that of its criteria, and without a record that of its components."""
+    for row in case.criteria:
+        stated = select_item(case.uncertainty.get(str(row.pantograph), {}).get(row.quantity), row.item)
+        if row.uncertainty is not None and not row.is_drift and row.uncertainty != stated:
+            yield f"pantograph {row.pantograph}: uncertainty of {row.quantity} differs from that of its criterion"
     for key, quantities in case.uncertainty_components.items():
         for name, parts in quantities.items():
             columns = [width if isinstance(width, list) else [width] for width in parts.values()]
             expected = [math.hypot(*items) for items in zip(*columns, strict=False)]
-            stated = case.uncertainty.get(key, {}).get(name)
-            numbers = stated if isinstance(stated, list) else [stated]
-            if len(numbers) != len(expected) or not all(map(same_number, numbers, expected)):
+            width = case.uncertainty.get(key, {}).get(name)
+            numbers = width if isinstance(width, list) else [width]
+            same = len(numbers) == len(expected) and all(map(same_number, numbers, expected))
+            if not same and set(parts) == {"discretisation"}:
                 yield f"pantograph {key}: uncertainty of {name} does not follow from its components"
 
 

@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag
 
 from pantocheck.conformance.cases.profile_file import Rule
 from pantocheck.conformance.comparison.comparison_limits import RESPONSES, ComparisonLimit
+from pantocheck.conformance.core.decision import DecisionText
 from pantocheck.conformance.core.input_error import suggest_names
 from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
@@ -243,6 +244,8 @@ class DossierFile(InputTable):
     """Time limit of a program for a case [s]."""
     trust: Trust = "secondary"
     """Lowest trust of the limits and tolerances that count."""
+    decision: DecisionText = "simple"
+    """Decision rule: simple, guarded, or shared-risk: and the largest accepted risk."""
     required: Annotated[tuple[StepName, ...], Field(strict=False, min_length=1)] = STEP_NAMES
     """Steps that decide the verdict; the others are for information."""
     accept_unverified: EntryNames = ()

@@ -11,6 +11,7 @@ from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import interruption_exit_code
 from pantocheck.conformance.core.results_part import Number
@@ -117,8 +118,8 @@ class LineTests:
         return find_dependence(simulated, measured)
 
     def _grade(self, pair: PairTable, simulated: RunSide, measured: RunSide, profile: Profile) -> CaseResult:
-        trust = self.dossier.file.trust
-        case = grade_record(simulated.record, profile, trust, measured.record)
+        trust, rule = self.dossier.file.trust, parse_decision(self.dossier.file.decision)
+        case = grade_record(simulated.record, profile, trust, measured.record, rule=rule)
         criteria = [*case.criteria, *self._list_ungraded(simulated, profile)]
         facts = case.record
         if simulated.facts is not None and facts is not None:

@@ -6,6 +6,7 @@ from itertools import chain
 from pathlib import Path
 
 from pantocheck.conformance.comparison.static_record import read_static_record
+from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.processes import interruption_exit_code
 from pantocheck.conformance.dossier.dossier_file import LineEntry, PantographEntry
@@ -95,6 +96,7 @@ class Validation:
             information=tuple(case.id for case in cases),
             accepted_unverified=file.accept_unverified,
             requested=choose_verdicts(file.reference.verdicts, file.system, ids),
+            decision=parse_decision(file.decision),
         )
 
     def _list_runs(self) -> list[CaseResult]:

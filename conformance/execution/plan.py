@@ -13,6 +13,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_entries, overlay_limits, read_limits, select_cases
+from pantocheck.conformance.core.decision import DecisionText, parse_decision
 from pantocheck.conformance.core.files import check_writable, read_text
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.sourced_table import InputTable
@@ -61,6 +62,8 @@ class Plan(InputTable):
     """
     trust: Trust = "secondary"
     """Lowest trust of the limits that count."""
+    decision: DecisionText = "simple"
+    """Decision rule: simple, guarded, or shared-risk: and the largest accepted risk, e.g. shared-risk:0.05."""
     verdicts: VerdictChoice | None = None
     """Verdicts that decide; default: criteria for the builtin system, both for any other."""
     limits: str | None = None
@@ -133,6 +136,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
         accepted_unverified=plan.accept_unverified,
         requested=requested,
         verification_only=() if plan.cases else selection.list_verification_only(cases),
+        decision=parse_decision(plan.decision),
     )
     return PreparedPlan(plan, tuple(cases), formats, Path(plan.out), baseline, participation, _list_added(cases, own))
 

@@ -9,6 +9,7 @@ from concurrent.futures.process import BrokenProcessPool
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.figure_data import Traces
 from pantocheck.conformance.core.processes import (
     adopt_orphans,
@@ -86,10 +87,10 @@ def run_cases(
     try:
         if jobs == 1:
             for case in _order_cases(cases):
-                keep(run_when_ready(case, system, trust, finished, cases))
+                keep(run_when_ready(case, system, trust, finished, cases, participation.decision))
         else:
             with adopt_orphans():
-                _run_in_parallel(cases, system, trust, jobs, finished, keep)
+                _run_in_parallel(cases, system, trust, jobs, finished, keep, participation.decision)
     except KeyboardInterrupt as interruption:
         for case in cases:
             if case.id not in finished:
@@ -104,20 +105,25 @@ def identify_system(system: System) -> SystemIdentity:
     return SystemIdentity(name=system.name, version=system.version, kind=system.kind)
 
 
-def run_case(case: Case, system: System, trust: Trust) -> CaseResult:
+def run_case(case: Case, system: System, trust: Trust, rule: DecisionRule = SIMPLE) -> CaseResult:
     """Run one case and grade it; an exception in the system becomes the verdict `error` of this case only."""
     try:
-        return grade_case(case, run_study(case, system), trust)
+        return grade_case(case, run_study(case, system), trust, rule)
     except Exception as error:
         text = " ".join(str(error).split())[:300]
         return build_ungraded(case, "error", f"{type(error).__name__}: {text}" if text else type(error).__name__)
 
 
 def run_when_ready(
-    case: Case, system: System, trust: Trust, finished: dict[str, CaseResult], cases: Sequence[Case]
+    case: Case,
+    system: System,
+    trust: Trust,
+    finished: dict[str, CaseResult],
+    cases: Sequence[Case],
+    rule: DecisionRule = SIMPLE,
 ) -> CaseResult:
     """Run one of several cases; skip it if a case that it requires failed or was not run."""
-    return _check_requirements(case, finished, cases) or run_case(case, system, trust)
+    return _check_requirements(case, finished, cases) or run_case(case, system, trust, rule)
 
 
 def _order_cases(cases: Sequence[Case]) -> list[Case]:
@@ -154,7 +160,13 @@ def _check_requirements(case: Case, finished: dict[str, CaseResult], cases: Sequ
 
 
 def _run_in_parallel(
-    cases: Sequence[Case], system: System, trust: Trust, jobs: int, finished: dict[str, CaseResult], keep: Progress
+    cases: Sequence[Case],
+    system: System,
+    trust: Trust,
+    jobs: int,
+    finished: dict[str, CaseResult],
+    keep: Progress,
+    rule: DecisionRule,
 ) -> None:
     waiting = _order_cases(cases)
     running: dict[Future[CaseResult], Case] = {}
@@ -170,7 +182,7 @@ def _run_in_parallel(
             for case in ready[: jobs - len(running)]:
                 if (skipped := _check_requirements(case, finished, cases)) is not None:
                     keep(skipped)
-                elif (future := _submit(pool, case, system, trust)) is None:
+                elif (future := _submit(pool, case, system, trust, rule)) is None:
                     broken = True
                     break
                 else:
@@ -191,10 +203,10 @@ def _run_in_parallel(
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _submit(pool: Executor, case: Case, system: System, trust: Trust) -> Future[CaseResult] | None:
+def _submit(pool: Executor, case: Case, system: System, trust: Trust, rule: DecisionRule) -> Future[CaseResult] | None:
     """Submit a case to a process; None if a process has died since the last result, so that a new pool is needed."""
     try:
-        return pool.submit(run_case, case, system, trust)
+        return pool.submit(run_case, case, system, trust, rule)
     except BrokenProcessPool:
         return None
 

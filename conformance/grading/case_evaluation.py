@@ -14,9 +14,12 @@ from pantocheck.conformance.cases.start_and_section import (
     span_length,
 )
 from pantocheck.conformance.core.criterion import ComponentName, Criterion
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_uncertainty import (
+    add_bounds,
+    draw_lengths,
     largest_changes,
     length_component,
     section_spread,
@@ -25,10 +28,12 @@ from pantocheck.conformance.grading.record_uncertainty import (
 )
 from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, SectionedSignals, Value
+from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
 from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty, map_items
 from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_resolution import resolution_component, sampling_component
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.check import CheckName, Finding
@@ -38,6 +43,7 @@ from pantocheck.conformance.runs.system import Delivered
 
 AT_REST = Component("does not apply: the line is at rest")
 NO_RECORD = Component("not known: there is no record of one passage")
+NO_SAMPLES = Component("does not apply: there are no samples")
 
 
 @dataclass(frozen=True)
@@ -95,27 +101,51 @@ class CaseEvaluation:
         )
 
     @cached_property
+    def start_signals(self) -> list[RecordSignals]:
+        """Signals of the runs from other starts."""
+        return [self._signals(start.record) for start in self.delivered.starts if start.record is not None]
+
+    @property
+    def start_evaluations(self) -> list[Evaluation]:
+        """Quantities of the runs from other starts."""
+        return [start.evaluation for start in self.start_signals]
+
+    @cached_property
     def uncertainty(self) -> Uncertainty:
         """Uncertainty of the quantities by component."""
         delivered, case, signals = self.delivered, self.case, self.signals
+        digest = case.digest.removeprefix("sha256:")
         coarse = None if delivered.coarse is None else self._evaluate(delivered.coarse)
         components: dict[ComponentName, Component] = {
             "discretisation": discretisation_component(coarse, self.evaluation, self.refined)
         }
         if signals is None:
             absent = AT_REST if case.is_static else NO_RECORD
-            return Uncertainty({**components, "start": absent, "section": absent, "length": absent})
-        others = [self._evaluate(start) for start in delivered.starts]
-        return Uncertainty(
-            {
-                **components,
-                "start": start_component(case, signals, others),
-                "section": shift_component(signals, shift_section(case.analysis_section, span_length(case))),
-                "length": length_component(
-                    signals.pantographs, span_length(case), case.speed, case.digest.removeprefix("sha256:")
-                ),
-            }
+            components |= {"start": absent, "section": absent, "length": absent}
+            components |= {"sampling": NO_SAMPLES, "resolution": NO_SAMPLES}
+            return Uncertainty(components)
+        starts = self.start_signals
+        sections = shift_section(case.analysis_section, span_length(case))
+        lengths = draw_lengths(signals.pantographs, span_length(case), case.speed, digest)
+        components |= {
+            "start": start_component(case, signals, self.start_evaluations),
+            "section": shift_component(signals, sections),
+            "length": length_component(lengths, span_length(case)),
+            "sampling": sampling_component(signals, 1 / case.file.discretisation.time_step_s),
+            "resolution": resolution_component(signals),
+        }
+        runs = [signals, *starts]
+        parts = SampleParts(
+            values=self.evaluation.values,
+            members=[
+                *(start.evaluation.values for start in starts),
+                *(run.evaluate_section(section).values for run in runs for section in sections),
+            ],
+            deviations=lengths,
+            mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),
+            bounds=add_bounds(components),
         )
+        return Uncertainty(components, self.evaluation.values, draw_sample(parts, digest))
 
     @cached_property
     def findings(self) -> dict[CheckName, Finding]:
@@ -145,9 +175,9 @@ class CaseEvaluation:
         state, reason = judge_record_state(self.findings)
         return RecordFacts(state=state, reason=reason, **digests, **start)
 
-    def grade_limits(self, lowest_trust: Trust) -> list[Criterion]:
+    def grade_limits(self, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""
-        return [grade_limit(limit, self.values, lowest_trust) for limit in self.case.limits]
+        return [grade_limit(limit, self.values, lowest_trust, rule=rule) for limit in self.case.limits]
 
     def edge_warnings(self) -> list[str]:
         """Warnings on filter transients inside the analysis section."""
@@ -213,6 +243,18 @@ def _same_items(a: Value | None, b: Value) -> bool:
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b)
     return a is not None and not isinstance(a, tuple) and not isinstance(b, tuple)
+
+
+def sign_half_widths(component: Component, value: Evaluation, fine: Evaluation | None) -> dict[int, dict[str, float]]:
+    """Half-widths of quantities with one value, with the sign of their change to the finer mesh."""
+    finer = {} if fine is None else fine.values
+    signed: dict[int, dict[str, float]] = {}
+    for owner, widths in component.half_widths.items():
+        for name, width in widths.items():
+            number, other = value.values[owner][name], finer.get(owner, {}).get(name)
+            if not isinstance(width, tuple) and not isinstance(number, tuple) and not isinstance(other, tuple | None):
+                signed.setdefault(owner, {})[name] = math.copysign(width, other - number)
+    return signed
 
 
 def start_component(case: Case, signals: SectionedSignals, others: Sequence[Evaluation]) -> Component:

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.figure_data import ExtremePlace
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.grading.case_conformity import count_passing_starts, find_case_conformity
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_identity import compare_with_library, limits_digest, list_limit_changes
 from pantocheck.conformance.grading.case_verdict import judge_case
@@ -39,13 +41,14 @@ _EMPTY: dict[str, object] = {
 """Parts of a result without grades."""
 
 
-def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
+def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> CaseResult:
     """Grade the outcome of a case.
 
     Args:
         case: Case with its limits.
         outcome: Outcome of the case on a system.
         lowest_trust: Lowest trust of the limits that count.
+        rule: Decision rule.
     """
     match outcome:
         case Skipped(reason):
@@ -53,10 +56,10 @@ def grade_case(case: Case, outcome: Outcome, lowest_trust: Trust) -> CaseResult:
         case Errored(reason):
             return build_ungraded(case, "error", reason)
         case delivered:
-            return grade_evaluation(CaseEvaluation(case, delivered), lowest_trust)
+            return grade_evaluation(CaseEvaluation(case, delivered), lowest_trust, rule)
 
 
-def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseResult:
+def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> CaseResult:
     """Grade an evaluated delivery by the limits of its case."""
     case, delivered, signals = evaluation.case, evaluation.delivered, evaluation.signals
     if evaluation.mismatch is not None:
@@ -64,7 +67,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
     values, contradiction = evaluation.values, evaluation.contradiction
     findings = evaluation.findings.values()
     # Quantities of a contradicted record are shown but not graded: some would pass.
-    criteria = evaluation.grade_limits(lowest_trust) if contradiction is None else []
+    criteria = evaluation.grade_limits(lowest_trust, rule) if contradiction is None else []
     supports = case.line.geometry.span_limits
     record, start = evaluation.record_facts, evaluation.start_agreement
     verdict = judge_case((criterion.verdict for criterion in criteria), record)
@@ -88,6 +91,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust) -> CaseRes
             *([start.text] if record is not None and start.state == "not stated" else []),
         ],
         criteria=criteria,
+        conformity=find_case_conformity(criteria, count_passing_starts(evaluation, criteria)),
         record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         skipped=key_by_owner(values.evaluation.skipped),

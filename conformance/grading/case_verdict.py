@@ -4,7 +4,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import get_args
 
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, format_decision, parse_decision
 from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
+from pantocheck.conformance.grading.case_conformity import find_conformity
 from pantocheck.conformance.grading.procedure_verdict import decide_procedure, judge_procedure
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
@@ -50,6 +52,8 @@ class Participation:
     """Verdicts that decide; the worst of them is the verdict of the run."""
     verification_only: tuple[str, ...] = ()
     """Ids of the cases that take part in the verification only."""
+    decision: DecisionRule = SIMPLE
+    """Decision rule of the criteria."""
 
     def judge_run(self, cases: Iterable[tuple[str, Verdict]], system: str) -> Verdict:
         """Verdict of a run: the worst case that takes part; `info` if none does.
@@ -105,6 +109,8 @@ class Participation:
         return results.model_copy(
             update={
                 "cases": cases,
+                "decision": format_decision(self.decision),
+                "conformity": find_conformity([case for case in cases if case.id not in self.information]),
                 "verdict": verdict,
                 "procedure": procedure,
                 "criteria_verdict": by_name["criteria"],
@@ -131,6 +137,7 @@ def read_participation(results: Results) -> Participation:
         accepted_unverified=tuple(results.accepted_unverified),
         requested=tuple(results.requested),
         verification_only=tuple(results.verification_only),
+        decision=parse_decision(results.decision, "results, key decision"),
     )
 
 

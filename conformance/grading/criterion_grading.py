@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.criterion import Criterion, LimitTarget, Requirement
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, judge_by_rule
 from pantocheck.conformance.core.findings import IMPOSED_REASON, grade_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
-from pantocheck.conformance.core.verdicts import Verdict, judge, margin
+from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
 from pantocheck.conformance.quantities.registry import unit_of
@@ -32,7 +33,7 @@ class GradedValues:
     spread: ErrorsByQuantity = field(default_factory=dict)
     """Largest change when the analysis section is shifted span by span."""
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
-    """Half-widths of the 95 % intervals by component."""
+    """Half-widths by component."""
 
 
 def convert_limit(limit: Limit) -> Requirement:
@@ -50,13 +51,23 @@ def convert_limit(limit: Limit) -> Requirement:
     )
 
 
-def grade_limit(limit: Limit, values: GradedValues, lowest_trust: Trust, limit_uncertainty: float = 0.0) -> Criterion:
+def grade_limit(
+    limit: Limit,
+    values: GradedValues,
+    lowest_trust: Trust,
+    limit_uncertainty: float = 0.0,
+    rule: DecisionRule = SIMPLE,
+) -> Criterion:
     """Grade a quantity by a limit; parameters as in `grade_requirement`."""
-    return grade_requirement(convert_limit(limit), values, lowest_trust, limit_uncertainty)
+    return grade_requirement(convert_limit(limit), values, lowest_trust, limit_uncertainty, rule)
 
 
 def grade_requirement(
-    requirement: Requirement, values: GradedValues, lowest_trust: Trust | Computed, limit_uncertainty: float = 0.0
+    requirement: Requirement,
+    values: GradedValues,
+    lowest_trust: Trust | Computed,
+    limit_uncertainty: float = 0.0,
+    rule: DecisionRule = SIMPLE,
 ) -> Criterion:
     """Grade a quantity of a run.
 
@@ -65,6 +76,7 @@ def grade_requirement(
         values: Quantities of the run.
         lowest_trust: Lowest trust of the limits that count.
         limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
+        rule: Decision rule.
     """
     name, owner, item = requirement.target
     value = find_value(requirement.target, values.evaluation.values)
@@ -81,8 +93,10 @@ def grade_requirement(
             if (half_width := select_item(width, item)) is not None
         },
         limit_uncertainty=limit_uncertainty,
+        draws=values.uncertainty.sample.get(owner, {}).get(name, ()),
+        unknown=values.uncertainty.list_unknown(owner, name),
     )
-    return build_criterion(requirement, value, None, lowest_trust, errors)
+    return build_criterion(requirement, value, None, lowest_trust, errors, rule=rule)
 
 
 def build_criterion(
@@ -92,6 +106,7 @@ def build_criterion(
     lowest_trust: Trust | Computed,
     errors: ValueErrors = NO_ERRORS,
     place: str = "",
+    rule: DecisionRule = SIMPLE,
 ) -> Criterion:
     """Grade a value by its limits: the one way to a verdict with its reason, margin and remarks near a limit.
 
@@ -103,18 +118,23 @@ def build_criterion(
         lowest_trust: Lowest trust of the limits that count.
         errors: Errors of the value.
         place: Place of the value in words, behind the distance beyond a limit.
+        rule: Decision rule.
     """
     limits, reasons = (requirement.lower, requirement.upper), [] if missing is None else [missing]
     verdict: Verdict = "skip"
     if value is not None and limits != (None, None):
-        verdict = judge(value, *limits)
-        if verdict == "fail":
-            reasons.append(_describe_distance(value, requirement) + place)
+        verdict, doubt = judge_by_rule(value, limits, errors, rule)
+        reasons += [_describe_distance(value, requirement) + place] if verdict == "fail" else [doubt] if doubt else []
         verdict = verdict if missing is None else "skip"
     reason = "; ".join(reasons) or None
     finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
     if not decides_verdict(requirement.trust, lowest_trust):
-        hypothetical = {"pass": "would pass", "fail": f"would fail: {reason}", "skip": f"not graded: {reason}"}[verdict]
+        hypothetical = {
+            "pass": "would pass",
+            "undecided": f"would be undecided: {reason}",
+            "fail": f"would fail: {reason}",
+            "skip": f"not graded: {reason}",
+        }[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
     elif finding is not None and (counted := lower_imposed_verdict(finding.role, verdict)) != verdict:
         verdict, reason = counted, IMPOSED_REASON
@@ -127,7 +147,9 @@ def build_criterion(
         discretisation_error=errors.discretisation,
         spread=errors.spread,
         reason=reason,
-        uncertainty=errors.uncertainty,
+        uncertainty=None if value is None else errors.find_half_width(value),
+        conformity=None if value is None or limits == (None, None) else errors.find_conformity(value, limits),
+        draws=list(errors.draws),
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
         close=near_limit_remarks(value, limits, requirement.unit, errors),

@@ -3,12 +3,16 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.cases.start_and_section import shift_section
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
-from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
-from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.quantities.uncertainty import RECORD_COMPONENTS, Component, Uncertainty
+from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, NORMAL_QUANTILE, bootstrap_deviations
 from pantocheck.conformance.records.record_preparation import PreparedRecord
+from pantocheck.conformance.records.record_resolution import resolution_component, sampling_component
 
 SAMPLE_SAFETY_FACTOR = 1.25
 """Safety factor on the largest change of a few shifted sections or starts, which are a sample of all of them."""
@@ -27,14 +31,35 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
         span_m: Length of a span [m].
         digest: SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
     """
-    return Uncertainty(
-        {
-            "discretisation": ONE_RUN,
-            "start": ONE_RUN,
-            "section": shift_component(record, shift_section(record.section, span_m)),
-            "length": length_component(record.evaluated_pantographs, span_m, record.speed, digest),
-        }
+    sections = shift_section(record.section, span_m)
+    lengths = draw_lengths(record.evaluated_pantographs, span_m, record.speed, digest)
+    components: dict[ComponentName, Component] = {
+        "discretisation": ONE_RUN,
+        "start": ONE_RUN,
+        "section": shift_component(record, sections),
+        "length": length_component(lengths, span_m),
+        "sampling": sampling_component(record, None),
+        "resolution": resolution_component(record),
+    }
+    parts = SampleParts(
+        record.evaluation.values,
+        [record.evaluate_section(section).values for section in sections],
+        lengths,
+        bounds=add_bounds(components),
     )
+    return Uncertainty(components, record.evaluation.values, draw_sample(parts, digest))
+
+
+def add_bounds(components: Mapping[ComponentName, Component]) -> dict[int, dict[str, float]]:
+    """Largest changes by sampling rate and resolution together."""
+    bounds: dict[int, dict[str, float]] = {}
+    for name in RECORD_COMPONENTS:
+        for owner, quantities in components[name].half_widths.items():
+            for quantity, width in quantities.items():
+                if not isinstance(width, tuple):
+                    part = bounds.setdefault(owner, {})
+                    part[quantity] = part.get(quantity, 0.0) + width
+    return bounds
 
 
 def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> Component:
@@ -50,10 +75,10 @@ def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, f
     return Component("analysis section shifted by up to three quarters of a span either way", widen_changes(widths))
 
 
-def length_component(
+def draw_lengths(
     pantographs: Mapping[int, PantographSignals | SignalsOutside], span_m: float, speed: float, digest: str
-) -> Component:
-    """Uncertainty from the length of the record, by a moving-block bootstrap with blocks of one span.
+) -> dict[int, dict[str, RealArray]]:
+    """Deviations of each quantity in records of the same length, by a moving-block bootstrap with blocks of one span.
 
     Args:
         pantographs: Signals by number from 1.
@@ -61,8 +86,14 @@ def length_component(
         speed: Speed of the train [m/s].
         digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
+    return {number: bootstrap_deviations(signals, span_m / speed, digest) for number, signals in pantographs.items()}
+
+
+def length_component(deviations: Mapping[int, Mapping[str, RealArray]], span_m: float) -> Component:
+    """Uncertainty from the length of the record, from `draw_lengths`."""
     widths = {
-        number: bootstrap_uncertainties(signals, span_m / speed, digest) for number, signals in pantographs.items()
+        number: {name: float(NORMAL_QUANTILE * values.std()) for name, values in part.items()}
+        for number, part in deviations.items()
     }
     if not any(widths.values()):
         return Component(f"not known: the analysis section is shorter than {FEWEST_BLOCKS} spans")

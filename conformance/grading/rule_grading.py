@@ -9,13 +9,13 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit, is_per_pantograph
 from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit, skip_unlimited
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.quantities.registry import unit_of
-from pantocheck.conformance.quantities.uncertainty import combine_half_widths
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,8 @@ class RuleGrading:
     """Measured record for rules that compare."""
     trust: Trust
     """Lowest trust of the rules that count."""
+    decision: DecisionRule = SIMPLE
+    """Decision rule."""
 
     def grade_profile(self, profile: Profile, limits: Sequence[Limit]) -> list[Criterion]:
         """Criteria of the rules of a profile, and of the user's own limits, which replace rules of the same quantity.
@@ -80,7 +82,7 @@ class RuleGrading:
             )
 
     def _grade_limit(self, limit: Limit) -> Criterion:
-        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit))
+        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit), self.decision)
 
     def _resolve_rule(self, rule: Rule, owner: int) -> Limit:
         """Limit that follows from a rule for this record."""
@@ -97,10 +99,9 @@ class RuleGrading:
         )
 
     def _limit_uncertainty(self, limit: Limit) -> float:
-        components = (
-            {} if self.measured is None else self.measured.uncertainty.list_components(limit.owner, limit.quantity)
-        )
-        combined = combine_half_widths(components)
+        if self.measured is None:
+            return 0.0
+        combined = self.measured.uncertainty.combine(limit.owner, limit.quantity)
         return combined if isinstance(combined, float) else 0.0
 
     def _source(self, rule: Rule, compared: float | None) -> str:

@@ -60,4 +60,5 @@ def list_verification_components(start: StartState | None) -> tuple[ComponentNam
     Args:
         start: Start of the record against that of its case; None without a record.
     """
-    return ("discretisation", "start") if start == "differs" else ("discretisation",)
+    record: tuple[ComponentName, ...] = ("discretisation", "sampling", "resolution")
+    return (*record, "start") if start == "differs" else record

@@ -1,7 +1,6 @@
-"""Uncertainty of values: half-widths of 95 % intervals by component, combined by the root of the sum of squares.
+"""Uncertainty of values: half-widths by component, and the interval that holds 95 % of their joint sample.
 
-The components are independent, so that their variances add up (JCGM 100:2008, 5.1.2; ASME V&V 20-2009). A component
-that cannot be determined is named with the reason; it is not zero.
+A component that cannot be determined is named with the reason; it is not zero.
 """
 
 import math
@@ -9,7 +8,17 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.core.near_limit import interval_half_width
 from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
+
+RECORD_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution")
+"""Components that bound what a record with fewer samples or digits hides."""
+
+UNKNOWN = "not known"
+"""Beginning of the basis of a component that is not known."""
+
+JointSample = Mapping[int, Mapping[str, tuple[float, ...]]]
+"""Draws of the quantities by pantograph (0: the line) and name; draws of the same number belong together."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +37,10 @@ class Uncertainty:
 
     components: Mapping[ComponentName, Component] = field(default_factory=dict)
     """Components; those without half-widths included."""
+    values: ValuesByOwner = field(default_factory=dict)
+    """Values that the sample belongs to."""
+    sample: JointSample = field(default_factory=dict)
+    """Joint sample; empty: none was drawn."""
 
     def list_components(self, owner: int, quantity: str) -> dict[ComponentName, Value]:
         """Half-widths of a quantity by component; an unknown component is left out."""
@@ -40,8 +53,17 @@ class Uncertainty:
 
     @property
     def unknown_components(self) -> tuple[ComponentName, ...]:
-        """Components without a half-width of any quantity."""
-        return tuple(name for name, part in self.components.items() if not part.half_widths)
+        """Components that are not known; one that does not apply is none of them."""
+        return tuple(name for name, part in self.components.items() if part.basis.startswith(UNKNOWN))
+
+    def list_unknown(self, owner: int, quantity: str) -> tuple[ComponentName, ...]:
+        """Components that are not known for a quantity: of all, or one of the record that only others have."""
+        known = self.list_components(owner, quantity)
+        lacking = [
+            name for name in RECORD_COMPONENTS if name not in known and name in self.components
+            and self.components[name].half_widths
+        ]  # fmt: skip
+        return (*self.unknown_components, *lacking)
 
     @property
     def basis(self) -> dict[ComponentName, str]:
@@ -63,15 +85,24 @@ class Uncertainty:
 
     @property
     def combined(self) -> dict[int, dict[str, Value]]:
-        """Combined half-widths by pantograph and quantity."""
+        """Half-widths of the 95 % intervals by pantograph and quantity."""
         return {
-            owner: {name: combine_half_widths(parts) for name, parts in quantities.items()}
+            owner: {name: self.combine(owner, name) for name in quantities}
             for owner, quantities in self.by_quantity.items()
         }
 
+    def combine(self, owner: int, quantity: str) -> Value:
+        """Half-width of the 95 % interval of a quantity; that of its components where no sample was drawn."""
+        value, draws = self.values.get(owner, {}).get(quantity), self.sample.get(owner, {}).get(quantity, ())
+        if draws and isinstance(value, float | int):
+            return interval_half_width(value, draws)
+        return combine_half_widths(self.list_components(owner, quantity))
+
 
 def combine_half_widths(components: Mapping[ComponentName, Value]) -> Value:
-    """Combine the half-widths of independent components: the root of the sum of their squares.
+    """Combine half-widths without a joint sample: the root of the sum of their squares.
+
+    Without a sample, a quantity has the component of mesh and time step alone.
 
     Args:
         components: Half-widths; of a quantity with several values, one per item.

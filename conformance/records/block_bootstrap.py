@@ -96,6 +96,14 @@ def bootstrap_uncertainties(
     Returns:
         Half-widths by quantity; empty if the analysis section is not covered or too short.
     """
+    deviations = bootstrap_deviations(signals, block_s, digest)
+    return {name: float(NORMAL_QUANTILE * values.std()) for name, values in deviations.items()}
+
+
+def bootstrap_deviations(
+    signals: PantographSignals | SignalsOutside, block_s: float, digest: str
+) -> dict[str, RealArray]:
+    """Deviations of the statistics of the replicates from their mean, by quantity; parameters as above."""
     try:
         replicates = _draw_blocks(signals.delivered.size, block_s * signals.force.rate, digest)
     except (SectionNotCovered, ChannelMissing):
@@ -104,14 +112,15 @@ def bootstrap_uncertainties(
         return {}
     # The variance of n blocks about their own mean is (n - 1) / n of the variance about the true mean.
     blocks = replicates.starts.shape[1]
-    wider = NORMAL_QUANTILE * np.sqrt(blocks / (blocks - 1))
-    uncertainties = {}
+    wider = np.sqrt(blocks / (blocks - 1))
+    deviations = {}
     for quantity in (*PANTOGRAPH_QUANTITIES, *list_stated(signals)):
         try:
-            uncertainties[quantity.name] = float(wider * quantity.compute(signals, replicates).std())
+            values = quantity.compute(signals, replicates)
+            deviations[quantity.name] = wider * (values - values.mean())
         except QuantityUnavailable:
             continue
-    return uncertainties
+    return deviations
 
 
 def _draw_blocks(size: int, block: float, digest: str) -> BlockReplicates | None:

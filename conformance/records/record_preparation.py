@@ -72,10 +72,14 @@ class PreparedRecord:
             return self.pantographs
         return {number: SignalsOutside(signals, self.excluded) for number, signals in self.pantographs.items()}
 
+    def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
+        """Evaluate the quantities of other channels over the analysis section."""
+        return replace(self, pantographs=dict(pantographs), line=line).evaluation
+
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
         moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-        return replace(self, pantographs=moved, line=replace(self.line, section=section)).evaluation
+        return self.evaluate_channels(moved, replace(self.line, section=section))
 
 
 @dataclass(frozen=True)

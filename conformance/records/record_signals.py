@@ -54,7 +54,11 @@ class RecordSignals:
     @cached_property
     def evaluation(self) -> Evaluation:
         """Quantities over the analysis section of the record."""
-        return self._add_stretches(evaluate_signals(self.pantographs, self.line), self.pantographs)
+        return self.evaluate_channels(self.pantographs, self.line)
+
+    def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
+        """Evaluate the quantities of other channels over the analysis section."""
+        return self._add_stretches(evaluate_signals(pantographs, line), pantographs)
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
         """Evaluate the quantities over another analysis section [m, m]; the force is not filtered again."""

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.case import CaseOrigin
 from pantocheck.conformance.core.criterion import CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.core.decision import DecisionText
 from pantocheck.conformance.core.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.core.findings import FindingCounts
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
@@ -129,6 +130,17 @@ def name_case(case_id: str, library: LibraryIdentity) -> str:
     return f"modified copy of {case_id}" if library == "modified" else case_id
 
 
+class CaseConformity(ResultsPart):
+    """Conformity of all counted values of a case together."""
+
+    probability: Annotated[float, Field(ge=0, le=1)]
+    """Share of the draws of the joint sample with every counted value inside its limits."""
+    starts: Annotated[int, Field(ge=0)]
+    """Number of starts that were run, that of the case included; 0: the system ran no other start."""
+    passing_starts: Annotated[int, Field(ge=0)]
+    """Number of these starts with every counted value inside its limits."""
+
+
 Quantities = dict[Owner, dict[str, Number]]
 """Values by owner and name of the quantity."""
 
@@ -180,6 +192,8 @@ class CaseResult(ResultsPart):
     steps: list[Step] = []
     """Steps of the procedure that the case belongs to."""
     criteria: list[Criterion]
+    conformity: CaseConformity | None = None
+    """Probability that all counted values lie inside their limits; null: no value has a joint sample."""
     quantities: Quantities
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[dict[Owner, dict[str, float]], Field(default_factory=dict)]
@@ -236,6 +250,10 @@ class Results(ResultsPart):
     verification_only: list[str] = []
     """Ids of the cases without limits that count, which take part in the verification only."""
     trust: Trust
+    decision: DecisionText = "simple"
+    """Decision rule of the criteria."""
+    conformity: Annotated[float | None, Field(ge=0, le=1)] = None
+    """Probability that all counted values of the cases that take part lie inside their limits; null: not known."""
     started: str | None
     platform: Platform
     administration: Administration | None = None

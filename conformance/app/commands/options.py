@@ -55,6 +55,14 @@ TrustOption = Annotated[
         help="Lowest trust of limits that count: primary, secondary or provisional.", show_default="secondary"
     ),
 ]
+DecisionOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="RULE",
+        help="Decision rule: simple, guarded, or shared-risk:P with the largest risk P of a wrong acceptance.",
+        show_default="simple",
+    ),
+]
 VerdictsOption = Annotated[
     str | None,
     typer.Option(
@@ -85,7 +93,13 @@ def read_stated_administration(file: Path | None, report_number: str | None) -> 
     return stated if report_number is None else {**stated, "report_number": report_number}
 
 
-OPTIONS = {"drift_pct": "--drift", "jobs": "--jobs", "timeout_s": "--timeout", "trust": "--trust"}
+OPTIONS = {
+    "drift_pct": "--drift",
+    "decision": "--decision",
+    "jobs": "--jobs",
+    "timeout_s": "--timeout",
+    "trust": "--trust",
+}
 """Options of the command line by their key in a plan, for messages."""
 
 

@@ -13,6 +13,7 @@ from pantocheck.conformance.app.commands.options import (
     AcceptUnverifiedOption,
     AdministrationOption,
     BaselineOption,
+    DecisionOption,
     DriftOption,
     FormatsOption,
     OutOption,
@@ -30,6 +31,7 @@ from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import interruption_exit_code
@@ -65,6 +67,7 @@ def run_command(
     out: OutOption = None,
     formats: FormatsOption = None,
     trust: TrustOption = None,
+    decision: DecisionOption = None,
     verdicts: VerdictsOption = None,
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
@@ -119,6 +122,7 @@ def run_command(
         out=out,
         formats=formats,
         trust=trust,
+        decision=decision,
         verdicts=verdicts,
         limits=limits,
         accept_unverified=tuple(accept_unverified) if accept_unverified else None,
@@ -186,6 +190,7 @@ def assess_command(
     out: OutOption = None,
     formats: FormatsOption = None,
     trust: TrustOption = None,
+    decision: DecisionOption = None,
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace the rules of the profile.")
     ] = None,
@@ -213,6 +218,7 @@ def assess_command(
         out=out,
         formats=formats,
         trust=trust,
+        decision=decision,
         drift_pct=drift,
         administration=read_stated_administration(administration, report_number),
     )
@@ -234,7 +240,9 @@ def assess_command(
     own_limits = repeat_limits(own_limits, pantographs)
     check_writable(folder)
     places = locate_record(record, profile, limits)
-    participation = Participation(accepted_unverified=tuple(accept_unverified or ()))
+    participation = Participation(
+        accepted_unverified=tuple(accept_unverified or ()), decision=parse_decision(options.decision)
+    )
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     results = results.model_copy(update={"administration": options.administration})
     with receive_signals(folder / FILES["json"], open_cases=0) as interruption:

@@ -52,7 +52,8 @@ class PlanSession:
             with FileLock(self.folder / f"{_hash(case.id)}.lock"):
                 if (result := self._read(case)) is None:
                     trust = self.prepared.plan.trust
-                    result = run_when_ready(case, self._start_system(), trust, self._finished, self.cases)
+                    rule = self.prepared.participation.decision
+                    result = run_when_ready(case, self._start_system(), trust, self._finished, self.cases, rule)
                     write_atomically(self._file(case.id), result.model_dump_json().encode())
             self._finished[case.id] = result
         return self._finished[case.id]
