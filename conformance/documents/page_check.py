@@ -34,6 +34,7 @@ from pantocheck.conformance.documents.document_reading import (
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.pages.two_verdicts import mark_results
 from pantocheck.conformance.pages.words import name_verdict
 
 # Parts of an HTML page that could run, fetch or hide something.
@@ -266,7 +267,7 @@ def _compare_pdf(document: PdfCertificate) -> PageDifferences:
 
 def _find_other_verdict(document: Certificate) -> Iterator[str]:
     """Title and heading of every version name the verdict."""
-    word = name_verdict(document.results.verdict)
+    word = name_verdict(mark_results(document.results))
     match document:
         case ResultsFile():
             return
@@ -280,7 +281,7 @@ def _find_other_verdict(document: Certificate) -> Iterator[str]:
             assert_never(never)
     if not title.startswith(word):
         yield f"the title does not begin with the verdict {word}: {quote(title)}"
-    if word not in heading.split():
+    if word not in heading:
         yield f"the first page does not print the verdict {word} in its heading: {quote(heading)}"
 
 

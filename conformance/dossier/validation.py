@@ -89,13 +89,12 @@ class Validation:
     def participation(self) -> Participation:
         """Verdicts that decide, accepted records, and the cases of steps that are not required."""
         file = self.dossier.file
-        ids = [case.id for case in self.dossier.cases]
         for_information = [step for step in STEP_NAMES if step not in file.required]
         cases = (case for name in for_information if name in self.finished for case in self.finished[name].cases)
         return Participation(
             information=tuple(case.id for case in cases),
             accepted_unverified=file.accept_unverified,
-            requested=choose_verdicts(file.reference.verdicts, file.system, ids),
+            requested=choose_verdicts(file.reference.verdicts, file.system),
             decision=parse_decision(file.decision),
         )
 

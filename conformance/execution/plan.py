@@ -120,7 +120,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     cases = select_cases(plan.cases or ["*"], parse_changes(plan.set), catalogue)
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
-    requested = choose_verdicts(plan.verdicts, plan.system, [case.id for case in cases])
+    requested = choose_verdicts(plan.verdicts, plan.system)
     selection = CaseSelection(plan.trust, requested)
     if not plan.cases:
         cases = selection.keep_counting(cases)

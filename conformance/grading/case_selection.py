@@ -15,19 +15,17 @@ VerdictChoice = Literal["criteria", "verification", "both"]
 BOTH: tuple[VerdictName, ...] = ("criteria", "verification")
 
 
-def choose_verdicts(choice: VerdictChoice | None, system: str, cases: Sequence[str]) -> tuple[VerdictName, ...]:
+def choose_verdicts(choice: VerdictChoice | None, system: str) -> tuple[VerdictName, ...]:
     """Verdicts that decide a run.
 
     Args:
         choice: Choice of the user. By default, the built-in simulator, which computed the converged values, is judged
-            by the criteria; any other system by both verdicts, where a case has converged values.
+            by the criteria; any other system by both verdicts, and is unconfirmed where a case has no converged values.
         system: System under test, `builtin` or any other.
-        cases: Ids of the cases.
     """
     if choice is not None:
         return BOTH if choice == "both" else (choice,)
-    verifiable = any(find_converged(case) is not None for case in cases)
-    return BOTH if verifiable and system != "builtin" else ("criteria",)
+    return ("criteria",) if system == "builtin" else BOTH
 
 
 @dataclass(frozen=True)

@@ -56,14 +56,14 @@ class Participation:
     """Decision rule of the criteria."""
 
     def judge_run(self, cases: Iterable[tuple[str, Verdict]], system: str) -> Verdict:
-        """Verdict of a run: the worst case that takes part; `info` if none does.
+        """Verdict of a run: the worst judged case that takes part; `info` if none is judged.
 
         Args:
             cases: Id and verdict of each case.
             system: Name of the graded system.
         """
         accepted = system in self.accepted_unverified
-        return worst_verdict(
+        return judge_parts(
             "pass" if accepted and verdict == "unverified" else verdict
             for case, verdict in cases
             if case not in self.information
@@ -78,21 +78,25 @@ class Participation:
         """Case with the worst of the requested verdicts in which it takes part.
 
         A drift from a baseline, and an error, count whichever verdicts are requested. A baseline without drift improves
-        no verdict.
+        no verdict. A run of a train that lacks the requested verification is unconfirmed at best.
         """
         verdicts = [self._case_verdict(name, case) for name in self.requested]
         drift = [criterion.verdict for criterion in case.criteria if criterion.is_drift]
         drift += [] if case.baseline is None else [case.baseline.verdict]
         errors = [verdict for verdict in (case.criteria_verdict, case.verdict) if verdict == "error"]
         requested = worst_verdict(verdict for verdict in (*verdicts, *errors) if verdict is not None)
+        lacking = "verification" in self.requested and case.verification is None
+        lacking = lacking and case.record is not None and case.profile is None
+        requested = "unverified" if requested == "pass" and lacking else requested
         verdict = worst_verdict([requested, *drift])
         return case.model_copy(update={"verdict": verdict})
 
     def decide_run(self, results: Results) -> Results:
         """Results with the verdicts of their cases and of the run.
 
-        A requested verdict in which no case takes part is `info`. With a procedure, its required steps decide. Where
-        some cases are compared with a baseline, a case that is not, such as an interrupted one, is skipped.
+        A requested verdict in which no case takes part leaves a pass unconfirmed. With a procedure, its required
+        steps decide. Where some cases are compared with a baseline, one that is not, such as an interrupted one, is
+        skipped.
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
         by_name = {name: self.judge_one_verdict(name, cases, system) for name in get_args(VerdictName)}
@@ -101,7 +105,8 @@ class Participation:
             (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases
         ]
         has_baseline = any(case.baseline is not None for case in cases)
-        verdict = worst_verdict([overall, *(by_name[name] or "info" for name in self.requested)])
+        verdict = judge_parts([overall, *(by_name[name] or "unverified" for name in self.requested)])
+        verdict = "info" if overall == "info" else verdict
         procedure = results.procedure
         if procedure is not None:
             procedure = decide_procedure(procedure, cases, system in self.accepted_unverified)

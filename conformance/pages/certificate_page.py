@@ -40,11 +40,13 @@ from pantocheck.conformance.pages.two_verdicts import (
     case_verdict,
     describe_comparison,
     list_criteria,
+    mark_results,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
     build_headline,
     describe_record,
     list_reasons,
+    state_decision,
     state_incomplete,
     summarise_case,
 )
@@ -129,10 +131,15 @@ def build_header(results: Results) -> doc.VerdictHeader:
     trust = f" Lowest trust of the limits that count: {results.trust} ({level['meaning']})." if level else ""
     return doc.VerdictHeader(
         heading=HEADING,
-        verdict=results.verdict,
+        verdict=mark_results(results),
         statement=results.statement,
         headline=build_headline(results),
-        subject=" ".join(filter(None, (f"{title}{system}, checked with {suite}.{trust}", state_incomplete(results)))),
+        subject=" ".join(
+            filter(
+                None,
+                (f"{title}{system}, checked with {suite}.{trust}", state_decision(results), state_incomplete(results)),
+            )
+        ),
         footer=f"{suite} · {system}",
     )
 

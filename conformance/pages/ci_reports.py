@@ -24,7 +24,8 @@ from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 from pantocheck.conformance.results.procedure_format import ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
-TEST_ELEMENTS = {"fail": "failure", "error": "error", "skip": "skipped", "info": "skipped", "unverified": "failure"}
+TEST_ELEMENTS = {"error": "error", **dict.fromkeys(("fail", "undecided", "unverified"), "failure")}
+TEST_ELEMENTS |= dict.fromkeys(("skip", "info"), "skipped")
 """Name of each verdict in JUnit; a test without such an element has passed."""
 
 
@@ -189,7 +190,13 @@ def _test_case(test: GradedTest) -> ElementTree.Element:
 # Failed criteria at the lines of the files that state their limits, for the page of a change.
 Severity = Literal["error", "warning"]
 
-SEVERITIES: dict[str, Severity] = {"error": "error", "fail": "error", "unverified": "error", "skip": "warning"}
+SEVERITIES: dict[str, Severity] = {
+    "error": "error",
+    "fail": "error",
+    "undecided": "error",
+    "unverified": "error",
+    "skip": "warning",
+}
 """Severity of each verdict that keeps a pipeline from passing; a limit that does not count has none."""
 
 WORKSPACE_VARIABLES = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")

@@ -1,5 +1,6 @@
 """Table of the criteria of a case."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -17,6 +18,7 @@ from pantocheck.conformance.pages.words import (
     read_words,
     replace_minus,
 )
+from pantocheck.conformance.quantities.joint_sample import DRAWS
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import (
     explain_mark,
@@ -31,7 +33,8 @@ MARGIN_KEY = (
     "0 on a limit and negative outside. With one limit, the distance is divided by this limit; if it is 0, the margin "
     "is the distance itself with its unit. Bars: the grey band shows the range between the limits. A disc is a value "
     "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
-    "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known."
+    "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known. The strip "
+    "below is the joint sample of all components of the uncertainty: the darker, the likelier."
 )
 """Meaning of the margins and bars of all tables of criteria."""
 SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
@@ -75,7 +78,18 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
         limits=limits,
         margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion.trust or "",
-        remarks=tuple(filter(None, (criterion.reason, *close, remark_shift(criterion), _remark_limit(criterion)))),
+        remarks=tuple(
+            filter(
+                None,
+                (
+                    criterion.reason,
+                    *close,
+                    remark_shift(criterion),
+                    _remark_limit(criterion),
+                    describe_conformity(criterion.conformity) if close and criterion.conformity is not None else None,
+                ),
+            )
+        ),
     )
 
 
@@ -158,7 +172,26 @@ def _bar(criterion: Criterion, value: float) -> doc.Drawing:
     lower, upper, verdict = criterion.lower, criterion.upper, criterion.verdict
     meaning = read_words()["verdict"][verdict]["meaning"]
     text = "{}, limits {}".format(*format_beside_limits(value, lower, upper))
-    return doc.Drawing(draw_margin_bar(value, lower, upper, criterion.error, verdict), f"{meaning}: {text}")
+    chance = "" if criterion.conformity is None else f", {describe_conformity(criterion.conformity)}"
+    drawing = draw_margin_bar(value, lower, upper, criterion.error, verdict, criterion.draws)
+    return doc.Drawing(drawing, f"{meaning}: {text}{chance}")
+
+
+def describe_conformity(probability: float) -> str:
+    """Probability of conformity in words."""
+    return f"inside the limits with a probability of {format_probability(probability)}"
+
+
+def format_probability(probability: float) -> str:
+    """Share of a joint sample; one of 0 or 1 is stated as the bound that its size allows."""
+    bound = 1 / DRAWS
+    return (
+        f"below {bound:g}"
+        if probability < bound
+        else f"above {1 - bound:g}"
+        if probability > 1 - bound
+        else (f"{probability:.2g}")
+    )
 
 
 def error_name(criteria: Sequence[Criterion]) -> str:
@@ -203,10 +236,27 @@ MIDDLE = HEIGHT / 2
 BAR_REACH = 0.56
 # A value closer to an edge is drawn as an arrow.
 EDGE = 6.0
+# Width of a column of the strip of a sample.
+STRIP_WIDTH = 2.0
 
 
-def draw_margin_bar(value: float, lower: float | None, upper: float | None, error: float | None, verdict: str) -> str:
-    """SVG of the bar without text; the error is half the length of the whisker, the verdict selects the marker."""
+def draw_margin_bar(
+    value: float,
+    lower: float | None,
+    upper: float | None,
+    error: float | None,
+    verdict: str,
+    draws: Sequence[float] = (),
+) -> str:
+    """SVG of the bar without text.
+
+    Args:
+        value: Graded value.
+        lower, upper: Limits.
+        error: Half of the length of the whisker.
+        verdict: Verdict, which selects the marker.
+        draws: Joint sample, whose strip lies under the bar.
+    """
     centre, half = _scale(lower, upper)
 
     def across(x: float) -> float:
@@ -228,9 +278,21 @@ def draw_margin_bar(value: float, lower: float | None, upper: float | None, erro
         low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
         whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
         parts.append(f'<path d="{whisker}" stroke="#1a1d21" stroke-width="1"/>')
+    parts += _list_strip([across(draw) for draw in draws])
     parts.append(_marker(x, verdict))
     size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
+
+
+def _list_strip(places: Sequence[float]) -> Iterator[str]:
+    """Strip of a sample under the bar: columns whose darkness is their share of the largest column."""
+    counts = Counter(round(min(max(place, 0.0), WIDTH) / STRIP_WIDTH) for place in places)
+    for column, count in sorted(counts.items()):
+        x, shade = column * STRIP_WIDTH - STRIP_WIDTH / 2, max(count / max(counts.values()), 0.1)
+        yield (
+            f'<rect x="{x:g}" y="{HEIGHT - 3:g}" width="{STRIP_WIDTH:g}" height="3" fill="#1a1d21" '
+            f'fill-opacity="{shade:.2f}"/>'
+        )
 
 
 def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
+from pantocheck.conformance.pages.two_verdicts import mark_results
 from pantocheck.conformance.pages.words import clean_text, format_value, name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -139,7 +140,7 @@ def _describe_run(run: PublishedResults) -> tuple[doc.RichText, ...]:
     return (
         *map(clean_text, texts),
         clean_text(run.results.suite.version),
-        doc.VerdictMark(run.verdict(run.results.verdict)),
+        doc.VerdictMark(run.verdict(mark_results(run.results))),
         f"{passed} of {len(cases)}",
         doc.PageLink("certificate", f"{run.folder}/certificate.html"),
     )

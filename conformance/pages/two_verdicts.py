@@ -60,6 +60,22 @@ def select_criteria(results: Results, case: CaseResult) -> Iterator[Criterion]:
         yield from (row for row in list_criteria(case, name) if decides or row.is_drift)
 
 
+CLOSE = "close"
+"""Mark of a pass with values closer to a limit than their uncertainty."""
+
+
+def count_close(results: Results) -> int:
+    """Number of counted criteria inside their limits that are closer to a limit than their uncertainty."""
+    cases = [case for case in results.cases if case.id not in results.information]
+    rows = [row for case in cases for row in select_criteria(results, case)]
+    return sum(row.verdict == "pass" and row.is_close for row in rows)
+
+
+def mark_results(results: Results) -> str:
+    """Mark of a run: its verdict, or `close` for a pass with close values."""
+    return CLOSE if results.verdict == "pass" and count_close(results) else results.verdict
+
+
 def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
     """The verdicts of a run side by side; empty if there is one only."""
     names = _list_names(results)
@@ -113,7 +129,7 @@ def _describe_basis(results: Results, name: str) -> Iterator[str]:
             yield f"{count_noun(len(others), 'case was', 'cases were')} not compared."
         return
     rows = Counter(row.verdict for case in cases for row in list_criteria(case, name))
-    counted = sum(rows[verdict] for verdict in ("pass", "fail", "skip"))
+    counted = sum(rows[verdict] for verdict in ("pass", "undecided", "fail", "skip"))
     if counted:
         yield f"{rows['pass']} of {counted} counted criteria are inside their limits."
     if name == "verification":
@@ -124,13 +140,20 @@ def _describe_basis(results: Results, name: str) -> Iterator[str]:
 def verdict_sentences(results: Results) -> list[str]:
     """Sentence for the headline on the verdicts; none if there is one only."""
     names = _list_names(results)
-    if len(names) == 1:
-        return []
     parts = []
+    if results.system.kind != "builtin" and "verification" not in names and _is_run_of_cases(results):
+        parts.append("Verification up to 50 Hz: not asked")
+    elif len(names) == 1:
+        return []
     for name in names:
         note = "" if name == "baseline" or name in results.requested else " (for information)"
         parts.append(f"{SHORT_TITLES[name]}: {name_verdict(_run_verdict(results, name))}{note}")
     return [f"{'; '.join(parts)}."]
+
+
+def _is_run_of_cases(results: Results) -> bool:
+    """Whether a train runs on the line of a case: other records and studies have no verification."""
+    return any(case.profile is None and case.record is not None for case in results.cases)
 
 
 def describe_comparison(comparison: BaselineComparison) -> str:
@@ -178,6 +201,8 @@ COLOURS = {
     "info": "#24496e",
     "skip": "#625000",
     "unverified": "#7a3b00",
+    "undecided": "#7a3b00",
+    CLOSE: "#8a5a00",
     "error": "#5a1a66",
 }
 LETTER, MARGIN = 6.6, 8
@@ -197,6 +222,8 @@ def summarise_verdict(results: Results) -> str:
     verdicts = Counter(row.verdict for row in rows if not row.is_drift)
     counted = sum(count for verdict, count in verdicts.items() if verdict != "info")
     text = f"{word} {verdicts['pass']}/{counted}" if counted else word
+    if mark_results(results) == CLOSE:
+        text += f", {count_close(results)} close"
     if results.baseline_verdict not in (None, "pass"):
         text += f", baseline {name_verdict(results.baseline_verdict).lower()}"
     return f"{text}, modified copy" if any(case.library == "modified" for case in results.cases) else text
@@ -208,7 +235,7 @@ def render_badge(results: Results) -> str:
     widths = [round(len(text) * LETTER + 2 * MARGIN) for text in texts]
     total = sum(widths)
     starts = (0, widths[0])
-    fills = ("#3b4249", COLOURS[results.verdict])
+    fills = ("#3b4249", COLOURS[mark_results(results)])
     name = escape(": ".join(texts))
     parts = [
         f'<rect x="{x}" width="{width}" height="20" fill="{fill}"/>'

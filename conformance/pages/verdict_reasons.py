@@ -4,15 +4,16 @@ from collections import Counter
 from collections.abc import Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
+from pantocheck.conformance.core.decision import describe_decision, parse_decision
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.criteria_table import criterion_title, describe_counts
+from pantocheck.conformance.pages.criteria_table import criterion_title, describe_counts, format_probability
 from pantocheck.conformance.pages.document import BulletList, Section
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
-from pantocheck.conformance.pages.two_verdicts import list_criteria, select_criteria, verdict_sentences
+from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
 from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseConformity, CaseResult, Results
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -24,6 +25,7 @@ NAMES_SHOWN = 5
 CLAUSES = {
     "error": ("ends in an error", "end in an error"),
     "fail": ("fails", "fail"),
+    "undecided": ("is undecided", "are undecided"),
     "skip": ("could not be evaluated completely", "could not be evaluated completely"),
     "info": ("has no limit that counts", "have no limit that counts"),
     "unverified": ("has an unverified record", "have an unverified record"),
@@ -45,12 +47,19 @@ def build_headline(results: Results) -> str:
     passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
     pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
     grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
-    counted = sum(grades[verdict] for verdict in ("pass", "fail", "skip", "error"))
+    counted = sum(grades[verdict] for verdict in ("pass", "undecided", "fail", "skip", "error"))
     total = count_noun(len(cases), "case")
+    judged, unjudged = len(cases) - verdicts["info"], verdicts["info"]
     if not cases:
         sentences = ["No case takes part in the verdict."]
-    elif passed == len(cases) and results.verdict in ("pass", "unverified"):
-        sentences = [f"All {counted} counted criteria in {total} lie inside their limits."]
+    elif not judged:
+        sentences = [f"{count_noun(unjudged, 'case')} computed, no limit to judge {'it' if unjudged == 1 else 'them'}."]
+    elif passed == judged and results.verdict in ("pass", "unverified"):
+        close = count_close(results)
+        near = f", {close} of {counted} close to a limit" if close else ""
+        rest = f"; {count_noun(unjudged, 'case')} not judged" if unjudged else ""
+        total = count_noun(judged, "case")
+        sentences = [f"All {counted} counted criteria in {total} lie inside their limits{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
@@ -97,6 +106,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
     groups = {
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
+        "Undecided": [*map(_reason, _select(results, "undecided"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Drift from the baseline": [_reason(pair) for pair in drifts],
         "Not verified": [
@@ -116,9 +126,26 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
     )
 
 
+def state_decision(results: Results) -> str:
+    """Sentences on the decision rule, and on the probability that all counted values lie inside their limits."""
+    rule = describe_decision(parse_decision(results.decision, "results, key decision"))
+    parts = [f"Decision rule: {rule}."]
+    if results.conformity is not None:
+        shares = [f"{case.id} {_describe_share(case.conformity)}" for case in results.cases if case.conformity]
+        chance = format_probability(results.conformity)
+        parts.append(f"Probability that all counted values lie inside their limits: {chance} ({'; '.join(shares)}).")
+    return " ".join(parts)
+
+
+def _describe_share(conformity: CaseConformity) -> str:
+    """Probability of a case, and the share of its starts that pass."""
+    starts = f", {conformity.passing_starts} of {conformity.starts} starts pass" if conformity.starts else ""
+    return f"{format_probability(conformity.probability)}{starts}"
+
+
 def state_incomplete(results: Results) -> str | None:
     """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
-    counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "fail")]
+    counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "undecided", "fail")]
     missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]
     number = sum(map(bool, missing))
     if not number:
@@ -139,7 +166,7 @@ def summarise_case(case: CaseResult) -> str:
     words = read_words()["verdict"]
     parts = [
         f"{verdicts[verdict]} {words[verdict]['meaning'] if verdict != 'info' else 'with a limit that does not count'}"
-        for verdict in ("error", "fail", "skip", "pass", "info")
+        for verdict in ("error", "fail", "undecided", "skip", "pass", "info")
         if verdicts[verdict]
     ]
     return (

@@ -9,7 +9,6 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.guard import strip_control_characters
 from pantocheck.conformance.app.commands.output_settings import current_settings
-from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.registry import unit_of
 from pantocheck.conformance.results.incomplete_uncertainty import mark_half_width
 
@@ -136,13 +135,15 @@ def _cells(text: str) -> int:
     return Text(text).cell_len
 
 
-_STYLES: dict[Verdict, str] = {
+_STYLES: dict[str, str] = {
     "pass": "bold green",
     "fail": "bold red",
     "error": "bold red",
     "skip": "yellow",
     "info": "cyan",
     "unverified": "yellow",
+    "undecided": "yellow",
+    "close": "bold yellow",
 }
 
 
@@ -176,9 +177,9 @@ def build_table(
     return table
 
 
-def style_verdict(verdict: Verdict) -> Text:
-    """Verdict in capitals and in its colour."""
-    return Text(verdict.upper(), _STYLES[verdict])
+def style_verdict(verdict: str) -> Text:
+    """Verdict, or the mark of a pass with close values, in capitals and in its colour."""
+    return Text("PASS, CLOSE" if verdict == "close" else verdict.upper(), _STYLES[verdict])
 
 
 def escape_text(text: str) -> Text:

@@ -24,14 +24,22 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.scope_page import describe_changes
-from pantocheck.conformance.pages.two_verdicts import describe_comparison
-from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record
+from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_results
+from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record, state_decision
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
 from pantocheck.conformance.results.incomplete_uncertainty import explain_mark, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 
-EXIT_CODES: dict[Verdict, int] = {"pass": 0, "unverified": 1, "info": 1, "skip": 1, "fail": 1, "error": 2}
+EXIT_CODES: dict[Verdict, int] = {
+    "pass": 0,
+    "unverified": 1,
+    "info": 3,
+    "skip": 1,
+    "undecided": 1,
+    "fail": 1,
+    "error": 2,
+}
 """Exit code by verdict: 0 only for `pass`."""
 
 SHIFT_LEGEND = " shift: its change when the analysis section is shifted span by span;"
@@ -52,6 +60,7 @@ def build_results_output(
     headline = f"{build_headline(results)} System: {system}"
     parts: list[RenderableType] = [
         escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"),
+        escape_text(state_decision(results)),
     ]
     if results.administration is not None:
         stated = list_administration(results.administration)
@@ -67,7 +76,7 @@ def build_results_output(
         parts.append(Text(LEGEND.format(shift=shift), "dim"))
     parts += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
     return CommandOutput(
-        conclusion=style_verdict(results.verdict) + escape_text(f" {headline}"),
+        conclusion=style_verdict(mark_results(results)) + escape_text(f" {headline}"),
         data=results,
         details=parts,
         further=[part for case in results.cases for part in _list_all_values(case)],

@@ -127,7 +127,7 @@ class OpenedCase:
         Raises:
             InputError: The system is wrong.
         """
-        requested = choose_verdicts(None, system, [self.id])
+        requested = choose_verdicts(None, system)
         participation = Participation(requested=requested)
         return GradedResults(run_cases([self.case], choose_system(system), trust, participation=participation))
 

@@ -147,7 +147,7 @@ def run_and_grade(
     selected = _select_case(case, case_folders)
     if not isinstance(system, str | ReferenceSimulator):
         tested = ListedSystem(tested)
-    return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind, [selected.id]))
+    return _decide(run_case(selected, tested, trust), choose_verdicts(verdicts, tested.kind))
 
 
 def grade_arrays(
@@ -209,7 +209,7 @@ def grade_arrays(
         except RecordInvalid as error:
             raise InputError(f"pantocheck_assess, {error.channel}", error.found, "Correct this argument.") from None
     result = grade_case(graded_case, Delivered(record), trust)
-    return _decide(result, choose_verdicts(verdicts, "record", [graded_case.id]))
+    return _decide(result, choose_verdicts(verdicts, "record"))
 
 
 def _decide(result: CaseResult, requested: tuple[VerdictName, ...]) -> GradedCase:
