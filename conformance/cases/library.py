@@ -15,7 +15,7 @@ from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import LIBRARY, CaseEntry, Catalogue
 from pantocheck.conformance.cases.input_changes import InputChange
 from pantocheck.conformance.cases.lift_force import resolve_lift_force
-from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, repeat_limits
+from pantocheck.conformance.cases.limits import Limit, LimitOverride, LimitsFile, own_limits, repeat_limits
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.line.library_folder import library_folder
@@ -208,13 +208,18 @@ def load_case(path: Path, changes: Sequence[InputChange] = (), origin: CaseOrigi
     if disagreements := [*find_disagreements(case, f"case '{path.name}'")]:
         raise join_errors(disagreements)
     # The limits of a library case were published for its inputs, not for changed ones.
-    is_published = bool(case.changes) and case.id in list_library(library_folder())
-    return case.without_limits() if is_published else case
+    library = list_library(library_folder())
+    if case.changes and case.id in library:
+        return case.without_limits()
+    if path.resolve() in {other.resolve() for other in library.values()}:
+        return case
+    published = load_case(library[case.id]).limits if case.id in library else ()
+    return replace(case, limits=own_limits(case.limits, published))
 
 
 def read_limits(path: Path) -> tuple[LimitOverride, ...]:
-    """Read a limits file."""
-    return read_model(path, LimitsFile, "limits").limit
+    """Read a limits file: its limits are own, whatever they claim."""
+    return own_limits(read_model(path, LimitsFile, "limits").limit)
 
 
 def overlay_limits(cases: Sequence[Case], limits: Sequence[LimitOverride]) -> list[Case]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from pantocheck.conformance.cases.case_file import PantographByLaw, PantographUse
 from pantocheck.conformance.core.input_error import InputError, suggest_names
+from pantocheck.conformance.core.sourced_table import NO_TRUST
 from pantocheck.conformance.pantograph.force_law import (
     LARGEST_FORCE_N,
     AppliedForceLaw,
@@ -137,7 +138,7 @@ def list_mean_force_rules() -> dict[str, MeanForceLaw]:
             constant_N=rule.upper.constant,
             quadratic_N_h2_km2=rule.upper.per_speed_squared,
             above_km_h=rule.upper.above_km_h or 0.0,
-            trust=rule.trust,
+            trust=NO_TRUST if rule.trust == "own" else rule.trust,
             source=rule.source,
             note=f"rule of the profile {name}",
         )

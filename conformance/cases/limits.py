@@ -19,7 +19,7 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
-from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.trust import LimitTrust
 from pantocheck.conformance.quantities.registry import QUANTITIES
 
 FiniteBound = Annotated[float, Field(ge=-1e12, le=1e12)]
@@ -56,7 +56,7 @@ class Limit(InputTable):
     """Lower bound, in the unit of the quantity."""
     upper: FiniteBound | None = None
     """Upper bound, in the unit of the quantity."""
-    trust: Trust = NO_TRUST
+    trust: LimitTrust = NO_TRUST
     """Trust in the limit."""
     source: str | list[str] = NO_SOURCE
     """Source of the limit: keys of sources.toml, or free text."""
@@ -93,6 +93,35 @@ class Limit(InputTable):
 
 
 AnyLimit = TypeVar("AnyLimit", bound=Limit)
+
+OWN_LIMIT = "own limit"
+"""First source of a limit of the user; the sources that it names follow."""
+
+
+def own_source(source: str | list[str]) -> list[str]:
+    """Sources of a limit or tolerance of the user: first that it is own, then those that it names."""
+    named = [source] if isinstance(source, str) else source
+    return [OWN_LIMIT, *(text for text in named if text not in (NO_SOURCE, OWN_LIMIT))]
+
+
+def own_limits(limits: Iterable[AnyLimit], library: Iterable[Limit] = ()) -> tuple[AnyLimit, ...]:
+    """Limits of a user with the trust `own`, whatever they claim; those that the library states remain as they are.
+
+    Args:
+        limits: Limits of a user.
+        library: Limits of the library for the same case.
+    """
+    published = [_content(limit) for limit in library]
+    return tuple(
+        limit
+        if _content(limit) in published
+        else limit.model_copy(update={"trust": "own", "source": own_source(limit.source)})
+        for limit in limits
+    )
+
+
+def _content(limit: Limit) -> tuple[object, ...]:
+    return limit.target, limit.lower, limit.upper, limit.trust, limit.source, limit.is_imposed
 
 
 def repeat_limits(limits: Iterable[AnyLimit], pantographs: int) -> tuple[AnyLimit, ...]:

@@ -1,12 +1,12 @@
 """Profiles: rules for the assessment of a record without a case, for example for the acceptance of a line."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from pantocheck.conformance.cases.limits import QuantityName
+from pantocheck.conformance.cases.limits import QuantityName, own_source
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
@@ -19,7 +19,7 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.core.toml_file import read_model
-from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.trust import LimitTrust
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -80,7 +80,7 @@ class Rule(InputTable):
     """Largest difference from the measured value, in the unit of the quantity."""
     tolerance_pct: Tolerance | None = None
     """Largest difference from the measured value, relative to it [%]."""
-    trust: Trust = NO_TRUST
+    trust: LimitTrust = NO_TRUST
     """Trust in the rule."""
     source: str | list[str] = NO_SOURCE
     """Source of the rule: keys of sources.toml, or free text."""
@@ -200,15 +200,23 @@ def list_profiles() -> dict[str, Path]:
     return {path.stem: path for path in sorted((library_folder() / "profiles").glob("*.toml"))}
 
 
+def _own_rule(rule: Rule, published: Sequence[Rule]) -> Rule:
+    """Rule of a user with the trust `own`, whatever it claims; one that the library states remains as it is."""
+    same = any(rule == other.model_copy(update={"note": rule.note}) for other in published)
+    return rule if same else rule.model_copy(update={"trust": "own", "source": own_source(rule.source)})
+
+
 def load_profile(name: str) -> Profile:
     """Read a profile of the library by name, or a profile file by its path, which ends in .toml.
 
     Raises:
         InputError: The library has no profile of this name, or the file is invalid.
     """
-    if name.endswith(".toml"):
-        return read_model(Path(name), Profile, "profile")
     known = list_profiles()
+    if name.endswith(".toml"):
+        profile = read_model(Path(name), Profile, "profile")
+        published = load_profile(profile.name).rule if profile.name in known else ()
+        return profile.model_copy(update={"rule": tuple(_own_rule(rule, published) for rule in profile.rule)})
     if name not in known:
         raise InputError(f"profile '{name}'", "there is no profile with this name", suggest_names(name, list(known)))
     return read_model(known[name], Profile, "profile")

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.findings import GradedFinding, PublishedFinding
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
-from pantocheck.conformance.core.trust import Computed, Trust
+from pantocheck.conformance.core.trust import Computed, LimitTrust
 from pantocheck.conformance.core.verdicts import Verdict
 
 BASELINE = "baseline"
@@ -58,7 +58,7 @@ class Requirement(ResultsPart):
     lower: FiniteNumber | None
     upper: FiniteNumber | None
     """Limits in the unit; both null if they are not known."""
-    trust: Trust | Computed | None
+    trust: LimitTrust | Computed | None
     """Trust of the limits; null: the bounds are values of a baseline, without a published source."""
     source: str
     """Source of the limits."""

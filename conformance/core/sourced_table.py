@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from pantocheck.conformance.core.key_paths import find_members, find_model, key_adapter
-from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.trust import LimitTrust, Trust
 
 # Cross checks: rules on several keys of a table. All problems of a file are found at once.
 #
@@ -210,7 +210,7 @@ class SourcedTable(InputTable):
         yield from find_missing_source(self.trust, self.source)
 
 
-def find_missing_source(trust: Trust, source: str | list[str]) -> Problems:
+def find_missing_source(trust: LimitTrust, source: str | list[str]) -> Problems:
     """Problem of a trust above `provisional` without a source, because nobody could check the trust.
 
     Args:

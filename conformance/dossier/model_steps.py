@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
+from pantocheck.conformance.cases.limits import own_source
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, unit_of_difference
 from pantocheck.conformance.comparison.response_comparison import compare_responses
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
@@ -81,8 +82,8 @@ def _state(row: Criterion, entry: PantographEntry, number: int) -> dict[str, str
     return {
         "quantity": f"{row.quantity}, {low:g} to {high:g} Hz, {where.static_force_N:g} N{height}",
         "pantograph": number,
-        "trust": entry.trust,
-        "source": source_text(row.source),
+        "trust": "own",
+        "source": source_text(own_source(row.source)),
     }
 
 
@@ -207,7 +208,7 @@ def check_statics(dossier: Dossier) -> StepResult:
             statics.append(_compare_statics(dossier, entry, entry.statics))
         except InputError as error:
             return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
-        stated = {"item": item, "trust": entry.tolerance.trust, "source": source_text(entry.tolerance.source)}
+        stated = {"item": item, "trust": "own", "source": source_text(own_source(entry.tolerance.source))}
         criteria += [grade_again(row, stated, dossier.file.trust) for row in statics[-1].criteria]
         criteria += _skip_ungraded(entry.tolerance, item)
     notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)

@@ -80,7 +80,18 @@ def grade_again(row: Criterion, changes: Mapping[str, object], lowest_trust: Tru
     if row.verdict == "skip":
         return build_criterion(requirement, None, row.reason, lowest_trust)
     errors = ValueErrors(components=row.components, limit_uncertainty=row.limit_uncertainty or 0.0)
-    return build_criterion(requirement, row.value, None, lowest_trust, errors)
+    return build_criterion(requirement, row.value, None, lowest_trust, errors, doubt=_doubt_share(row))
+
+
+LARGEST_SHARE_PCT = 50.0
+"""Largest tolerance of a user, relative to the measured value [%]: a wider one tests nothing."""
+
+
+def _doubt_share(row: Criterion) -> str | None:
+    """Reason why a pass by a tolerance in per cent does not count; None: it counts."""
+    if row.unit != "%" or row.upper is None or row.upper <= LARGEST_SHARE_PCT:
+        return None
+    return f"the own tolerance of {row.upper:.4g} % is more than {LARGEST_SHARE_PCT:g} % of the measured value"
 
 
 class StepInterrupted(Exception):

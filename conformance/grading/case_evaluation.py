@@ -16,6 +16,7 @@ from pantocheck.conformance.cases.start_and_section import (
 from pantocheck.conformance.core.criterion import ComponentName, Criterion
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.grading.case_identity import doubt_limit
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
 from pantocheck.conformance.grading.record_uncertainty import (
     add_bounds,
@@ -177,7 +178,10 @@ class CaseEvaluation:
 
     def grade_limits(self, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""
-        return [grade_limit(limit, self.values, lowest_trust, rule=rule) for limit in self.case.limits]
+        return [
+            grade_limit(limit, self.values, lowest_trust, rule=rule, doubt=doubt_limit(self.case, limit))
+            for limit in self.case.limits
+        ]
 
     def edge_warnings(self) -> list[str]:
         """Warnings on filter transients inside the analysis section."""

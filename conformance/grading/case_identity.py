@@ -94,12 +94,26 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     parts = []
     if _is_wider(stated, limit):
         parts.append(f"the limit {bounds} is widened to {format_bounds(limit.lower, limit.upper)}")
-    if limit.trust != stated.trust:
+    if limit.trust == "own":
+        parts += [] if stated.trust == "own" else [f"the trust of the limit is own in place of {stated.trust}"]
+    elif stated.trust not in {limit.trust, "own"}:
         change = "lowered" if LEVELS.index(limit.trust) > LEVELS.index(stated.trust) else "raised"
         parts.append(f"the trust of the limit is {change} from {stated.trust} to {limit.trust}")
     if stated.is_imposed and not limit.is_imposed:
         parts.append("an imposed finding counts")
     return f"{name}: {', and '.join(parts)}" if parts else None
+
+
+def doubt_limit(case: Case, limit: Limit) -> str | None:
+    """Reason why a pass by a limit of the user does not count: it widens one of the library. None: it counts."""
+    known = list_library(library_folder())
+    if limit.trust != "own" or case.id not in known:
+        return None
+    stated = load_case(known[case.id]).limits
+    widened = next((old for old in stated if old.target == limit.target and _is_wider(old, limit)), None)
+    if widened is None:
+        return None
+    return f"the limit {format_bounds(widened.lower, widened.upper)} of the library is widened"
 
 
 def name_limit(limit: Limit) -> str:

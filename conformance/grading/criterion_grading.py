@@ -11,7 +11,7 @@ from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, judge_by_
 from pantocheck.conformance.core.findings import IMPOSED_REASON, grade_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import NO_ERRORS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import select_item
-from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
+from pantocheck.conformance.core.trust import Computed, LimitTrust, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import name_value
@@ -57,9 +57,10 @@ def grade_limit(
     lowest_trust: Trust,
     limit_uncertainty: float = 0.0,
     rule: DecisionRule = SIMPLE,
+    doubt: str | None = None,
 ) -> Criterion:
     """Grade a quantity by a limit; parameters as in `grade_requirement`."""
-    return grade_requirement(convert_limit(limit), values, lowest_trust, limit_uncertainty, rule)
+    return grade_requirement(convert_limit(limit), values, lowest_trust, limit_uncertainty, rule, doubt)
 
 
 def grade_requirement(
@@ -68,6 +69,7 @@ def grade_requirement(
     lowest_trust: Trust | Computed,
     limit_uncertainty: float = 0.0,
     rule: DecisionRule = SIMPLE,
+    doubt: str | None = None,
 ) -> Criterion:
     """Grade a quantity of a run.
 
@@ -77,6 +79,7 @@ def grade_requirement(
         lowest_trust: Lowest trust of the limits that count.
         limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
         rule: Decision rule.
+        doubt: Reason why a pass does not count; None: it counts.
     """
     name, owner, item = requirement.target
     value = find_value(requirement.target, values.evaluation.values)
@@ -96,7 +99,7 @@ def grade_requirement(
         draws=values.uncertainty.sample.get(owner, {}).get(name, ()),
         unknown=values.uncertainty.list_unknown(owner, name),
     )
-    return build_criterion(requirement, value, None, lowest_trust, errors, rule=rule)
+    return build_criterion(requirement, value, None, lowest_trust, errors, rule=rule, doubt=doubt)
 
 
 def build_criterion(
@@ -107,6 +110,7 @@ def build_criterion(
     errors: ValueErrors = NO_ERRORS,
     place: str = "",
     rule: DecisionRule = SIMPLE,
+    doubt: str | None = None,
 ) -> Criterion:
     """Grade a value by its limits: the one way to a verdict with its reason, margin and remarks near a limit.
 
@@ -119,12 +123,14 @@ def build_criterion(
         errors: Errors of the value.
         place: Place of the value in words, behind the distance beyond a limit.
         rule: Decision rule.
+        doubt: Reason why a pass does not count; None: it counts.
     """
     limits, reasons = (requirement.lower, requirement.upper), [] if missing is None else [missing]
     verdict: Verdict = "skip"
     if value is not None and limits != (None, None):
-        verdict, doubt = judge_by_rule(value, limits, errors, rule)
-        reasons += [_describe_distance(value, requirement) + place] if verdict == "fail" else [doubt] if doubt else []
+        verdict, undecided = judge_by_rule(value, limits, errors, rule)
+        reasons += [_describe_distance(value, requirement) + place] if verdict == "fail" else []
+        reasons += [] if undecided is None else [undecided]
         verdict = verdict if missing is None else "skip"
     reason = "; ".join(reasons) or None
     finding = None if requirement.finding is None else grade_finding(requirement.finding, verdict)
@@ -136,6 +142,8 @@ def build_criterion(
             "skip": f"not graded: {reason}",
         }[verdict]
         verdict, reason = "info", f"{hypothetical}; the limit is {requirement.trust} and does not count"
+    elif verdict == "pass" and doubt is not None:
+        verdict, reason = "info", f"would pass; {doubt}"
     elif finding is not None and (counted := lower_imposed_verdict(finding.role, verdict)) != verdict:
         verdict, reason = counted, IMPOSED_REASON
     stated = {key: part for key, part in requirement if key in Requirement.model_fields and key != "finding"}
@@ -173,7 +181,7 @@ def skip_unlimited(
     item: int | None = None,
     unit: str | None = None,
     value: float | None = None,
-    trust: Trust | None = "primary",
+    trust: LimitTrust | None = "primary",
     lowest_trust: Trust = "primary",
 ) -> Criterion:
     """Skipped criterion of a quantity that is demanded and has no limit or no record, so that its lack is noticed.

@@ -7,7 +7,14 @@ from dataclasses import dataclass
 
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit, is_per_pantograph
-from pantocheck.conformance.cases.profile_file import BoundMissing, Profile, Rule, resolve_bounds
+from pantocheck.conformance.cases.profile_file import (
+    BoundMissing,
+    Profile,
+    Rule,
+    list_profiles,
+    load_profile,
+    resolve_bounds,
+)
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.trust import Trust
@@ -66,7 +73,8 @@ class RuleGrading:
 
     def _grade_rule(self, rule: Rule, owner: int) -> Criterion:
         try:
-            return self._grade_limit(self._resolve_rule(rule, owner))
+            limit = self._resolve_rule(rule, owner)
+            return self._grade_limit(limit, _doubt_tolerance(rule, limit))
         except BoundMissing as reason:
             value = _finite_value(self.subject, owner, rule.quantity)
             unavailable = self.subject.values.skipped.get(owner, {}).get(rule.quantity) if value is None else None
@@ -81,8 +89,8 @@ class RuleGrading:
                 lowest_trust=self.trust,
             )
 
-    def _grade_limit(self, limit: Limit) -> Criterion:
-        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit), self.decision)
+    def _grade_limit(self, limit: Limit, doubt: str | None = None) -> Criterion:
+        return grade_limit(limit, self._values, self.trust, self._limit_uncertainty(limit), self.decision, doubt)
 
     def _resolve_rule(self, rule: Rule, owner: int) -> Limit:
         """Limit that follows from a rule for this record."""
@@ -111,6 +119,32 @@ class RuleGrading:
         unit = unit_of(rule.quantity)
         tolerance = f"{rule.tolerance:g} {unit}" if rule.tolerance else f"{rule.tolerance_pct:g} %"
         return f"{source}; tolerance {tolerance} around the measured value {compared:.4g} of {self.measured.name}"
+
+
+LARGEST_TOLERANCE = 0.5
+"""Largest tolerance of a user relative to the measured value: a wider one tests nothing."""
+
+
+def _doubt_tolerance(rule: Rule, limit: Limit) -> str | None:
+    """Reason why a pass by a tolerance does not count: it is the user's own and too wide. None: it counts."""
+    if not rule.compares or rule.trust != "own" or limit.lower is None or limit.upper is None:
+        return None
+    width, value = (limit.upper - limit.lower) / 2, abs(limit.upper + limit.lower) / 2
+    if width <= LARGEST_TOLERANCE * value or _is_published(rule):
+        return None
+    share = f"{100 * width / value:.3g} %" if value else "more than any share"
+    return f"the own tolerance of {width:.4g} {unit_of(rule.quantity)} is {share} of the measured value"
+
+
+def _is_published(rule: Rule) -> bool:
+    """Whether a profile of the library states a tolerance that is as wide."""
+    published = [other for name in list_profiles() for other in load_profile(name).rule]
+    same = [other for other in published if other.quantity == rule.quantity]
+    return any(
+        (rule.tolerance is not None and (other.tolerance or 0.0) >= rule.tolerance)
+        or (rule.tolerance_pct is not None and (other.tolerance_pct or 0.0) >= rule.tolerance_pct)
+        for other in same
+    )
 
 
 def _finite_value(record: AssessedRecord, owner: int, quantity: str) -> float | None:

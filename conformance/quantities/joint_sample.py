@@ -46,7 +46,7 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
     stands for it.
 
     Args:
-        parts: Parts of the sample; a quantity without any has no draws.
+        parts: Parts of the sample; a quantity with mesh and time step alone has no draws.
         digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
     random = np.random.default_rng(int(digest[:16], 16))
@@ -61,7 +61,8 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
             draws = _widen_members(value, [part.get(owner, {}).get(name) for part in parts.members])[member]
             for factor, changes in ((1.0, parts.deviations), (mesh, parts.mesh_changes), (bound, parts.bounds)):
                 draws = draws + factor * changes.get(owner, {}).get(name, 0.0)
-            if np.ptp(draws) > 0:
+            scatter = [parts.deviations, parts.bounds, *parts.members]
+            if np.ptp(draws) > 0 and any(name in part.get(owner, {}) for part in scatter):
                 sample.setdefault(owner, {})[name] = tuple(float(f"{draw:.{DIGITS}g}") for draw in draws)
     return sample
 

@@ -9,7 +9,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Series, TextTable
-from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.trust import LimitTrust
 from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
@@ -68,7 +68,7 @@ def draw_curve(label: str, x: RealArray, y: RealArray) -> Series:
     return Series(label=label, style="line", x=thin_series(x), y=thin_series(y))
 
 
-def _name_origin(trust: Trust, keys: Sequence[str]) -> str:
+def _name_origin(trust: LimitTrust, keys: Sequence[str]) -> str:
     if trust == "provisional":
         return "assumed"
     return "printed in the paper" if PAPER in keys else "published elsewhere"
