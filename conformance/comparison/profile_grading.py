@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
+from pantocheck.conformance.core.criterion import judge_criteria
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
@@ -84,7 +85,7 @@ def grade_record(
     return CaseResult(
         id=f"{profile.name}/{re.sub(r'[^A-Za-z0-9._-]', '_', subject.name)}",
         title=f"{profile.title}: {subject.name}",
-        verdict=judge_case((criterion.verdict for criterion in criteria), record),
+        verdict=judge_case([judge_criteria(criteria)], record),
         criteria_verdict=None,
         reason=None,
         notes=[*_name_sources(records, "notes"), *([profile.note.strip()] if profile.note else [])],

@@ -1,5 +1,6 @@
 """Criterion: a value against its limits, with the components of its uncertainty, in results.json and in comparisons."""
 
+from collections.abc import Iterable
 from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
@@ -7,7 +8,7 @@ from pydantic import Field, model_validator
 from pantocheck.conformance.core.findings import GradedFinding, PublishedFinding
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
 from pantocheck.conformance.core.trust import Computed, LimitTrust
-from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
 
 BASELINE = "baseline"
 """Quantity of a criterion that states why a comparison with a baseline is impossible."""
@@ -97,6 +98,10 @@ class Criterion(Requirement):
     close: list[str] = []
     """Remark on a value whose `uncertainty` and `limit_uncertainty` combined exceed its distance from a limit."""
     finding: GradedFinding | None = None
+    doubt: Annotated[str | None, Field(exclude_if=lambda text: text is None)] = None
+    """Reason why a pass does not count: the user widened a limit of the library, or chose a tolerance that tests
+    nothing. Missing: it counts.
+    """
 
     @property
     def is_drift(self) -> bool:
@@ -118,6 +123,13 @@ class Criterion(Requirement):
         if self.trust is None and not self.is_drift:
             raise ValueError("a criterion without trust must compare with a baseline")
         return self
+
+
+def judge_criteria(criteria: Iterable[Criterion]) -> Verdict:
+    """Worst of the criteria that count; at best `info` where a pass does not count."""
+    rows = list(criteria)
+    verdict = judge_parts(row.verdict for row in rows)
+    return worst_verdict([verdict, "info"]) if any(row.doubt is not None for row in rows) else verdict
 
 
 class CaseVerification(ResultsPart):

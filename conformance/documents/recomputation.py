@@ -3,7 +3,13 @@
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-from pantocheck.conformance.core.criterion import COMPONENT_NAMES, CaseVerification, ComponentName, Criterion
+from pantocheck.conformance.core.criterion import (
+    COMPONENT_NAMES,
+    CaseVerification,
+    ComponentName,
+    Criterion,
+    judge_criteria,
+)
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, judge_by_rule, parse_decision
 from pantocheck.conformance.core.findings import count_findings, judge_finding, lower_imposed_verdict
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
@@ -14,6 +20,7 @@ from pantocheck.conformance.documents.authenticity_check import EXACT, format_ex
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
+from pantocheck.conformance.grading.case_identity import doubt_limit
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -65,7 +72,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -
     yield from _check_criteria(case, case.criteria, trust, rule)
     yield from _check_conformity(case)
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
-    verdict = judge_case((row.verdict for row in graded), record)
+    verdict = judge_case([judge_criteria(graded)], record)
     if stated != verdict and not ungraded:
         yield f"{case.id}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
     if verification is not None:
@@ -90,6 +97,8 @@ def _check_criteria(
         where = f"{case.id}, {row.quantity} of pantograph {row.pantograph}"
         unknown = list_unknown_components(case, row, names)
         components = check_components(row, case.uncertainty_components, names)
+        if row.doubt is None and (doubt := doubt_limit(case.id, row)) is not None:
+            yield f"{where}: {doubt}, which the criterion does not state"
         for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust, rule, unknown)):
             yield f"{where}: {text}"
 
@@ -134,6 +143,7 @@ def _check_grade(
     if finding is not None and finding.outcome != judge_finding(finding.role, judged):
         yield f"finding '{finding.outcome}' stated, '{judge_finding(finding.role, judged)}' follows"
     role = None if finding is None else finding.role
+    judged = "info" if judged == "pass" and row.doubt is not None else judged
     verdict = lower_imposed_verdict(role, judged) if decides_verdict(row.trust, trust) else "info"
     if row.verdict != verdict:
         yield f"verdict '{row.verdict}' stated, '{verdict}' follows from value, limits and trust"

@@ -10,7 +10,7 @@ import numpy as np
 from pantocheck.conformance.cases.profile_file import Profile, load_profile
 from pantocheck.conformance.comparison.measured_run import compare_measured_run
 from pantocheck.conformance.comparison.profile_grading import grade_record
-from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.core.criterion import Criterion, judge_criteria
 from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import interruption_exit_code
@@ -130,7 +130,7 @@ class LineTests:
                 "id": _name_result(pair),
                 "title": f"Line test {pair.name}: {simulated.line}, {simulated.record.header.speed_km_h:g} km/h, "
                 f"{', '.join(simulated.pantographs)}, {simulated.direction}",
-                "verdict": judge_case((row.verdict for row in criteria), facts),
+                "verdict": judge_case([judge_criteria(criteria)], facts),
                 "criteria": criteria,
                 "record": facts,
                 "comparison": compare_measured_run(simulated.record, measured.record, simulated.supports),

@@ -179,7 +179,7 @@ class CaseEvaluation:
     def grade_limits(self, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""
         return [
-            grade_limit(limit, self.values, lowest_trust, rule=rule, doubt=doubt_limit(self.case, limit))
+            grade_limit(limit, self.values, lowest_trust, rule=rule, doubt=doubt_limit(self.case.id, limit))
             for limit in self.case.limits
         ]
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.core.criterion import judge_criteria
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.figure_data import ExtremePlace
 from pantocheck.conformance.core.trust import Trust
@@ -70,7 +71,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: Deci
     criteria = evaluation.grade_limits(lowest_trust, rule) if contradiction is None else []
     supports = case.line.geometry.span_limits
     record, start = evaluation.record_facts, evaluation.start_agreement
-    verdict = judge_case((criterion.verdict for criterion in criteria), record)
+    verdict = judge_case([judge_criteria(criteria)], record)
     return _build_result(
         case,
         delivered,

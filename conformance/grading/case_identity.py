@@ -9,6 +9,7 @@ from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
+from pantocheck.conformance.core.criterion import Requirement
 from pantocheck.conformance.core.trust import LEVELS
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
@@ -104,12 +105,12 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     return f"{name}: {', and '.join(parts)}" if parts else None
 
 
-def doubt_limit(case: Case, limit: Limit) -> str | None:
+def doubt_limit(case_id: str, limit: Limit | Requirement) -> str | None:
     """Reason why a pass by a limit of the user does not count: it widens one of the library. None: it counts."""
     known = list_library(library_folder())
-    if limit.trust != "own" or case.id not in known:
+    if limit.trust != "own" or case_id not in known:
         return None
-    stated = load_case(known[case.id]).limits
+    stated = load_case(known[case_id]).limits
     widened = next((old for old in stated if old.target == limit.target and _is_wider(old, limit)), None)
     if widened is None:
         return None
@@ -121,7 +122,7 @@ def name_limit(limit: Limit) -> str:
     return name_value(limit.quantity, limit.item) + (f" of pantograph {limit.owner}" if limit.owner else "")
 
 
-def _is_wider(stated: Limit, limit: Limit) -> bool:
+def _is_wider(stated: Limit, limit: Limit | Requirement) -> bool:
     lower = stated.lower is not None and (limit.lower is None or limit.lower < stated.lower)
     upper = stated.upper is not None and (limit.upper is None or limit.upper > stated.upper)
     return lower or upper

@@ -160,6 +160,7 @@ def build_criterion(
         draws=list(errors.draws),
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,
+        doubt=doubt,
         close=near_limit_remarks(value, limits, requirement.unit, errors),
         finding=finding,
     )

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
-from pantocheck.conformance.core.criterion import Criterion
-from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, judge_parts, normalise_distance, worst_verdict
+from pantocheck.conformance.core.criterion import Criterion, judge_criteria
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict, normalise_distance, worst_verdict
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.results.procedure_format import Evidence, Procedure, ProcedureStep, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult
@@ -64,7 +64,7 @@ def judge_step(step: ProcedureStep, parts: Sequence[Verdict], accepted: bool) ->
     """
     if step.state != "done":
         return "error" if step.state == "error" else "skip"
-    own = [judge_parts(criterion.verdict for criterion in step.criteria)] if step.criteria else []
+    own = [judge_criteria(step.criteria)] if step.criteria else []
     verdict = worst_verdict([*own, *parts])
     return "unverified" if verdict == "pass" and step.unverified is not None and not accepted else verdict
 
@@ -83,7 +83,7 @@ def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[s
         (case, row)
         for case, row in criteria
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
-        if row.verdict in ("pass", "fail")
+        if row.verdict in ("pass", "undecided", "fail")
         and row.margin is not None
         and row.lower != row.upper
         and not _equals_its_limit(row)

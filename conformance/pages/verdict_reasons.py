@@ -52,6 +52,9 @@ def build_headline(results: Results) -> str:
     judged, unjudged = len(cases) - verdicts["info"], verdicts["info"]
     if not cases:
         sentences = ["No case takes part in the verdict."]
+    elif doubted := [row for case in cases for row in case.criteria if row.doubt is not None]:
+        names = count_noun(len(doubted), "own limit is", "own limits are")
+        sentences = [f"Nothing is judged: {names} wider than those of the library, or too wide to test anything."]
     elif not judged:
         sentences = [f"{count_noun(unjudged, 'case')} computed, no limit to judge {'it' if unjudged == 1 else 'them'}."]
     elif passed == judged and results.verdict in ("pass", "unverified"):
