@@ -1,7 +1,7 @@
 """Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.decision import describe_decision, parse_decision
@@ -52,7 +52,7 @@ def build_headline(results: Results) -> str:
     judged, unjudged = len(cases) - verdicts["info"], verdicts["info"]
     if not cases:
         sentences = ["No case takes part in the verdict."]
-    elif doubted := [row for case in cases for row in case.criteria if row.doubt is not None]:
+    elif results.verdict == "info" and (doubted := _list_doubted(cases)):
         names = count_noun(len(doubted), "own limit is", "own limits are")
         sentences = [f"Nothing is judged: {names} wider than those of the library, or too wide to test anything."]
     elif not judged:
@@ -76,6 +76,11 @@ def build_headline(results: Results) -> str:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
+
+
+def _list_doubted(cases: Sequence[CaseResult]) -> list[Criterion]:
+    """Criteria whose pass does not count."""
+    return [row for case in cases for row in case.criteria if row.doubt is not None]
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:

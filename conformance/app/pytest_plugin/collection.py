@@ -224,12 +224,13 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
         Whether the cases of a plan that ran in this session do not pass.
     """
     lines, not_passed = [], False
+    accepted = {"pass", "info"} if config.getoption("pantocheck_no_verdict") == "accept" else {"pass"}
     for path in list_registered(folder):
         session = _open_session(config, path, folder)
         if (session_results := session.results()) is None:
             continue
         (results, verdict), prepared = session_results, session.prepared
-        not_passed |= verdict != "pass"
+        not_passed |= verdict not in accepted
         write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
         lines.append(f"{path.name}: {results.verdict.upper()}: {build_headline(results)} {prepared.out / shown}")

@@ -40,6 +40,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         choices=("criteria", "verification", "both"),
         help="verdicts that decide; replaces those of the plan",
     )
+    group.addoption(
+        "--pantocheck-no-verdict",
+        choices=("fail", "accept"),
+        default="fail",
+        help="result of a session whose cases have no limit to judge them; default: fail",
+    )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
