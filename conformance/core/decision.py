@@ -114,8 +114,10 @@ def judge_by_rule(value: float, limits: Limits, errors: ValueErrors, rule: Decis
             inside = _contains(limits, value, errors.find_expanded(value))
             return ("pass", None) if inside else ("undecided", "its 95 % interval reaches over a limit")
         case SharedRisk(largest_risk):
-            conformity = errors.find_conformity(value, limits)
-            risk = 0.0 if conformity is None else 1 - conformity
+            conformity = errors.find_conformity(limits)
+            if conformity is None:  # no joint sample: the value has one component, or none
+                return judge_by_rule(value, limits, errors, GuardedAcceptance())
+            risk = 1 - conformity
             if risk <= largest_risk:
                 return "pass", None
             return "undecided", f"it lies outside the limits with a probability of {risk:.2g}, above {largest_risk:g}"

@@ -63,19 +63,18 @@ class ValueErrors:
         """Half-width of the 95 % interval of the distance between value and limit."""
         return math.hypot(self.find_half_width(value) or 0.0, self.limit_uncertainty or 0.0)
 
-    def find_conformity(self, value: float, limits: Limits) -> float | None:
-        """Probability that the value lies inside its limits (JCGM 106:2012, 7.2); None if no error is known.
+    def find_conformity(self, limits: Limits) -> float | None:
+        """Probability that the value lies inside its limits (JCGM 106:2012, 7.2); None without a joint sample.
 
-        It is the share of the joint sample inside the limits. An uncertain limit, and a value without a sample, have a
-        normal distribution.
+        It is the share of the joint sample inside the limits. An uncertain limit has a normal distribution.
         """
-        widths = self.limit_uncertainty or 0.0 if self.draws else self.find_expanded(value)
+        if not self.draws:
+            return None
         lower, upper = (-math.inf if limits[0] is None else limits[0]), (math.inf if limits[1] is None else limits[1])
-        draws = self.draws or (value,)
-        if not widths:
-            return sum(lower <= x <= upper for x in draws) / len(draws) if self.draws else None
-        normal = NormalDist(0.0, widths / NORMAL_QUANTILE)
-        return math.fsum(normal.cdf(upper - x) - normal.cdf(lower - x) for x in draws) / len(draws)
+        if not self.limit_uncertainty:
+            return sum(lower <= x <= upper for x in self.draws) / len(self.draws)
+        normal = NormalDist(0.0, self.limit_uncertainty / NORMAL_QUANTILE)
+        return math.fsum(normal.cdf(upper - x) - normal.cdf(lower - x) for x in self.draws) / len(self.draws)
 
     @property
     def record_bound(self) -> float:

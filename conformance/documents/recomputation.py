@@ -25,7 +25,7 @@ from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_ca
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.quantities.uncertainty import RECORD_COMPONENTS, UNKNOWN
+from pantocheck.conformance.quantities.uncertainty import ABSENT, RECORD_COMPONENTS, UNKNOWN
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents
@@ -154,7 +154,7 @@ def _check_grade(
     if row.components and not same_number(row.uncertainty, half_width, EXACT):
         printed, combined = format_exact(row.uncertainty), format_exact(half_width)
         yield f"uncertainty {printed} stated, {combined} follows from its joint sample and components"
-    conformity = None if value is None else errors.find_conformity(value, (lower, upper))
+    conformity = None if value is None else errors.find_conformity((lower, upper))
     if not same_number(row.conformity, conformity, EXACT):
         printed, found = format_exact(row.conformity), format_exact(conformity)
         yield f"probability of conformity {printed} stated, {found} follows from its joint sample"
@@ -180,9 +180,9 @@ def list_unknown_components(
 ) -> tuple[ComponentName, ...]:
     """Components of a criterion that are not known: of the whole case, or one of the record that the quantity lacks."""
     unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN)]
-    parts = [part for quantities in case.uncertainty_components.values() for part in quantities.values()]
-    lacking = [name for name in RECORD_COMPONENTS if name in names and any(name in part for part in parts)]
-    return (*unknown, *(name for name in lacking if name not in row.components))
+    reported = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity)
+    lacking = [name for name in RECORD_COMPONENTS if name in names and reported is not None and name not in reported]
+    return (*unknown, *(name for name in lacking if not case.uncertainty_basis.get(name, "").startswith(ABSENT)))
 
 
 def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:

@@ -156,7 +156,7 @@ def build_criterion(
         spread=errors.spread,
         reason=reason,
         uncertainty=None if value is None else errors.find_half_width(value),
-        conformity=None if value is None or limits == (None, None) else errors.find_conformity(value, limits),
+        conformity=None if value is None or limits == (None, None) else errors.find_conformity(limits),
         draws=list(errors.draws),
         components=dict(errors.components),
         limit_uncertainty=errors.limit_uncertainty,

@@ -14,6 +14,9 @@ from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
 RECORD_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution")
 """Components that bound what a record with fewer samples or digits hides."""
 
+ABSENT = "does not apply"
+"""Beginning of the basis of a component that a case cannot have."""
+
 UNKNOWN = "not known"
 """Beginning of the basis of a component that is not known."""
 
@@ -38,7 +41,7 @@ class Uncertainty:
     components: Mapping[ComponentName, Component] = field(default_factory=dict)
     """Components; those without half-widths included."""
     values: ValuesByOwner = field(default_factory=dict)
-    """Values that the sample belongs to."""
+    """Values of the record, which its sampling rate and resolution may change."""
     sample: JointSample = field(default_factory=dict)
     """Joint sample; empty: none was drawn."""
 
@@ -49,7 +52,7 @@ class Uncertainty:
 
     def select(self, names: Collection[ComponentName]) -> "Uncertainty":
         """Uncertainty with some of the components only."""
-        return Uncertainty({name: part for name, part in self.components.items() if name in names})
+        return Uncertainty({name: part for name, part in self.components.items() if name in names}, self.values)
 
     @property
     def unknown_components(self) -> tuple[ComponentName, ...]:
@@ -58,11 +61,10 @@ class Uncertainty:
 
     def list_unknown(self, owner: int, quantity: str) -> tuple[ComponentName, ...]:
         """Components that are not known for a quantity: of all, or one of the record that only others have."""
+        if quantity not in self.values.get(owner, {}):
+            return self.unknown_components
         known = self.list_components(owner, quantity)
-        lacking = [
-            name for name in RECORD_COMPONENTS if name not in known and name in self.components
-            and self.components[name].half_widths
-        ]  # fmt: skip
+        lacking = [name for name in RECORD_COMPONENTS if name in self.components and name not in known]
         return (*self.unknown_components, *lacking)
 
     @property

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value, ValuesByOwner
@@ -19,6 +20,12 @@ from pantocheck.conformance.quantities.uncertainty import Component
 
 SAME_NUMBER = 1e-7
 """Smallest step of a channel [SI unit]: a smaller one is rounding of the computer."""
+
+SAME_MULTIPLE = 0.05
+"""Largest distance of a difference from a multiple of the step, in steps: numbers are converted between units."""
+
+MEAN_TIMES_S = (0.2, 0.05)
+"""Times of the moving means that separate the bands from 5 and from 20 Hz [s]."""
 
 SAME_RATE = 0.999
 """Share of a rate from which a record has the same rate."""
@@ -39,15 +46,19 @@ class ChannelSignals(Protocol):
     def evaluation(self) -> Evaluation:
         """Quantities over the analysis section."""
 
+    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
+        """Quantities over another section [m, m]."""
+
     def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
         """Quantities of other channels in the same section."""
 
 
 def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> Component:
-    """Uncertainty from the sampling rate: the largest change when every second sample is left out.
+    """Uncertainty from the sampling rate: the largest change when every second sample is replaced by its neighbours.
 
     The error of every usual method falls at least in proportion to the interval of the samples. It is then at most the
-    change when this interval is doubled. A quantity that half of the samples do not give has no half-width.
+    change when this interval is doubled. The samples that are left out are interpolated by cubic polynomials, so that
+    every quantity of the record can be computed. The section also gains or loses a sample at each end.
 
     Args:
         signals: Signals of the record.
@@ -56,33 +67,56 @@ def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> C
     rate = min(pantograph.rate for pantograph in signals.pantographs.values())
     if full_rate_Hz is not None and rate >= SAME_RATE * full_rate_Hz:
         return Component("sampled at the rate of the case", _fill(signals.evaluation.values, 0.0))
-    thinned = [_thin(signals, first) for first in (0, 1)]
+    thinned = [_change_samples(signals, partial(replace_samples, first)) for first in (0, 1)]
+    first = next(iter(signals.pantographs.values()))
+    start, end = first.section
+    step = float(np.median(np.diff(first.position)))
+    sections = [(start - step, end), (start + step, end), (start, end - step), (start, end + step)]
+    moved = [signals.evaluate_section(section) for section in sections]
     return Component(
-        f"every second sample of {rate:.6g} per second left out", _find_changes(signals.evaluation.values, [thinned])
+        f"every second of {rate:.6g} samples per second left out, and ends of the section moved by a sample",
+        _find_changes(signals.evaluation.values, [thinned, moved]),
     )
 
 
 def resolution_component(signals: ChannelSignals) -> Component:
     """Uncertainty from the steps of the recorded numbers: the largest change by half a step.
 
-    Half a step is added to all samples, and to those above the mean while it is taken from those below, both ways.
+    Half a step is added to all samples, or taken from them. Half a step is also added to those above a moving mean, and
+    taken from those below, both ways: over the record for the standard deviation, and over shorter times for the bands.
     Mean and extremes change most by the first, and standard deviations by the second.
 
     Args:
         signals: Signals of the record.
     """
-    steps = {number: find_step(pantograph.force.delivered) for number, pantograph in signals.pantographs.items()}
-    shifted = [_move(signals, partial(_point_one_way, sign)) for sign in (-1.0, 1.0)]
-    spread = [_move(signals, partial(_point_outwards, sign)) for sign in (-1.0, 1.0)]
-    text = ", ".join(f"{step:.3g} N" for step in dict.fromkeys(steps.values()))
+    forces = [pantograph.force.delivered for pantograph in signals.pantographs.values()]
+    heights = [pantograph.contact_height for pantograph in signals.pantographs.values()]
+    uplifts = [] if signals.line.support_uplift is None else [*signals.line.support_uplift]
+    steps = [find_step(series) for series in (*forces, *heights, *uplifts) if series is not None]
+    if not any(steps):
+        return Component("no steps found in the numbers of the record", _fill(signals.evaluation.values, 0.0))
+    rate = min(pantograph.rate for pantograph in signals.pantographs.values())
+    shifted = [_change_samples(signals, partial(move_samples, partial(_point_one_way, sign))) for sign in (-1.0, 1.0)]
+    windows = [0, *(round(seconds * rate) for seconds in MEAN_TIMES_S)]
+    directions = [partial(_point_outwards, sign, window) for sign in (-1.0, 1.0) for window in windows]
+    spread = [_change_samples(signals, partial(move_samples, direction)) for direction in directions]
+    text = ", ".join(f"{step:.3g} N" for step in dict.fromkeys(map(find_step, forces)))
     return Component(f"force in steps of {text}", _find_changes(signals.evaluation.values, [shifted, spread]))
 
 
 def find_step(series: RealArray) -> float:
-    """Step of the numbers of a channel: the smallest difference of two of its values; 0 for a constant channel."""
-    differences = np.diff(np.unique(series[np.isfinite(series)]))
+    """Step of the numbers of a channel: the smallest difference of two values, if all differences are multiples of it.
+
+    A channel without such a step, and a constant one, have the step 0.
+    """
+    values = np.unique(series[np.isfinite(series)])
+    differences = np.diff(values)
     distinct = differences[differences > SAME_NUMBER]
-    return float(distinct.min()) if distinct.size else 0.0
+    if not distinct.size:
+        return 0.0
+    step = float(distinct.min())
+    multiples = (values - values[0]) / step
+    return step if np.abs(multiples - np.round(multiples)).max() < SAME_MULTIPLE else 0.0
 
 
 def _point_one_way(sign: float, series: RealArray) -> RealArray:
@@ -90,54 +124,46 @@ def _point_one_way(sign: float, series: RealArray) -> RealArray:
     return np.full(series.shape, sign)
 
 
-def _point_outwards(sign: float, series: RealArray) -> RealArray:
-    """Sign of the distance of each sample from the mean, times a sign."""
-    known = series[np.isfinite(series)]
-    return np.asarray(sign * np.sign(series - (known.mean() if known.size else 0.0)))
+def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:
+    """Sign of the distance of each sample from the mean of a window of samples, times a sign; 0: the whole channel."""
+    known = np.isfinite(series)
+    filled = np.where(known, series, series[known].mean() if known.any() else 0.0)
+    mean = uniform_filter1d(filled, window) if window > 1 else filled.mean()
+    return np.asarray(sign * np.sign(series - mean))
 
 
-def _thin(signals: ChannelSignals, first: int) -> Evaluation:
-    """Quantities of every second sample."""
+def replace_samples(first: int, series: RealArray) -> RealArray:
+    """Replace every second sample by the cubic polynomial through its four neighbours; at the ends by their mean.
+
+    Args:
+        first: First sample that is replaced, 0 or 1.
+        series: Samples, (n,).
+    """
+    padded = np.pad(series, 3, mode="reflect") if series.size > 3 else np.pad(series, 3, mode="edge")
+    near = padded[2:-4] + padded[4:-2]
+    far = padded[:-6] + padded[6:]
+    changed = np.array(series)
+    changed[first::2] = ((9 * near - far) / 16)[first::2]
+    return changed
+
+
+def move_samples(direction: Callable[[RealArray], RealArray], series: RealArray) -> RealArray:
+    """Move the samples of a channel by half of its step in a direction of +1 or -1."""
+    return np.asarray(series + find_step(series) / 2 * direction(series))
+
+
+def _change_samples(signals: ChannelSignals, change: Callable[[RealArray], RealArray]) -> Evaluation:
+    """Quantities of changed channels of force, contact height and uplift."""
     pantographs = {
         number: replace(
             pantograph,
-            position=pantograph.position[first::2],
-            force=replace(
-                pantograph.force, delivered=pantograph.force.delivered[first::2], rate=pantograph.force.rate / 2
-            ),
-            contact_height=_select(pantograph.contact_height, first),
-            arc_channels=_select(pantograph.arc_channels, first),
-        )
-        for number, pantograph in signals.pantographs.items()
-    }
-    line = replace(
-        signals.line,
-        support_uplift=_select(signals.line.support_uplift, first),
-        last_position=_select(signals.line.last_position, first),
-    )
-    return signals.evaluate_channels(pantographs, line)
-
-
-def _select(channel: RealArray | None, first: int) -> RealArray | None:
-    return None if channel is None else channel[..., first::2]
-
-
-def _move(signals: ChannelSignals, direction: Callable[[RealArray], RealArray]) -> Evaluation:
-    """Quantities of channels whose samples are moved by half a step of each channel in a direction of +1 or -1."""
-
-    def move(series: RealArray) -> RealArray:
-        return np.asarray(series + find_step(series) / 2 * direction(series))
-
-    pantographs = {
-        number: replace(
-            pantograph,
-            force=replace(pantograph.force, delivered=move(pantograph.force.delivered)),
-            contact_height=None if pantograph.contact_height is None else move(pantograph.contact_height),
+            force=replace(pantograph.force, delivered=change(pantograph.force.delivered)),
+            contact_height=None if pantograph.contact_height is None else change(pantograph.contact_height),
         )
         for number, pantograph in signals.pantographs.items()
     }
     uplift = signals.line.support_uplift
-    line = replace(signals.line, support_uplift=None if uplift is None else np.array([move(row) for row in uplift]))
+    line = replace(signals.line, support_uplift=None if uplift is None else np.array([change(row) for row in uplift]))
     return signals.evaluate_channels(pantographs, line)
 
 
@@ -157,7 +183,7 @@ def _find_changes(values: ValuesByOwner, groups: Sequence[Sequence[Evaluation]])
             if isinstance(value, tuple):
                 continue
             others = [_select_numbers(owner, name, group) for group in groups]
-            if all(len(numbers) == len(group) for numbers, group in zip(others, groups, strict=True)):
+            if all(others):
                 changes.setdefault(owner, {})[name] = sum(max(abs(x - value) for x in group) for group in others)
     return changes
 

@@ -46,9 +46,9 @@ def test_further_component_never_removes_a_remark_and_none_is_no_zero() -> None:
     assert near_limit_remarks(38.0, LIMITS, "N", errors(start=2.5))
     assert near_limit_remarks(38.0, LIMITS, "N", errors(start=2.5, length=0.0, section=1e-9, discretisation=30.0))
     # None is not zero.
-    assert errors().uncertainty is None
-    assert errors(start=0.0).uncertainty == 0.0
-    assert errors(start=3.0, section=4.0, limit_uncertainty=9.0).uncertainty == pytest.approx(5.0, rel=1e-12)
+    assert errors().find_half_width(38.0) is None
+    assert errors(start=0.0).find_half_width(38.0) == 0.0
+    assert errors(start=3.0, section=4.0, limit_uncertainty=9.0).find_half_width(38.0) == pytest.approx(5.0, rel=1e-12)
     (remark,) = near_limit_remarks(0.29, (None, 0.3), "", errors(length=0.02))
     assert remark == (
         "lies 0.01 from a limit, less than its uncertainty of 0.02 (mostly length): "

@@ -34,7 +34,7 @@ def twin(two_pantograph_case: Case) -> Case:
 
 @pytest.fixture
 def record(twin: Case) -> Record:
-    return Wave(rate=250.0).record(twin)
+    return Wave().record(twin)
 
 
 @pytest.fixture
