@@ -182,7 +182,7 @@ def list_unknown_components(
     unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN)]
     reported = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity)
     lacking = [name for name in RECORD_COMPONENTS if name in names and reported is not None and name not in reported]
-    return (*unknown, *(name for name in lacking if not case.uncertainty_basis.get(name, "").startswith(ABSENT)))
+    return (*unknown, *(name for name in lacking if not case.uncertainty_basis.get(name, ABSENT).startswith(ABSENT)))
 
 
 def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:

@@ -133,7 +133,9 @@ def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:
 
 
 def replace_samples(first: int, series: RealArray) -> RealArray:
-    """Replace every second sample by the cubic polynomial through its four neighbours; at the ends by their mean.
+    """Replace every second sample by the cubic polynomial through its four neighbours.
+
+    A sample beside a missing one stays.
 
     Args:
         first: First sample that is replaced, 0 or 1.
@@ -142,8 +144,9 @@ def replace_samples(first: int, series: RealArray) -> RealArray:
     padded = np.pad(series, 3, mode="reflect") if series.size > 3 else np.pad(series, 3, mode="edge")
     near = padded[2:-4] + padded[4:-2]
     far = padded[:-6] + padded[6:]
-    changed = np.array(series)
-    changed[first::2] = ((9 * near - far) / 16)[first::2]
+    between = (9 * near - far) / 16
+    changed = np.where(np.isfinite(between), between, series)
+    changed[1 - first :: 2] = series[1 - first :: 2]
     return changed
 
 

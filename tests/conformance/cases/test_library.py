@@ -144,7 +144,7 @@ def test_limits_of_a_user_replace_and_add_in_the_named_cases(tmp_path: Path, cas
     limits = {limit.quantity: limit for limit in case.limits}
     assert len(limits) == 9
     assert (limits["std_force_N"].lower, limits["std_force_N"].upper) == (None, 30.0)
-    assert limits["std_force_N"].source == "my copy"
+    assert (limits["std_force_N"].trust, limits["std_force_N"].source) == ("own", ["own limit", "my copy"])
     write_toml(path, {"limit": [entry | deviation | {"case": "*/251"}]})
     with pytest.raises(InputError, match=r"no case of this run matches '\*/251'"):
         overlay_limits([case_250], read_limits(path))

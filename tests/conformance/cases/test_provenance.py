@@ -62,7 +62,7 @@ def test_own_data_are_shown_as_user_data_of_the_lowest_trust(own_case: Case, cas
     shown = {group.group: (group.trust, group.source) for group in result.inputs}
     assert shown["line.contact_wire"] == ("provisional", "user data, no source stated")
     assert {trust for trust, _ in shown.values()} == {"provisional"}
-    assert {limit.trust for limit in own_case.limits} == {"provisional"}
+    assert {limit.trust for limit in own_case.limits} == {"own"}
     assert own_case.digest == case_250.digest  # provenance is not part of the inputs
 
 

@@ -153,7 +153,7 @@ def test_both_pantographs_have_an_uncertainty_from_mesh_start_and_section(case: 
     for pantograph in (1, 2):
         for quantity in ("mean_force_N", "std_force_N", "rms_20_50_N", "max_force_N", "min_force_N"):
             parts = found.list_components(pantograph, quantity)
-            assert parts.keys() == {"discretisation", "start", "section"}
+            assert parts.keys() == {"discretisation", "start", "section", "sampling", "resolution"}
             assert parts["start"] > 0  # type: ignore[operator]
     assert found.combined[1]["std_force_N"] != found.combined[2]["std_force_N"]
 

@@ -89,7 +89,7 @@ def test_failed_limits_are_annotated_at_their_lines(project: Path) -> None:
         ("error", {"file": "limits.toml", "line": "2", "title": "en50318-2002/250: mean_force_N of pantograph 1"}),
         ("error", {"file": "mine.toml", "line": str(own), "title": "mine: std_force_N of pantograph 1"}),
     ]
-    assert commands[0].message.startswith("118.2 N, limits <= 100, margin -0.182, primary")
+    assert commands[0].message.startswith("118.2 N, limits <= 100, margin -0.182, own")
     # The code quality report has the same places.
     issues = json.loads((project / "report" / "codequality.json").read_text())
     assert [issue["location"] for issue in issues] == [
@@ -181,7 +181,7 @@ def test_run_without_a_limit_that_counts_has_one_warning(passing: dict[str, Any]
     case |= {"verdict": "info", "criteria": [row | {"verdict": "info"} for row in case["criteria"]]}
     passing |= {"verdict": "info", "cases": [case]}
     [annotation] = list_annotations(Results.model_validate(passing), ReportPlaces())
-    assert (annotation.severity, annotation.text) == ("warning", "0 of 1 case passes, 1 has no limit that counts.")
+    assert (annotation.severity, annotation.text) == ("warning", "1 case computed, no limit to judge it.")
 
 
 def test_paths_are_relative_to_the_checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -192,7 +192,7 @@ def test_css_colours_have_contrast_against_the_paper(scheme: str) -> None:
     part = style[:dark] if scheme == "light" else style[dark : style.index("\n}", dark)]
     [paper] = re.findall(r"--paper: (#[0-9a-f]{6})", part)
     inks = re.findall(r"--(?:accent|ink|soft|link): (#[0-9a-f]{6})", part)
-    assert len(inks) == 9
+    assert len(inks) == 10
     assert all(contrast(ink, paper) > 5 for ink in inks)
     curves = re.findall(r"--(?:curve-\d|faint): (#[0-9a-f]{6})", part)
     assert len(curves) == 7

@@ -49,7 +49,9 @@ def test_value_closer_to_a_limit_than_the_spread_is_marked(growing: tuple[Case, 
     (row,) = result.criteria
     assert row.spread == result.spread["1"]["mean_force_N"]
     # 2 N from the sections that the case compares, after a short run-in; 1.25 times 0.75 N from parts of a span.
-    assert row.components == pytest.approx({"start": 2.0, "section": 1.25 * 0.75}, abs=5e-3)
+    assert row.components == pytest.approx(
+        {"start": 2.0, "section": 1.25 * 0.75, "sampling": 0.0, "resolution": 0.0}, abs=5e-3
+    )
     assert any("less than its uncertainty of 2.2 N (mostly start)" in remark for remark in row.close)
     remark = remark_shift(row)
     assert remark.startswith("changes by up to 2.0 N when the analysis section")
