@@ -141,6 +141,10 @@ class CaseEvaluation:
             members=[
                 *(start.evaluation.values for start in starts),
                 *(run.evaluate_section(section).values for run in runs for section in sections),
+                *(
+                    signals.evaluate_section(section).values
+                    for section in ([] if starts else list_earlier_sections(case))
+                ),
             ],
             deviations=lengths,
             mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),
