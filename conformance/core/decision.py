@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.near_limit import Limits, ValueErrors
+from pantocheck.conformance.core.near_limit import LimitPair, ValueErrors
 from pantocheck.conformance.core.verdicts import Verdict, judge
 
 DECISION_PATTERN = r"^(simple|guarded|shared-risk:0\.[0-9]{1,4})$"
@@ -87,7 +87,9 @@ def describe_decision(rule: DecisionRule) -> str:
             )
 
 
-def judge_by_rule(value: float, limits: Limits, errors: ValueErrors, rule: DecisionRule) -> tuple[Verdict, str | None]:
+def judge_by_rule(
+    value: float, limits: LimitPair, errors: ValueErrors, rule: DecisionRule
+) -> tuple[Verdict, str | None]:
     """Verdict of a value by a decision rule, and the reason why it is undecided.
 
     A value outside its limits fails under every rule, so that an unknown or large uncertainty never improves a verdict.
@@ -123,6 +125,6 @@ def judge_by_rule(value: float, limits: Limits, errors: ValueErrors, rule: Decis
             return "undecided", f"it lies outside the limits with a probability of {risk:.2g}, above {largest_risk:g}"
 
 
-def _contains(limits: Limits, value: float, half_width: float) -> bool:
+def _contains(limits: LimitPair, value: float, half_width: float) -> bool:
     """Whether the limits contain the whole interval around a value."""
     return judge(value - half_width, *limits) == judge(value + half_width, *limits) == "pass"

@@ -10,13 +10,13 @@ import numpy as np
 
 from pantocheck.conformance.core.criterion import ComponentName
 
-CONFIDENCE = 0.95
+INTERVAL_SHARE = 0.95
 """Share of the joint sample inside an interval."""
 
-NORMAL_QUANTILE = 1.959964
+QUANTILE_95 = 1.959964
 """Half-width of a 95 % interval in standard deviations."""
 
-Limits = tuple[float | None, float | None]
+LimitPair = tuple[float | None, float | None]
 """Lower and upper limit; None: none on this side."""
 
 REMEDIES: Mapping[str, str] = MappingProxyType(
@@ -63,7 +63,7 @@ class ValueErrors:
         """Half-width of the 95 % interval of the distance between value and limit."""
         return math.hypot(self.find_half_width(value) or 0.0, self.limit_uncertainty or 0.0)
 
-    def find_conformity(self, limits: Limits) -> float | None:
+    def find_conformity(self, limits: LimitPair) -> float | None:
         """Probability that the value lies inside its limits (JCGM 106:2012, 7.2); None without a joint sample.
 
         It is the share of the joint sample inside the limits. An uncertain limit has a normal distribution.
@@ -73,7 +73,7 @@ class ValueErrors:
         lower, upper = (-math.inf if limits[0] is None else limits[0]), (math.inf if limits[1] is None else limits[1])
         if not self.limit_uncertainty:
             return sum(lower <= x <= upper for x in self.draws) / len(self.draws)
-        normal = NormalDist(0.0, self.limit_uncertainty / NORMAL_QUANTILE)
+        normal = NormalDist(0.0, self.limit_uncertainty / QUANTILE_95)
         return math.fsum(normal.cdf(upper - x) - normal.cdf(lower - x) for x in self.draws) / len(self.draws)
 
     @property
@@ -87,7 +87,7 @@ NO_ERRORS = ValueErrors()
 
 def interval_half_width(value: float, draws: Sequence[float]) -> float:
     """Half-width of the interval around a value that holds 95 % of a joint sample."""
-    return float(np.quantile(np.abs(np.subtract(draws, value)), CONFIDENCE))
+    return float(np.quantile(np.abs(np.subtract(draws, value)), INTERVAL_SHARE))
 
 
 def near_limit_remarks(

@@ -25,12 +25,15 @@ from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_ca
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.quantities.uncertainty import ABSENT, RECORD_COMPONENTS, UNKNOWN
+from pantocheck.conformance.quantities.uncertainty import ABSENT_BASIS, BOUNDED_COMPONENTS, UNKNOWN_BASIS
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents
 from pantocheck.conformance.results.scope import build_scope
 from pantocheck.model.statics.wave_factors import amplification_coefficient, doppler_factor
+
+WIDEST_RATIO = 3.0
+"""Largest ratio between the interval of a joint sample and the root of the sum of squares of its components."""
 
 
 def find_discrepancies(results: Results) -> list[str]:
@@ -175,14 +178,22 @@ def _check_conformity(case: CaseResult) -> Iterator[str]:
         yield f"{case.id}: {stated.passing_starts} of {stated.starts} starts pass"
 
 
+def _is_plausible(stated: float | None, combined: float) -> bool:
+    """Whether the width of an interval can be that of a joint sample of components with this combined width."""
+    return stated is not None and combined / WIDEST_RATIO <= stated <= WIDEST_RATIO * combined
+
+
 def list_unknown_components(
     case: CaseResult, row: Criterion, names: Collection[ComponentName]
 ) -> tuple[ComponentName, ...]:
     """Components of a criterion that are not known: of the whole case, or one of the record that the quantity lacks."""
-    unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN)]
+    unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN_BASIS)]
     reported = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity)
-    lacking = [name for name in RECORD_COMPONENTS if name in names and reported is not None and name not in reported]
-    return (*unknown, *(name for name in lacking if not case.uncertainty_basis.get(name, ABSENT).startswith(ABSENT)))
+    lacking = [name for name in BOUNDED_COMPONENTS if name in names and reported is not None and name not in reported]
+    return (
+        *unknown,
+        *(name for name in lacking if not case.uncertainty_basis.get(name, ABSENT_BASIS).startswith(ABSENT_BASIS)),
+    )
 
 
 def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:
@@ -248,8 +259,9 @@ def check_combination(case: CaseResult) -> Iterator[str]:
             expected = [math.hypot(*items) for items in zip(*columns, strict=False)]
             width = case.uncertainty.get(key, {}).get(name)
             numbers = width if isinstance(width, list) else [width]
-            same = len(numbers) == len(expected) and all(map(same_number, numbers, expected))
-            if not same and set(parts) == {"discretisation"}:
+            plausible = len(numbers) == len(expected) and all(map(_is_plausible, numbers, expected))
+            exact = plausible and all(map(same_number, numbers, expected))
+            if not plausible or (not exact and set(parts) == {"discretisation"}):
                 yield f"pantograph {key}: uncertainty of {name} does not follow from its components"
 
 

@@ -137,7 +137,7 @@ class CaseEvaluation:
         }
         runs = [signals, *starts]
         parts = SampleParts(
-            values=self.evaluation.values,
+            values=signals.evaluation.values,
             members=[
                 *(start.evaluation.values for start in starts),
                 *(run.evaluate_section(section).values for run in runs for section in sections),
@@ -150,7 +150,7 @@ class CaseEvaluation:
             mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),
             bounds=add_bounds(components),
         )
-        return Uncertainty(components, self.evaluation.values, draw_sample(parts, digest))
+        return Uncertainty(components, signals.evaluation.values, draw_sample(parts, digest))
 
     @cached_property
     def findings(self) -> dict[CheckName, Finding]:

@@ -9,7 +9,7 @@ from pantocheck.conformance.quantities.evaluation import SectionedSignals, Value
 from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
-from pantocheck.conformance.quantities.uncertainty import RECORD_COMPONENTS, Component, Uncertainty
+from pantocheck.conformance.quantities.uncertainty import BOUNDED_COMPONENTS, Component, Uncertainty
 from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, NORMAL_QUANTILE, bootstrap_deviations
 from pantocheck.conformance.records.record_preparation import PreparedRecord
 from pantocheck.conformance.records.record_resolution import resolution_component, sampling_component
@@ -53,7 +53,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
 def add_bounds(components: Mapping[ComponentName, Component]) -> dict[int, dict[str, float]]:
     """Largest changes by sampling rate and resolution together."""
     bounds: dict[int, dict[str, float]] = {}
-    for name in RECORD_COMPONENTS:
+    for name in BOUNDED_COMPONENTS:
         for owner, quantities in components[name].half_widths.items():
             for quantity, width in quantities.items():
                 if not isinstance(width, tuple):

@@ -11,14 +11,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.near_limit import NORMAL_QUANTILE
+from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.uncertainty import JointSample
 
 DRAWS = 1000
 """Number of draws: a probability of 0.5 is known within 3 %, one of 0.95 within 1.4 %."""
 
-DIGITS = 6
+DRAW_DIGITS = 6
 """Significant digits of a draw in results.json."""
 
 
@@ -51,7 +51,7 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
     """
     random = np.random.default_rng(int(digest[:16], 16))
     member = random.integers(0, len(parts.members) + 1, DRAWS)
-    mesh = random.standard_normal(DRAWS) / NORMAL_QUANTILE
+    mesh = random.standard_normal(DRAWS) / QUANTILE_95
     bound = random.uniform(-1.0, 1.0, DRAWS)
     sample: dict[int, dict[str, tuple[float, ...]]] = {}
     for owner, quantities in parts.values.items():
@@ -63,7 +63,7 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
                 draws = draws + factor * changes.get(owner, {}).get(name, 0.0)
             scatter = [parts.deviations, parts.bounds, *parts.members]
             if np.ptp(draws) > 0 and any(name in part.get(owner, {}) for part in scatter):
-                sample.setdefault(owner, {})[name] = tuple(float(f"{draw:.{DIGITS}g}") for draw in draws)
+                sample.setdefault(owner, {})[name] = tuple(float(f"{draw:.{DRAW_DIGITS}g}") for draw in draws)
     return sample
 
 

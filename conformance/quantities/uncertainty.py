@@ -11,13 +11,13 @@ from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.near_limit import interval_half_width
 from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
 
-RECORD_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution")
+BOUNDED_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution")
 """Components that bound what a record with fewer samples or digits hides."""
 
-ABSENT = "does not apply"
+ABSENT_BASIS = "does not apply"
 """Beginning of the basis of a component that a case cannot have."""
 
-UNKNOWN = "not known"
+UNKNOWN_BASIS = "not known"
 """Beginning of the basis of a component that is not known."""
 
 JointSample = Mapping[int, Mapping[str, tuple[float, ...]]]
@@ -57,14 +57,14 @@ class Uncertainty:
     @property
     def unknown_components(self) -> tuple[ComponentName, ...]:
         """Components that are not known; one that does not apply is none of them."""
-        return tuple(name for name, part in self.components.items() if part.basis.startswith(UNKNOWN))
+        return tuple(name for name, part in self.components.items() if part.basis.startswith(UNKNOWN_BASIS))
 
     def list_unknown(self, owner: int, quantity: str) -> tuple[ComponentName, ...]:
         """Components that are not known for a quantity: of all, or one of the record that only others have."""
         if quantity not in self.values.get(owner, {}):
             return self.unknown_components
         known = self.list_components(owner, quantity)
-        lacking = [name for name in RECORD_COMPONENTS if name in self.components and name not in known]
+        lacking = [name for name in BOUNDED_COMPONENTS if name in self.components and name not in known]
         return (*self.unknown_components, *lacking)
 
     @property

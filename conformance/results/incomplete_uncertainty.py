@@ -6,11 +6,10 @@ A component that is not known is not zero: the half-width of the others is then 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
+
 INCOMPLETE_MARK = "*"
 """Mark of a half-width without a component that is not known."""
-
-UNKNOWN_COMPONENT = "not known"
-"""Beginning of the basis of such a component, and text in place of a half-width of zero."""
 
 
 def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
@@ -19,7 +18,7 @@ def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
     Args:
         basis: `uncertainty_basis` of a case.
     """
-    return tuple(name for name, text in basis.items() if text.startswith(UNKNOWN_COMPONENT))
+    return tuple(name for name, text in basis.items() if text.startswith(UNKNOWN_BASIS))
 
 
 def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str | None) -> tuple[str, ...]:
@@ -46,7 +45,7 @@ def mark_half_width(width: float, text: str, missing: Sequence[str], sign: str =
     """
     if not missing:
         return f"{sign}{text}"
-    return f"{sign}{text}{INCOMPLETE_MARK}" if width else UNKNOWN_COMPONENT
+    return f"{sign}{text}{INCOMPLETE_MARK}" if width else UNKNOWN_BASIS
 
 
 def explain_mark(missing: Sequence[str]) -> str:

@@ -120,7 +120,7 @@ def test_junit_has_a_suite_for_every_step_and_case(content: dict[str, Any]) -> N
 def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
     assert "pass 6/6 steps" in render_badge(Results.model_validate(content))
     text = summarise(content)
-    assert text.startswith("# PASS: 6 of 6 required steps pass")
+    assert text.startswith("# PASS, CLOSE: 6 of 6 required steps pass")
     assert "| 5 Line tests | done | PASS |" in text.replace("&#8203;", "")
 
 
