@@ -34,7 +34,7 @@ def test_commands_for_a_folder_of_cases_run(tmp_path: Path, monkeypatch: pytest.
     for command in commands.splitlines():
         done = CliRunner().invoke(app, shlex.split(command)[1:])
         # The case has no limits, so that its verdict is informative.
-        assert done.exit_code == (1 if " run " in command else 0), (command, done.output, done.stderr)
+        assert done.exit_code == (3 if " run " in command else 0), (command, done.output, done.stderr)
 
 
 def test_entry_points_of_the_page_exist() -> None:

@@ -90,7 +90,7 @@ def test_comparison_passes_and_is_informative_without_a_tolerance(folder: Path) 
     }  # fmt: skip
     assert "PASS" in done.output
     done = CliRunner().invoke(app, command("line statics")[:-2])
-    assert done.exit_code == 1, done.output
+    assert done.exit_code == 3, done.output
     assert "INFO" in done.output
 
 

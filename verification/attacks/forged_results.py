@@ -9,9 +9,11 @@ from collections.abc import Callable
 from typing import Any
 
 from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.trust import decides_verdict
 from pantocheck.conformance.core.verdicts import judge, margin
+from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.line.library_folder import library_folder
@@ -29,6 +31,10 @@ def regrade(results: Tree) -> None:
         record = None if case["record"] is None else RecordFacts.model_validate(case["record"])
         for row in case["criteria"]:
             regrade_row(row, results["trust"])
+        rows = [Criterion.model_validate(row) for row in case["criteria"]]
+        starts = case["conformity"] or {"starts": 0, "passing_starts": 0}
+        found = find_case_conformity(rows, (starts["starts"], starts["passing_starts"]))
+        case["conformity"] = None if found is None else found.model_dump()
         case["criteria_verdict"] = judge_case((row["verdict"] for row in case["criteria"]), record)
         if case["verification"] is not None and case["verification"]["criteria"]:
             for row in case["verification"]["criteria"]:
@@ -46,8 +52,10 @@ def regrade_row(row: Tree, trust: str) -> None:
     judged = "skip" if value is None else judge(value, lower, upper)
     row["verdict"] = judged if decides_verdict(row["trust"], trust) else "info"
     row["margin"] = None if value is None else margin(value, lower, upper)
-    errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"])
-    row["uncertainty"] = errors.uncertainty
+    draws = tuple(row.get("draws", ()))
+    errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"], draws)
+    row["uncertainty"] = None if value is None else errors.find_half_width(value)
+    row["conformity"] = None if value is None else errors.find_conformity((lower, upper))
     row["close"] = near_limit_remarks(value, (lower, upper), row["unit"], errors)
     row["reason"] = None if judged == "pass" else row["reason"]
 
