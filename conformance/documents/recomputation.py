@@ -36,6 +36,10 @@ WIDEST_RATIO = 3.0
 """Largest ratio between the interval of a joint sample and the root of the sum of squares of its components."""
 
 
+ROUNDING_OF_DRAWS = 1e-5
+"""Largest effect of the rounding of the draws on a width, relative to the value."""
+
+
 def find_discrepancies(results: Results) -> list[str]:
     """Find contradictions between the numbers and verdicts of results."""
     rule = parse_decision(results.decision, "results, key decision")
@@ -178,9 +182,11 @@ def _check_conformity(case: CaseResult) -> Iterator[str]:
         yield f"{case.id}: {stated.passing_starts} of {stated.starts} starts pass"
 
 
-def _is_plausible(stated: float | None, combined: float) -> bool:
+def _is_plausible(stated: float | None, combined: float, rounding: float) -> bool:
     """Whether the width of an interval can be that of a joint sample of components with this combined width."""
-    return stated is not None and combined / WIDEST_RATIO <= stated <= WIDEST_RATIO * combined
+    if stated is None:
+        return False
+    return combined / WIDEST_RATIO - rounding <= stated <= WIDEST_RATIO * combined + rounding
 
 
 def list_unknown_components(
@@ -259,7 +265,11 @@ def check_combination(case: CaseResult) -> Iterator[str]:
             expected = [math.hypot(*items) for items in zip(*columns, strict=False)]
             width = case.uncertainty.get(key, {}).get(name)
             numbers = width if isinstance(width, list) else [width]
-            plausible = len(numbers) == len(expected) and all(map(_is_plausible, numbers, expected))
+            value = case.quantities.get(key, {}).get(name, 0.0)
+            rounding = ROUNDING_OF_DRAWS * abs(value) if isinstance(value, float | int) else 0.0
+            plausible = len(numbers) == len(expected) and all(
+                _is_plausible(width, other, rounding) for width, other in zip(numbers, expected, strict=True)
+            )
             exact = plausible and all(map(same_number, numbers, expected))
             if not plausible or (not exact and set(parts) == {"discretisation"}):
                 yield f"pantograph {key}: uncertainty of {name} does not follow from its components"

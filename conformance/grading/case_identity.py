@@ -6,7 +6,7 @@ from typing import Any
 from pantocheck.conformance.cases.case import Case, json_digest
 from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.library import load_case
-from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.cases.limits import Limit, own_limits
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.core.criterion import Requirement
@@ -77,7 +77,9 @@ def profile_limits_digest(profile: Profile, limits: Sequence[Limit] = ()) -> str
 def list_limit_changes(case: Case) -> list[str]:
     """Sentences on the limits of the case file that the user's limits weaken, remove or give another trust."""
     limits = {limit.target: limit for limit in case.limits}
-    changes = (describe_limit_change(stated, limits.get(stated.target)) for stated in case.file.limit)
+    known = list_library(library_folder())
+    stated_limits = own_limits(case.file.limit, load_case(known[case.id]).limits if case.id in known else ())
+    changes = (describe_limit_change(stated, limits.get(stated.target)) for stated in stated_limits)
     return [change for change in changes if change is not None]
 
 

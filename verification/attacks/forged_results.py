@@ -165,7 +165,16 @@ def shrink_uncertainty(results: Tree, _: random.Random) -> None:
     shrink(case["uncertainty_components"])
     for row in [*case["criteria"], *((case["verification"] or {}).get("criteria") or [])]:
         shrink(row["components"])
+        row["draws"] = [row["value"] + (draw - row["value"]) / 10 for draw in row.get("draws", ())]
     regrade(results)
+    adopt_widths(case_of(results))
+
+
+def adopt_widths(case: Tree) -> None:
+    """State the uncertainty of every criterion among those of the quantities."""
+    for row in case["criteria"]:
+        if row["uncertainty"] is not None:
+            case["uncertainty"][str(row["pantograph"])][row["quantity"]] = row["uncertainty"]
 
 
 def shrink(tree: Any) -> None:
@@ -182,7 +191,7 @@ def strip_uncertainty(results: Tree, _: random.Random) -> None:
     case = case_of(results)
     case.update(uncertainty={}, uncertainty_components={}, uncertainty_basis={})
     for row in [*case["criteria"], *((case["verification"] or {}).get("criteria") or [])]:
-        row.update(components={}, uncertainty=None)
+        row.update(components={}, uncertainty=None, draws=[])
     regrade(results)
 
 
@@ -236,12 +245,14 @@ def invent(results: Tree, chance: random.Random) -> None:
     for row in [*case["criteria"], *((case["verification"] or {}).get("criteria") or [])]:
         if row["quantity"] in names:
             row["value"] *= factor
+            row["draws"] = [factor * draw for draw in row.get("draws", ())]
     for trace in case["traces"].values():
         for key in ("force_N", "force_20_N"):
             trace[key] = [float(f"{factor * x:.6g}") for x in trace[key]]
         trace["spectrum"]["amplitude_N"] = [float(f"{factor * x:.6g}") for x in trace["spectrum"]["amplitude_N"]]
         trace.update(mean_N=trace["mean_N"] * factor, std_N=trace["std_N"] * factor)
     regrade(results)
+    adopt_widths(case_of(results))
 
 
 def of_case(**changes: Any) -> Change:

@@ -52,7 +52,6 @@ OUTSIDE = {
     "trust of the run": "page 1 states the trust; the verdict is `info`",
     "case for information": "page 1 names the case; the verdict is `info`",
     "uncertainty divided by ten": "",
-    "uncertainty stated as not known": "the certificate states the lack",
     "name of the system": "",
     "version of the system": "",
     "digest of the suite": "the output names the other digest",

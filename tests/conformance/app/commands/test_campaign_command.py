@@ -23,7 +23,7 @@ set = ["discretisation.element_m=3", "discretisation.time_step_s=0.005"]
 limits = "limits.toml"
 [[vary]]
 key = "pantograph.uplift_force_N"
-values = [110.0, 130.0, -1.0]
+values = [116.0, 130.0, -1.0]
 """
 
 LIMITS = """
@@ -31,6 +31,7 @@ LIMITS = """
 case = "en50318-2002/250"
 quantity = "mean_force_N"
 pantograph = 1
+lower = 110.0
 upper = 120.0
 trust = "primary"
 source = "test"
@@ -54,8 +55,8 @@ def test_campaign_in_processes_equals_that_in_one_process(campaign: Path, tmp_pa
     assert {path.suffix for path in out.iterdir()} >= {".csv", ".json", ".html", ".pdf", ".sqlite"}
     rows = list(csv.DictReader((out / "campaign.csv").read_text().splitlines()))
     assert [row["verdict"] for row in rows] == ["pass", "fail", "error"]
-    assert [row["pantograph.uplift_force_N"] for row in rows] == ["110.0", "130.0", "-1.0"]
-    assert float(rows[0]["1.mean_force_N"]) == pytest.approx(110, abs=5)
+    assert [row["pantograph.uplift_force_N"] for row in rows] == ["116.0", "130.0", "-1.0"]
+    assert float(rows[0]["1.mean_force_N"]) == pytest.approx(116, abs=5)
     assert "must be greater than 0" in rows[2]["reason"]
     assert 0 < float(rows[0]["1.mean_force_N.uncertainty"]) < 5
 
