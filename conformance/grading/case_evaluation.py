@@ -111,9 +111,7 @@ class CaseEvaluation:
                 **components,
                 "start": start_component(case, signals, others),
                 "section": shift_component(signals, shift_section(case.analysis_section, span_length(case))),
-                "length": length_component(
-                    signals.pantographs, span_length(case), case.speed, case.digest.removeprefix("sha256:")
-                ),
+                "length": length_component(signals.pantographs, signals.line, span_length(case), case.speed),
             }
         )
 

@@ -3,11 +3,19 @@
 from collections.abc import Mapping, Sequence
 
 from pantocheck.conformance.cases.start_and_section import shift_section
-from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import LINE, SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
-from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, bootstrap_uncertainties
+from pantocheck.conformance.records.length_uncertainty import (
+    FEWEST_SPANS,
+    FEWEST_SPANS_95,
+    LengthUncertainty,
+    SubRecordRange,
+    length_uncertainties,
+    uplift_uncertainties,
+)
 from pantocheck.conformance.records.record_preparation import PreparedRecord
 
 SAMPLE_SAFETY_FACTOR = 1.25
@@ -19,20 +27,19 @@ MIN_SECTIONS = 3
 ONE_RUN = Component("not known: the record holds one run")
 
 
-def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Uncertainty:
+def assess_uncertainty(record: PreparedRecord, span_m: float) -> Uncertainty:
     """Uncertainty of the quantities of a record without a case.
 
     Args:
         record: Signals of the record.
         span_m: Length of a span [m].
-        digest: SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
     """
     return Uncertainty(
         {
             "discretisation": ONE_RUN,
             "start": ONE_RUN,
             "section": shift_component(record, shift_section(record.section, span_m)),
-            "length": length_component(record.evaluated_pantographs, span_m, record.speed, digest),
+            "length": length_component(record.evaluated_pantographs, record.line, span_m, record.speed),
         }
     )
 
@@ -51,22 +58,32 @@ def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, f
 
 
 def length_component(
-    pantographs: Mapping[int, PantographSignals | SignalsOutside], span_m: float, speed: float, digest: str
+    pantographs: Mapping[int, PantographSignals | SignalsOutside], line: LineSignals, span_m: float, speed: float
 ) -> Component:
-    """Uncertainty from the length of the record, by a moving-block bootstrap with blocks of one span.
+    """Uncertainty from the length of the record.
 
     Args:
         pantographs: Signals by number from 1.
+        line: Signals of the line.
         span_m: Length of a span [m].
         speed: Speed of the train [m/s].
-        digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
-    widths = {
-        number: bootstrap_uncertainties(signals, span_m / speed, digest) for number, signals in pantographs.items()
-    }
-    if not any(widths.values()):
-        return Component(f"not known: the analysis section is shorter than {FEWEST_BLOCKS} spans")
-    return Component(f"moving-block bootstrap, blocks of {span_m:g} m", widths)
+    found = {number: length_uncertainties(signals, span_m / speed) for number, signals in pantographs.items()}
+    if not any(found.values()):
+        return Component(f"not known: the analysis section is shorter than {FEWEST_SPANS} spans")
+    uplift = uplift_uncertainties(line)
+    found = ({LINE: uplift} if uplift else {}) | found
+    widths = {owner: {name: x.half_width for name, x in part.items()} for owner, part in found.items()}
+    return Component(_describe_length([x for part in found.values() for x in part.items()], span_m), widths)
+
+
+def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: float) -> str:
+    ranges = [name for name, uncertainty in found if isinstance(uncertainty, SubRecordRange)]
+    of_halves = f"range of the values of half records, spans of {span_m:g} m"
+    if len(ranges) == len(found):
+        return f"{of_halves}; fewer than {FEWEST_SPANS_95} spans are too few for a 95 % interval"
+    interval = f"95 % interval from the fluctuations along the record, spans of {span_m:g} m"
+    return f"{interval}; {of_halves}, for {', '.join(dict.fromkeys(ranges))}" if ranges else interval
 
 
 def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
