@@ -49,6 +49,9 @@ COSINES = 4
 LARGEST_CORRELATION = 0.8
 """Largest assumed correlation of neighbouring spans [-]; 40 spans do not show a larger one."""
 
+FEWEST_DEGREES = 3.0
+"""Smallest number of degrees of freedom of the scale of an extreme; jackknife estimates of it scatter."""
+
 SAME_VALUE = 0.01
 """Difference of equal values, as a share of their range [-]; the spans differ by one sample in length."""
 
@@ -299,19 +302,22 @@ def _upper_correlation(influence: RealArray) -> float:
 def _extreme_interval(extremes: RealArray) -> Interval95:
     """Interval of the sum of the largest values of independent extremes, from those of the spans, (extremes, spans).
 
-    The extreme of a record scatters with its level, which the mean extreme of the spans shows, and about it. This second
-    part is that of a Gumbel variate. Its scale is estimated; a Student factor with the degrees of freedom of the
-    estimate (Welch 1947) allows for that.
+    The extreme of independent spans scatters like a Gumbel variate. Its scale is estimated; a Student factor with the
+    degrees of freedom of the estimate (Welch 1947) allows for that. Correlated spans have a common level, which one
+    record does not show in full: its variance replaces that of the mean of independent spans.
     """
-    influence = extremes.sum(axis=0)
-    n, variance = influence.size, 0.0
+    influence = extremes.sum(axis=0) - extremes.sum(axis=0).mean()
+    contributions, n = cosine_contributions(influence), influence.size
+    independent = influence @ influence / (n * (n - 1))
+    shown = max(1 - contributions @ contributions / (n * independent), 0.5)
+    variance = -independent
     for maxima in extremes:
         scale = float(extreme_scale(maxima[None, :], n)[0])
         others = np.log(extreme_scale(_leave_one_out(maxima), n))
-        freedom = max(1 / (2 * (n - 1) * float(np.var(others))), 3.0)
+        freedom = max(1 / (2 * (n - 1) * float(np.var(others))), FEWEST_DEGREES)
         widening = _student_quantile(freedom) / _student_quantile(np.inf)
-        variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2
-    return Interval95(cosine_contributions(influence - influence.mean()), float(np.sqrt(variance)), np.asarray)
+        variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2 / shown
+    return Interval95(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
 
 
 def _leave_one_out(values: RealArray) -> RealArray:
