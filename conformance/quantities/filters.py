@@ -3,6 +3,7 @@
 A transfer function in polynomial form overflows at high sampling rates and low cut-offs; sections do not.
 """
 
+from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
@@ -76,7 +77,7 @@ class Filter(InputTable):
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         order, cutoff = self.single_run(rate)
-        return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
+        return _design(order, cutoff, rate)
 
     @property
     def runs(self) -> int:
@@ -118,6 +119,12 @@ class Filter(InputTable):
         """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
         _, response = scipy.signal.sosfreqz(self.sections(rate), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** self.runs)
+
+
+@cache
+def _design(order: int, cutoff: float, rate: float) -> RealArray:
+    """Sections of a Butterworth filter; their design takes longer than a run over a short record."""
+    return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
 
 
 def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:

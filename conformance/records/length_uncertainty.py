@@ -2,11 +2,11 @@
 
 The force differs from span to span, so that another record of the same length would have somewhat different statistics.
 
-Influence of a span: n - 1 times the change of a statistic if the span is left out (jackknife). The mean of the influences
-has the variance of the statistic. Neighbouring spans are correlated. The variance is therefore taken from the slowest
-fluctuations along the record: the coefficients of the influences in the cosines of 1/2, 1, 3/2 and 2 periods (Lazarus,
-Lewis, Stock and Watson 2018, doi:10.1080/07350015.2018.1506926). Four coefficients give a Student variate with four
-degrees of freedom.
+Influence of a span: n - 1 times the change of a statistic if the span is left out (jackknife). The mean of the
+influences has the variance of the statistic. Neighbouring spans are correlated. The variance is therefore taken from
+the slowest fluctuations along the record: the coefficients of the influences in the cosines of 1/2, 1, 3/2 and 2
+periods (Lazarus, Lewis, Stock and Watson 2018, doi:10.1080/07350015.2018.1506926). Four coefficients give a Student
+variate with four degrees of freedom.
 
 Extremes: the extreme of a record scatters about its expected value, the return level of the record. Its scatter follows
 from the extremes of the spans by a generalised extreme value distribution (Hosking, Wallis and Wood 1985,
@@ -15,9 +15,10 @@ doi:10.1080/00401706.1985.10488049).
 docs/tables/coverage.csv shows how often the intervals contain the true value.
 """
 
+import math
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -53,7 +54,10 @@ FEWEST_DEGREES = 3.0
 """Smallest number of degrees of freedom of the scale of an extreme; jackknife estimates of it scatter."""
 
 SAME_VALUE = 0.01
-"""Difference of equal values, as a share of their range [-]; the spans differ by one sample in length."""
+"""Difference of equal values over the standard deviation [-]; the spans differ by one sample in length."""
+
+NORMAL_QUANTILE = 1.96
+"""Half-width of a 95 % interval in standard deviations."""
 
 GUMBEL_HALF_WIDTH = 2.429
 """Half-width that contains 95 % of a Gumbel variate about its mean, in units of its scale."""
@@ -147,7 +151,7 @@ class SingleSpans(SpanSelections):
     """Statistics of each span."""
 
     def extent(self, series: RealArray, scale: float) -> RealArray:
-        """Largest and negative smallest value of each span, (2, spans), whose extremes add up to those of the record."""
+        """Largest and negative smallest value of each span, (2, spans), whose maxima add up to that of the record."""
         return np.array([self.largest(scale * series), self.largest(-scale * series)])
 
 
@@ -181,9 +185,7 @@ class SpanDivision:
         return SpanSelections(self.starts, (first <= index) & (index < first + length))
 
 
-def length_uncertainties(
-    signals: PantographSignals | SignalsOutside, span_s: float
-) -> dict[str, LengthUncertainty]:
+def length_uncertainties(signals: PantographSignals | SignalsOutside, span_s: float) -> dict[str, LengthUncertainty]:
     """Uncertainties of the statistics of a record from its length.
 
     Args:
@@ -253,7 +255,7 @@ def _is_sparse(values: RealArray) -> bool:
     if not np.isfinite(values).all():
         return True
     distance = np.abs(values - np.median(values))
-    return bool(np.mean(distance <= SAME_VALUE * np.ptp(values)) > 0.5)
+    return bool(np.mean(distance <= SAME_VALUE * values.std()) > 0.5)
 
 
 def _statistic_interval(others: RealArray, value: float, never_negative: bool) -> Interval95:
@@ -284,19 +286,25 @@ def cosine_contributions(influence: RealArray) -> RealArray:
     doi:10.1093/biomet/41.3-4.403).
     """
     n = influence.size
-    frequency = np.pi * np.arange(1, COSINES + 1) / n
-    coefficients = np.sqrt(2 / n) * np.cos(frequency[:, None] * (np.arange(n) + 0.5)) @ influence
+    frequency, cosines = _list_cosines(n)
     rho = _upper_correlation(influence)
     spectrum_ratio = (1 - 2 * rho * np.cos(frequency) + rho**2) / (1 - rho) ** 2
     finite_length = 1 - 2 * rho * (1 - rho**n) / (n * (1 - rho**2))
-    return np.asarray(coefficients * np.sqrt(spectrum_ratio * finite_length / (n * COSINES)))
+    return np.asarray(cosines @ influence * np.sqrt(spectrum_ratio * finite_length / (n * COSINES)))
+
+
+@cache
+def _list_cosines(n: int) -> tuple[RealArray, RealArray]:
+    """Frequencies per span times 2 pi, (cosines,), and orthonormal cosines, (cosines, n)."""
+    frequency = np.pi * np.arange(1, COSINES + 1) / n
+    return frequency, np.sqrt(2 / n) * np.cos(frequency[:, None] * (np.arange(n) + 0.5))
 
 
 def _upper_correlation(influence: RealArray) -> float:
-    n, variance = influence.size, influence @ influence
-    rho = influence[1:] @ influence[:-1] / variance if variance else 0.0
-    unbiased = np.clip(rho + (1 + 4 * rho) / n, 0, LARGEST_CORRELATION)
-    return float(min(unbiased + 1.645 * np.sqrt((1 - unbiased**2) / n), LARGEST_CORRELATION))
+    n, variance = influence.size, float(influence @ influence)
+    rho = float(influence[1:] @ influence[:-1]) / variance if variance else 0.0
+    unbiased = min(max(rho + (1 + 4 * rho) / n, 0.0), LARGEST_CORRELATION)
+    return min(unbiased + 1.645 * math.sqrt((1 - unbiased**2) / n), LARGEST_CORRELATION)
 
 
 def _extreme_interval(extremes: RealArray) -> Interval95:
@@ -315,7 +323,7 @@ def _extreme_interval(extremes: RealArray) -> Interval95:
         scale = float(extreme_scale(maxima[None, :], n)[0])
         others = np.log(extreme_scale(_leave_one_out(maxima), n))
         freedom = max(1 / (2 * (n - 1) * float(np.var(others))), FEWEST_DEGREES)
-        widening = _student_quantile(freedom) / _student_quantile(np.inf)
+        widening = _student_quantile(freedom) / NORMAL_QUANTILE
         variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2 / shown
     return Interval95(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
 
@@ -351,7 +359,7 @@ def extreme_scale(maxima: RealArray, spans: int) -> RealArray:
 
 def _student_quantile(freedom: float) -> float:
     """Half-width of a 95 % interval of a Student variate."""
-    return float(scipy.special.stdtrit(freedom, 0.975)) if np.isfinite(freedom) else float(scipy.special.ndtri(0.975))
+    return float(scipy.special.stdtrit(freedom, 0.975))
 
 
 # Joint sample of the deviations of all quantities of a case.
@@ -361,8 +369,8 @@ Key = TypeVar("Key", bound=Hashable)
 def draw_deviations(intervals: Mapping[Key, Interval95], count: int, digest: str) -> dict[Key, RealArray]:
     """Draw joint deviations of quantities.
 
-    The deviations are those of a multivariate Student distribution. Its marginal distributions have the stated intervals,
-    and its correlations are those of the slow fluctuations along the record.
+    The deviations are those of a multivariate Student distribution. Its marginal distributions have the stated
+    intervals, and its correlations are those of the slow fluctuations along the record.
 
     Args:
         intervals: Intervals of quantities over the same spans.

@@ -14,8 +14,8 @@ coefficient rho from span to span.
 Rows. Every quantity, with 5, 8, 10, 15, 20, 30, 40 and 60 spans, and rho = 0, 0.3, 0.5 and 0.7. Rows are not pooled.
 
 Seeds. Records come in batches of 250. The seed of batch b of the row (spans, rho) is (50318, spans, 100 rho, b), with
-b = 0, 1, 2 ... The true values have the seeds (50318, 0, 100 rho, b). This rule was recorded before the first run, and no
-other seed enters the table.
+b = 0, 1, 2 ... The true values have the seeds (50318, 0, 100 rho, b). This rule was recorded before the first run, and
+no other seed enters the table.
 
 True values. A mean, a deviation or a share: the value of 60,000 spans. An extreme or a number of events: the mean value
 of all records of the row.
@@ -255,7 +255,7 @@ def _build_row(
 
 def print_rows(rows: Iterable[Row]) -> list[Row]:
     """Print a table of rows as they come, and return them."""
-    print("| quantity | spans | correlation | intervals | contained [%] | 95 % confidence [%] | width ratio | outcome |")
+    print("| quantity | spans | correlation | intervals | contained [%] | confidence [%] | width ratio | outcome |")
     print("|---|--:|--:|--:|--:|---|--:|---|")
     printed = []
     for row in rows:
