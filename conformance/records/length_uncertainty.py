@@ -16,7 +16,7 @@ docs/tables/coverage.csv shows how often the intervals contain the true value.
 """
 
 import math
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from typing import TypeVar
@@ -155,36 +155,6 @@ class SingleSpans(SpanSelections):
         return np.array([self.largest(scale * series), self.largest(-scale * series)])
 
 
-@dataclass(frozen=True)
-class SpanDivision:
-    """Division of the analysis section into spans."""
-
-    starts: NDArray[np.intp]
-    """As in `SpanSelections`."""
-
-    @property
-    def spans(self) -> int:
-        """Number of spans."""
-        return self.starts.size - 1
-
-    @cached_property
-    def single(self) -> SpanSelections:
-        """Selections of one span."""
-        return SingleSpans(self.starts, np.eye(self.spans, dtype=np.bool_))
-
-    @cached_property
-    def without_one(self) -> SpanSelections:
-        """Selections of all spans but one."""
-        return SpanSelections(self.starts, ~np.eye(self.spans, dtype=np.bool_))
-
-    @cached_property
-    def halves(self) -> SpanSelections:
-        """Stretches of half the spans; with an odd number, the larger half."""
-        index, length = np.arange(self.spans), (self.spans + 1) // 2
-        first = np.arange(self.spans - length + 1)[:, None]
-        return SpanSelections(self.starts, (first <= index) & (index < first + length))
-
-
 def length_uncertainties(signals: PantographSignals | SignalsOutside, span_s: float) -> dict[str, LengthUncertainty]:
     """Uncertainties of the statistics of a record from its length.
 
@@ -196,16 +166,20 @@ def length_uncertainties(signals: PantographSignals | SignalsOutside, span_s: fl
         Uncertainties by quantity; empty if the analysis section is not covered or too short. A quantity of zero that is
         never negative has none.
     """
+    found: dict[str, LengthUncertainty] = {}
     try:
-        division = _divide(signals.delivered.size, span_s * signals.force.rate)
+        size = signals.delivered.size
     except (SectionNotCovered, ChannelMissing):
-        return {}
-    found = {}
-    for quantity in (*PANTOGRAPH_QUANTITIES, *list_stated(signals)) if division else ():
+        return found
+    spans = min(round(size / max(span_s * signals.force.rate, 1.0)), MOST_BLOCKS)
+    if spans < FEWEST_SPANS:
+        return found
+    starts = np.round(np.linspace(0, size, spans + 1)).astype(np.intp)
+    for quantity in (*PANTOGRAPH_QUANTITIES, *list_stated(signals)):
         try:
             value = float(quantity.compute(signals, WHOLE_RECORD))
             if value != 0 or not quantity.never_negative:
-                found[quantity.name] = _find_uncertainty(quantity, signals, value, division)
+                found[quantity.name] = _find_uncertainty(quantity, signals, value, starts)
         except QuantityUnavailable:
             continue
     return {name: uncertainty for name, uncertainty in found.items() if np.isfinite(uncertainty.half_width)}
@@ -225,29 +199,25 @@ def uplift_uncertainties(line: LineSignals) -> dict[str, LengthUncertainty]:
     return found
 
 
-def _divide(size: int, span: float) -> SpanDivision | None:
-    """Spans of equal length; None if there are too few."""
-    spans = min(round(size / max(span, 1.0)), MOST_BLOCKS)
-    if spans < FEWEST_SPANS:
-        return None
-    return SpanDivision(np.round(np.linspace(0, size, spans + 1)).astype(np.intp))
-
-
 def _find_uncertainty(
-    quantity: PantographQuantity, signals: ForceSignals, value: float, division: SpanDivision
+    quantity: PantographQuantity, signals: ForceSignals, value: float, starts: NDArray[np.intp]
 ) -> LengthUncertainty:
-    if division.spans >= FEWEST_SPANS_95:
+    index = np.arange(starts.size - 1)
+    single = index[:, None] == index
+    if index.size >= FEWEST_SPANS_95:
         if quantity.extreme:
             sign = {"largest": 1, "smallest": -1}[quantity.extreme]
-            extremes = np.atleast_2d(sign * quantity.compute(signals, division.single))
+            extremes = np.atleast_2d(sign * quantity.compute(signals, SingleSpans(starts, single)))
             if not any(map(_is_sparse, extremes)):
                 return _extreme_interval(extremes)
         else:
-            others = quantity.compute(signals, division.without_one)
+            others = quantity.compute(signals, SpanSelections(starts, ~single))
             if not _is_sparse(others) and not (quantity.never_negative and np.min(others) <= 0):
                 return _statistic_interval(others, value, quantity.never_negative)
-    halves = quantity.compute(signals, division.halves)
-    return SubRecordRange(float(np.max(np.abs(halves - value))))
+    half = (index.size + 1) // 2
+    first = np.arange(index.size - half + 1)[:, None]
+    stretches = SpanSelections(starts, (first <= index) & (index < first + half))
+    return SubRecordRange(float(np.max(np.abs(quantity.compute(signals, stretches) - value))))
 
 
 def _is_sparse(values: RealArray) -> bool:
@@ -263,18 +233,13 @@ def _statistic_interval(others: RealArray, value: float, never_negative: bool) -
 
     The logarithm of a quantity that is never negative has a more symmetrical distribution than the quantity.
     """
-    if never_negative:
-        return Interval95(cosine_contributions(_influence(np.log(others))), 0.0, partial(_relative_change, value))
-    return Interval95(cosine_contributions(_influence(others)), 0.0, np.asarray)
+    change = partial(_relative_change, value) if never_negative else np.asarray
+    others = np.log(others) if never_negative else others
+    return Interval95(cosine_contributions((others.size - 1) * (others.mean() - others)), 0.0, change)
 
 
 def _relative_change(value: float, deviation: RealArray) -> RealArray:
     return value * np.expm1(deviation)
-
-
-def _influence(others: RealArray) -> RealArray:
-    """Influence of each span from the values of a statistic without it."""
-    return (others.size - 1) * (others.mean() - others)
 
 
 def cosine_contributions(influence: RealArray) -> RealArray:
@@ -318,20 +283,14 @@ def _extreme_interval(extremes: RealArray) -> Interval95:
     contributions, n = cosine_contributions(influence), influence.size
     independent = influence @ influence / (n * (n - 1))
     shown = max(1 - contributions @ contributions / (n * independent), 0.5)
-    variance = -independent
+    variance, one_less = -independent, ~np.eye(n, dtype=np.bool_)
     for maxima in extremes:
         scale = float(extreme_scale(maxima[None, :], n)[0])
-        others = np.log(extreme_scale(_leave_one_out(maxima), n))
+        others = np.log(extreme_scale(np.broadcast_to(maxima, (n, n))[one_less].reshape(n, n - 1), n))
         freedom = max(1 / (2 * (n - 1) * float(np.var(others))), FEWEST_DEGREES)
         widening = _student_quantile(freedom) / NORMAL_QUANTILE
         variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2 / shown
     return Interval95(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
-
-
-def _leave_one_out(values: RealArray) -> RealArray:
-    """Samples without one value each, (n, n - 1)."""
-    n = values.size
-    return np.broadcast_to(values, (n, n))[~np.eye(n, dtype=np.bool_)].reshape(n, n - 1)
 
 
 def extreme_scale(maxima: RealArray, spans: int) -> RealArray:
@@ -383,10 +342,8 @@ def draw_deviations(intervals: Mapping[Key, Interval95], count: int, digest: str
     random = np.random.default_rng(int(digest[:16], 16))
     shared = random.standard_normal((count, COSINES))
     widening = np.sqrt(COSINES / random.chisquare(COSINES, count))
-
-    def draws() -> Iterator[tuple[Key, RealArray]]:
-        for key, interval in intervals.items():
-            normal = shared @ interval.contributions + interval.scatter * random.standard_normal(count)
-            yield key, interval.change(widening * normal)
-
-    return dict(draws())
+    drawn = {}
+    for key, interval in intervals.items():
+        normal = shared @ interval.contributions + interval.scatter * random.standard_normal(count)
+        drawn[key] = interval.change(widening * normal)
+    return drawn
