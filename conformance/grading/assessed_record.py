@@ -36,7 +36,7 @@ SAME_STATISTIC = 1e-6
 """Relative difference up to which two statistics are equal: those of independent records differ in earlier digits."""
 
 ASSUMED_SPAN_M = 60.0
-"""Length of a bootstrap block if the record does not state the span length [m]."""
+"""Assumed length of a span if the record does not state it [m]."""
 
 PLAUSIBLE_SPANS_M = (20.0, 120.0)
 """Shortest and longest distance of two supports that is taken for a span [m]."""
@@ -133,8 +133,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         record_digest=record_digest(path, table),
         force_digest=force_digest,
         values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
-        # The samples alone seed the bootstrap: options, names and formats of files do not change an interval.
-        uncertainty=assess_uncertainty(prepared, _block_length(known_line, sidecar), force_digest),
+        uncertainty=assess_uncertainty(prepared, _span_length(known_line, sidecar), force_digest),
         prepared=prepared,
         notes=prepared.notes,
         warnings=(*prepared.warnings, *exclusion_warnings),
@@ -181,7 +180,7 @@ def _assess_summary(path: Path, summary: RecordSummary, profile: Profile, line: 
     )
 
 
-def _block_length(line: LineTable, sidecar: RecordSidecar) -> float:
+def _span_length(line: LineTable, sidecar: RecordSidecar) -> float:
     """Length of a span [m]: as stated, or from the supports."""
     if line.span_m is not None:
         return line.span_m

@@ -21,6 +21,7 @@ from pantocheck.conformance.grading.criterion_grading import GradedValues, grade
 from pantocheck.conformance.grading.record_uncertainty import (
     add_bounds,
     draw_lengths,
+    find_lengths,
     largest_changes,
     length_component,
     section_spread,
@@ -127,7 +128,7 @@ class CaseEvaluation:
             return Uncertainty(components)
         starts = self.start_signals
         sections = shift_section(case.analysis_section, span_length(case))
-        lengths = draw_lengths(signals.pantographs, span_length(case), case.speed, digest)
+        lengths = find_lengths(signals.pantographs, signals.line, span_length(case), case.speed)
         components |= {
             "start": start_component(case, signals, self.start_evaluations),
             "section": shift_component(signals, sections),
@@ -146,7 +147,7 @@ class CaseEvaluation:
                     for section in ([] if starts else list_earlier_sections(case))
                 ),
             ],
-            deviations=lengths,
+            deviations=draw_lengths(lengths, digest),
             mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),
             bounds=add_bounds(components),
         )

@@ -2,15 +2,27 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from pantocheck.conformance.cases.start_and_section import shift_section
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import ComponentName
-from pantocheck.conformance.quantities.evaluation import SectionedSignals, ValuesByOwner
-from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
+from pantocheck.conformance.quantities.evaluation import LINE, SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.joint_sample import DRAWS, SampleParts, draw_sample
+from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.uncertainty import BOUNDED_COMPONENTS, Component, Uncertainty
-from pantocheck.conformance.records.block_bootstrap import FEWEST_BLOCKS, NORMAL_QUANTILE, bootstrap_deviations
+from pantocheck.conformance.records.length_uncertainty import (
+    FEWEST_SPANS,
+    FEWEST_SPANS_95,
+    Interval95,
+    LengthUncertainty,
+    SubRecordRange,
+    draw_deviations,
+    length_uncertainties,
+    uplift_uncertainties,
+)
 from pantocheck.conformance.records.record_preparation import PreparedRecord
 from pantocheck.conformance.records.record_resolution import resolution_component, sampling_component
 
@@ -32,7 +44,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
         digest: SHA-256 of the samples of the force in hexadecimal, the seed of the bootstrap.
     """
     sections = shift_section(record.section, span_m)
-    lengths = draw_lengths(record.evaluated_pantographs, span_m, record.speed, digest)
+    lengths = find_lengths(record.evaluated_pantographs, record.line, span_m, record.speed)
     components: dict[ComponentName, Component] = {
         "discretisation": ONE_RUN,
         "start": ONE_RUN,
@@ -44,7 +56,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
     parts = SampleParts(
         record.evaluation.values,
         [record.evaluate_section(section).values for section in sections],
-        lengths,
+        draw_lengths(lengths, digest),
         bounds=add_bounds(components),
     )
     return Uncertainty(components, record.evaluation.values, draw_sample(parts, digest))
@@ -75,29 +87,65 @@ def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, f
     return Component("analysis section shifted by up to three quarters of a span either way", widen_changes(widths))
 
 
-def draw_lengths(
-    pantographs: Mapping[int, PantographSignals | SignalsOutside], span_m: float, speed: float, digest: str
-) -> dict[int, dict[str, RealArray]]:
-    """Deviations of each quantity in records of the same length, by a moving-block bootstrap with blocks of one span.
+LengthsByOwner = Mapping[int, Mapping[str, LengthUncertainty]]
+"""Uncertainty from the length of a record, by pantograph (0: the line) and name of the quantity."""
+
+
+def find_lengths(
+    pantographs: Mapping[int, PantographSignals | SignalsOutside], line: LineSignals, span_m: float, speed: float
+) -> LengthsByOwner:
+    """Uncertainty of every quantity from the length of the record; empty for a record of few spans.
 
     Args:
         pantographs: Signals by number from 1.
+        line: Signals of the line.
         span_m: Length of a span [m].
         speed: Speed of the train [m/s].
+    """
+    found = {number: length_uncertainties(signals, span_m / speed) for number, signals in pantographs.items()}
+    if not any(found.values()):
+        return {}
+    uplift = uplift_uncertainties(line)
+    return ({LINE: uplift} if uplift else {}) | found
+
+
+def draw_lengths(lengths: LengthsByOwner, digest: str) -> dict[int, dict[str, RealArray]]:
+    """Joint deviations of the quantities by the length of the record.
+
+    Those of intervals keep their correlation. A range, which states no share of true values, has equally likely
+    deviations inside it, without correlation.
+
+    Args:
+        lengths: Uncertainties from `find_lengths`.
         digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
-    return {number: bootstrap_deviations(signals, span_m / speed, digest) for number, signals in pantographs.items()}
+    found = {(owner, name): x for owner, part in lengths.items() for name, x in part.items()}
+    intervals = {key: x for key, x in found.items() if isinstance(x, Interval95)}
+    drawn = draw_deviations(intervals, DRAWS, digest)
+    random = np.random.default_rng(int(digest[16:32], 16))
+    deviations: dict[int, dict[str, RealArray]] = {}
+    for (owner, name), uncertainty in found.items():
+        flat = random.uniform(-1.0, 1.0, DRAWS)
+        deviation = drawn[owner, name] if (owner, name) in drawn else uncertainty.half_width * flat
+        deviations.setdefault(owner, {})[name] = deviation
+    return deviations
 
 
-def length_component(deviations: Mapping[int, Mapping[str, RealArray]], span_m: float) -> Component:
-    """Uncertainty from the length of the record, from `draw_lengths`."""
-    widths = {
-        number: {name: float(NORMAL_QUANTILE * values.std()) for name, values in part.items()}
-        for number, part in deviations.items()
-    }
-    if not any(widths.values()):
-        return Component(f"not known: the analysis section is shorter than {FEWEST_BLOCKS} spans")
-    return Component(f"moving-block bootstrap, blocks of {span_m:g} m", widths)
+def length_component(lengths: LengthsByOwner, span_m: float) -> Component:
+    """Uncertainty from the length of the record, from `find_lengths`."""
+    if not lengths:
+        return Component(f"not known: the analysis section is shorter than {FEWEST_SPANS} spans")
+    widths = {owner: {name: x.half_width for name, x in part.items()} for owner, part in lengths.items()}
+    return Component(_describe_length([x for part in lengths.values() for x in part.items()], span_m), widths)
+
+
+def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: float) -> str:
+    ranges = [name for name, uncertainty in found if isinstance(uncertainty, SubRecordRange)]
+    of_halves = f"range of the values of half records, spans of {span_m:g} m"
+    if len(ranges) == len(found):
+        return f"{of_halves}; fewer than {FEWEST_SPANS_95} spans are too few for a 95 % interval"
+    interval = f"95 % interval from the fluctuations along the record, spans of {span_m:g} m"
+    return f"{interval}; {of_halves}, for {', '.join(dict.fromkeys(ranges))}" if ranges else interval
 
 
 def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:

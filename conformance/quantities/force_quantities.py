@@ -151,6 +151,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         other_definition=_causal(1.4),
         tables=("damping models",),
         force_level="max",
+        extreme="largest",
         compute=lambda signals, sampling: sampling.largest(signals.graded),
     ),
     _en50318(
@@ -160,6 +161,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         other_definition=_causal(15),
         tables=("damping models",),
         force_level="min",
+        extreme="smallest",
         compute=lambda signals, sampling: sampling.smallest(signals.graded),
     ),
     _en50318(
@@ -177,6 +179,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Longest contact loss",
         unit="s",
         definition="duration of the longest contact loss in the unfiltered force",
+        extreme="largest",
         compute=lambda signals, sampling: sampling.largest(loss_durations(_unfiltered(signals), signals.rate)),
     ),
     _loss(
@@ -193,6 +196,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         definition="highest minus lowest contact point over the analysis section",
         needs=HEIGHT,
         never_negative=True,
+        extreme="largest",
         compute=lambda signals, sampling: sampling.extent(signals.height, 1e3),
     ),
 )
@@ -208,5 +212,6 @@ LINE_QUANTITIES: tuple[LineQuantity, ...] = (
         source=EN50318,
         tables=("damping models",),
         compute=lambda signals: 1e3 * signals.largest_uplift,
+        support_values=lambda signals: 1e3 * signals.largest_uplifts,
     ),
 )

@@ -65,9 +65,18 @@ class LineSignals:
     @property
     def largest_uplift_index(self) -> tuple[int, int]:
         """Support and sample of the largest uplift that counts, indices of `uplift`; errors as in `uplift`."""
-        counted = counted_samples(self.supports, self.uplift, self.last_position)
-        support, sample = np.unravel_index(np.argmax(np.where(counted, self.uplift, -np.inf)), counted.shape)
+        support, sample = np.unravel_index(np.argmax(self._counted_uplift), self.uplift.shape)
         return int(support), int(sample)
+
+    @property
+    def largest_uplifts(self) -> RealArray:
+        """Largest uplift that counts at each of these supports, (k,) [m]; errors as in `uplift`."""
+        return np.asarray(self._counted_uplift.max(axis=1))
+
+    @property
+    def _counted_uplift(self) -> RealArray:
+        counted = counted_samples(self.supports, self.uplift, self.last_position)
+        return np.where(counted, self.uplift, -np.inf)
 
     def check_supports(self) -> None:
         """Check that every support of the analysis section has an uplift.

@@ -70,8 +70,10 @@ class PantographQuantity(Quantity):
     needs: Need[ForceSignals]
     compute: Callable[[ForceSignals, Sampling], RealArray]
     """Function of the signals and of a `Sampling`. The same function gives the value of the record and the values of
-    its bootstrap replicates, from which the uncertainty follows.
+    selections of its spans, from which the uncertainty follows.
     """
+    extreme: Literal["", "largest", "smallest"] = ""
+    """Side of the extreme value that the quantity is; empty: no extreme value."""
     scope: Literal["pantograph"] = "pantograph"
 
 
@@ -82,4 +84,6 @@ class LineQuantity(Quantity):
     needs: Need[LineSignals]
     compute: Callable[[LineSignals], float]
     """Function of the signals of the line."""
+    support_values: Callable[[LineSignals], RealArray]
+    """Values at the supports, (k,), of which the quantity is the largest."""
     scope: Literal["line"] = "line"

@@ -12,11 +12,11 @@ from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
 
-# Sampling: elementary statistics of a series, over the whole record or for each replicate of a bootstrap.
+# Sampling: elementary statistics of a series, over the whole record or for selections of its spans.
 class Sampling:
     """Statistics of all samples of the analysis section, as arrays of shape ().
 
-    A subclass for a bootstrap returns one number per replicate, as arrays of shape (replicates,).
+    A subclass returns one number per selection of spans, as arrays of shape (selections,).
     """
 
     def mean(self, series: RealArray) -> RealArray:
@@ -56,7 +56,7 @@ WHOLE_RECORD = Sampling()
 
 
 Estimate = TypeVar("Estimate", float, RealArray)
-"""A statistic of a record, or one value per bootstrap replicate."""
+"""A statistic of a record, or one value per selection of spans."""
 
 
 def coefficient_of_variation(mean: Estimate, deviation: Estimate) -> Estimate:
@@ -81,10 +81,10 @@ def contact_loss(force: RealArray, filter_applied_Hz: float | None, sampling: Sa
     Args:
         force: Unfiltered contact force over the analysis section, (n,) [N]; no contact is zero force.
         filter_applied_Hz: Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered.
-        sampling: Whole record, or bootstrap replicates.
+        sampling: Whole record, or selections of its spans.
 
     Returns:
-        Share of the samples [%], or one share per bootstrap replicate.
+        Share of the samples [%], or one share per selection.
 
     Raises:
         AlreadyFiltered: The force was filtered; a filter smooths a contact loss to a low force.

@@ -1,4 +1,4 @@
-"""Assessed record: bootstrap blocks of one span, and facts on the line from the record or from the user."""
+"""Assessed record: length of a span, and facts on the line from the record or from the user."""
 
 from collections.abc import Callable
 from contextlib import nullcontext
@@ -17,7 +17,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, load_assessed_record
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import LINE
-from pantocheck.conformance.records.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.records.length_uncertainty import length_uncertainties
 from pantocheck.conformance.records.sidecar_tables import LineTable
 
 SPEED, RATE, SUMMARY = 60.0, 100.0, library_folder() / "en50318-2002" / "known-passing-code" / "250.toml"
@@ -56,14 +56,14 @@ def load(tmp_path: Path) -> Load:
         (NOTHING, {}, 60.0),
     ],
 )
-def test_bootstrap_block_is_a_span(load: Load, line: LineTable, keys: dict[str, Any], length: float) -> None:
+def test_length_of_a_span_is_that_of_the_line(load: Load, line: LineTable, keys: dict[str, Any], length: float) -> None:
     """The span that the user states, that of the record, the median plausible distance of its supports, or 60 m."""
-    # The uncertainties are the same numbers as with blocks of that length: the samples seed the bootstrap.
     record = load(keys, line)
     component = record.uncertainty.components["length"]
-    assert component.basis.endswith(f"blocks of {length:g} m")
+    assert f"spans of {length:g} m;" in component.basis
     for number, pooled in record.prepared.pantographs.items():
-        assert component.half_widths[number] == bootstrap_uncertainties(pooled, length / SPEED, record.force_digest)
+        expected = length_uncertainties(pooled, length / SPEED)
+        assert component.half_widths[number] == {name: found.half_width for name, found in expected.items()}
     assert component.half_widths[1] != component.half_widths[2]
 
 

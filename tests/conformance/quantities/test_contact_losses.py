@@ -8,7 +8,7 @@ from pantocheck.conformance.quantities.evaluation import evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
-from pantocheck.conformance.records.block_bootstrap import bootstrap_uncertainties
+from pantocheck.conformance.records.length_uncertainty import Interval95, length_uncertainties
 
 RATE, SPEED = 1000.0, 50.0
 POSITION = SPEED * np.arange(20_000) / RATE
@@ -68,14 +68,18 @@ def test_random_losses_are_those_of_a_plain_count() -> None:
     np.testing.assert_allclose(loss_durations(force, RATE), durations)
 
 
-def test_bootstrap_gives_the_scatter_of_the_losses() -> None:
-    """Sixty losses in eighty blocks: a Poisson number scatters by its root, 1.96 sqrt(60) = 15 within 30 %."""
+def test_interval_gives_the_scatter_of_the_losses() -> None:
+    """250 losses in eighty spans: a Poisson number scatters by its root, 6 %; four squares show it within 40 %.
+
+    On the scale of logarithms, the half-width is 250 (exp(2.78 x 0.063) - 1) = 48.
+    """
     random = np.random.default_rng(6)
-    starts = random.integers(2000, 17_990, 60)
+    starts = random.choice(np.arange(2000, 17_990, 5), 250, replace=False)
     signals = build_signals(lose_contact(*((start, start + 3) for start in starts)))
-    widths = bootstrap_uncertainties(signals, 0.2, "ab" * 32)
-    assert widths["contact_loss_events"] == pytest.approx(15.2, rel=0.3)
-    assert widths["longest_contact_loss_s"] >= 0
+    found = length_uncertainties(signals, 0.2)
+    assert isinstance(found["contact_loss_events"], Interval95)
+    assert found["contact_loss_events"].half_width == pytest.approx(48, rel=0.4)
+    assert found["longest_contact_loss_s"].half_width == 0, "every loss lasts 3 ms"
 
 
 @pytest.mark.parametrize(
