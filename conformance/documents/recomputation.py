@@ -13,6 +13,7 @@ from pantocheck.conformance.documents.authenticity_check import EXACT, format_ex
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
+from pantocheck.conformance.grading.reading_grades import list_reading_remarks
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
@@ -56,6 +57,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed) -> Iterator[str]:
     graded = [row for row in case.criteria if not row.is_drift]
     ungraded = not graded and case.reason and stated in ("skip", "error")
     yield from _check_criteria(case, case.criteria, trust)
+    yield from (f"{case.id}, {text}" for text in _check_readings(case))
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
     verdict = judge_case((row.verdict for row in graded), record)
     if stated != verdict and not ungraded:
@@ -81,6 +83,21 @@ def _check_criteria(case: CaseResult, criteria: Sequence[Criterion], trust: Trus
         components = check_components(row, case.uncertainty_components, names)
         for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust)):
             yield f"{where}: {text}"
+
+
+def _check_readings(case: CaseResult) -> Iterator[str]:
+    """Remarks on other readings of the evaluation must follow from their values, and these from each other."""
+    for row in case.criteria:
+        if row.readings != list_reading_remarks(row, case.readings):
+            place = f"{row.quantity} of pantograph {row.pantograph}"
+            yield f"{place}: the remarks on readings do not follow from their values"
+    for row in () if case.verification is None else case.verification.criteria:
+        if row.readings:
+            yield f"verification, {row.quantity}: a remark on a reading, under which nothing is verified"
+    for reading in case.readings:
+        for key, reported in reading.quantities.items():
+            for text in _check_statistics(select_first(reported)):
+                yield f"reading '{reading.id}', pantograph {key}: {text}"
 
 
 def _check_verification(case: CaseResult, verification: CaseVerification, record: RecordFacts | None) -> Iterator[str]:

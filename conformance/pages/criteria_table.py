@@ -66,7 +66,8 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
     unit = "" if value is None else criterion.unit
     shown, limits = format_beside_limits(value, lower, upper)
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
-    close = criterion.close if criterion.is_close else ()
+    close = criterion.close if criterion.is_close else []
+    readings = criterion.readings if criterion.depends_on_reading else []
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
@@ -75,7 +76,9 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
         limits=limits,
         margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion.trust or "",
-        remarks=tuple(filter(None, (criterion.reason, *close, remark_shift(criterion), _remark_limit(criterion)))),
+        remarks=tuple(
+            filter(None, (criterion.reason, *close, *readings, remark_shift(criterion), _remark_limit(criterion)))
+        ),
     )
 
 

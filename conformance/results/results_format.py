@@ -32,6 +32,7 @@ from pantocheck.conformance.results.case_facts_format import (
     EventFacts,
     LawForces,
     MeasuredRun,
+    ReadingFacts,
     RecordFacts,
     ReferenceValues,
     StoredValues,
@@ -181,6 +182,8 @@ class CaseResult(ResultsPart):
     """Steps of the procedure that the case belongs to."""
     criteria: list[Criterion]
     quantities: Quantities
+    readings: Annotated[list[ReadingFacts], Field(exclude_if=lambda readings: not readings)] = []
+    """Values under the other documented readings of the case; missing: it documents none, or there is no record."""
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[dict[Owner, dict[str, float]], Field(default_factory=dict)]
     """Largest change when the analysis section is shifted span by span, as in `quantities`; not part of
