@@ -1,7 +1,7 @@
 """`pantocheck readings`: values and verdicts of a record or case under every documented reading of its evaluation."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +11,14 @@ from rich.text import Text
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
-from pantocheck.conformance.app.commands.console import build_table, escape_text, indent_text, style_verdict
+from pantocheck.conformance.app.commands.console import (
+    FittedTable,
+    build_table,
+    escape_text,
+    indent_text,
+    select_main,
+    style_verdict,
+)
 from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
 from pantocheck.conformance.cases.case import Case
@@ -19,21 +26,23 @@ from pantocheck.conformance.cases.case_file import DEFAULT_READING
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import load_entry
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.results_part import select_single
+from pantocheck.conformance.core.results_part import Number, select_single
 from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.criterion_grading import skip_unlimited
 from pantocheck.conformance.grading.reading_grades import judge_reading
 from pantocheck.conformance.quantities.limit_text import format_graded, name_value
 from pantocheck.conformance.records.record_reading import open_record
-from pantocheck.conformance.results.results_format import CaseResult, Quantities
+from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Outcome
 
 SUMMED_BANDS = ("rms_0_5_N", "rms_5_20_N")
-"""Bands that share out the frequencies of `std_force_N`."""
+"""Bands that share out the frequencies of `std_force_N`; their sum is the root of the sum of their squares."""
 
 
 def readings_command(
@@ -70,12 +79,8 @@ def readings_command(
     conclusion = f"{case.id}: {turned} of {len(result.criteria)} criteria {count} side between {len(names)} readings"
     return CommandOutput(
         escape_text(conclusion),
-        {
-            "case": case.id,
-            "readings": [reading.model_dump(mode="json") for reading in result.readings],
-            "criteria": [row.model_dump(mode="json") for row in result.criteria],
-        },
-        [*_list_tables(result, names), Text(), *_describe_readings(case, result)],
+        {"case": case.id, "readings": result.readings, "criteria": result.criteria},
+        [_build_table(result, names), Text(), *_describe_readings(case, result)],
     )
 
 
@@ -95,46 +100,53 @@ def _open_subject(subject: str, changed: list[str], catalogue: Catalogue) -> tup
     return case, RecordFolder(path.stem, "", ((name, path.with_suffix(".toml")),)).run(case)
 
 
-def _list_tables(result: CaseResult, names: list[str]) -> Iterator[RenderableType]:
-    """Criteria by readings, and the sum of the bands beside the standard deviation."""
+def _build_table(result: CaseResult, names: list[str]) -> FittedTable:
+    """Criteria, or main values without limits, by readings; and the sum of the bands against the standard deviation."""
     table = build_table("criterion", "limits", *names, "mark", unbroken=("limits", *names, "mark"), right=names)
-    for row in result.criteria:
-        others = [judge_reading(row, reading) for reading in result.readings]
-        cells = [(row.value, row.verdict), *others]
-        pantograph = f", pantograph {row.pantograph}" if row.pantograph > 1 else ""
+    for row in result.criteria or _list_unlimited(result):
+        cells = [(row.value, row.verdict), *(judge_reading(row, reading) for reading in result.readings)]
+        texts = [(format_graded(value, row.lower, row.upper).value, verdict) for value, verdict in cells]
         table.add_row(
-            escape_text(name_value(row.quantity, row.item) + pantograph),
+            escape_text(name_value(row.quantity, row.item) + _name_owner(row.pantograph)),
             format_graded(row.value, row.lower, row.upper).bounds,
-            *(
-                Text.assemble(format_graded(value, row.lower, row.upper).value, " ", style_verdict(verdict))
-                for value, verdict in cells
-            ),
+            *(Text(f"{text} ") + style_verdict(verdict) if result.criteria else text for text, verdict in texts),
             "reading" if row.readings else "",
         )
-    if table.row_count:
-        yield table
-        yield Text()
-    sums = build_table("contact force, 0-20 Hz [N]", *names, unbroken=names, right=names)
     quantities = [result.quantities, *(reading.quantities for reading in result.readings)]
     for owner in sorted(set(result.quantities) - {"0"}):
-        suffix = f", pantograph {owner}" if owner != "1" else ""
-        parts = [_sum_bands(values, owner) for values in quantities]
-        for label, texts in {
-            "std_force_N": [format_graded(std, None, None).value for std, _ in parts],
-            "root of the sum of squares of the bands": [format_graded(total, None, None).value for _, total in parts],
-            "difference of both": [
-                "-" if not std or total is None else f"{100 * (total / std - 1):+.1f} %" for std, total in parts
-            ],
-        }.items():
-            sums.add_row(label + suffix, *texts)
-    yield sums
+        sums = [_sum_bands(values.get(owner, {})) for values in quantities]
+        table.add_row(
+            f"sum of bands, 0-20 Hz{_name_owner(int(owner))}",
+            "",
+            *(format_graded(total, None, None).value for total, _ in sums),
+        )
+        table.add_row(
+            "  against std_force_N", "", *("-" if change is None else f"{change:+.1f} %" for _, change in sums)
+        )
+    return table
 
 
-def _sum_bands(quantities: Quantities, owner: str) -> tuple[float | None, float | None]:
-    """Standard deviation up to 20 Hz, and the root of the sum of the squares of its bands [N]; None if not known."""
-    values = quantities.get(owner, {})
+def _name_owner(number: int) -> str:
+    return f", pantograph {number}" if number > 1 else ""
+
+
+def _list_unlimited(result: CaseResult) -> list[Criterion]:
+    """Main values of a case without limits."""
+    return [
+        skip_unlimited(name, "no limit", "", owner=int(owner), value=select_single(values[name]))
+        for owner, values in result.quantities.items()
+        for name in select_main(result.quantities)
+        if name in values
+    ]
+
+
+def _sum_bands(values: Mapping[str, Number]) -> tuple[float | None, float | None]:
+    """Root of the sum of squares of the bands [N], and its change against the standard deviation [%]."""
     std, *bands = (select_single(values.get(name)) for name in ("std_force_N", *SUMMED_BANDS))
-    return std, None if None in bands else math.hypot(*filter(None, bands))
+    if None in bands:
+        return None, None
+    total = math.hypot(*filter(None, bands))
+    return total, 100 * (total / std - 1) if std else None
 
 
 def _describe_readings(case: Case, result: CaseResult) -> Iterator[RenderableType]:
