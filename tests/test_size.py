@@ -14,10 +14,10 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 66_800,
+    ("model", "conformance"): 67_300,
     ("templates",): 1_550,
-    ("verification",): 14_000,
-    ("tests",): 47_550,
+    ("verification",): 14_200,
+    ("tests",): 47_850,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
@@ -26,7 +26,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 62_000
+MOST_WORDS = 62_700
 """Largest number of words in the pages of `docs/`."""
 
 
