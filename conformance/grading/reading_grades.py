@@ -10,6 +10,7 @@ from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.core.verdicts import Verdict, judge
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.results_building import key_by_owner, select_finite
+from pantocheck.conformance.quantities.evaluation import Value
 from pantocheck.conformance.quantities.filters import needs_filter
 from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
@@ -27,7 +28,11 @@ def evaluate_readings(evaluation: CaseEvaluation) -> list[ReadingFacts]:
 def _evaluate_reading(evaluation: CaseEvaluation, record: Record, reading: Reading) -> ReadingFacts:
     case, reason = evaluation.case.with_reading(reading), _find_obstacle(reading, record.filter_applied_Hz)
     read = record if reading.evaluated_m is None else replace(record, evaluated=reading.evaluated_m)
-    values = {} if reason else CaseEvaluation(case, replace(evaluation.delivered, record=read)).evaluation.values
+    values: dict[int, dict[str, Value]] = {}
+    if reason is None:
+        read_again = CaseEvaluation(case, replace(evaluation.delivered, record=read)).evaluation
+        values, skipped = read_again.values, read_again.skipped.get(1, {})
+        reason = None if values.get(1) else next(iter(skipped.values()), None)
     return ReadingFacts(
         id=reading.id,
         trust=reading.trust,

@@ -64,10 +64,8 @@ def build_headline(results: Results) -> str:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     if number := sum(row.depends_on_reading for _, row in pairs):
-        verb = "depends" if number == 1 else "depend"
-        sentences.append(
-            f"{count_noun(number, 'verdict')} of criteria {verb} on the reading of filter, bands or section."
-        )
+        values = count_noun(number, "value lies", "values lie")
+        sentences.append(f"{values} on the other side of a limit under another documented reading.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
 
 
