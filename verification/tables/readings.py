@@ -128,7 +128,7 @@ def main() -> None:
             row += [f"{limits - len(missed)} of {limits}", ", ".join(missed) or "none"]
         rows.append(row)
     print_table(["reading", *(text for edition in EDITIONS for text in (edition, f"missed {edition}"))], rows)
-    print(f"\nForce at 18 to 22 Hz: {others[0]['18 to 22 Hz']}, {others[1]['18 to 22 Hz']}")
+    print(f"\nForce at 18 to 22 Hz: {', '.join(cells for each in others for cells in each['18 to 22 Hz'])}")
 
 
 if __name__ == "__main__":
