@@ -29,7 +29,7 @@ from pantocheck.conformance.cases.library import load_entry
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number, select_single
-from pantocheck.conformance.core.texts import DocumentationPage
+from pantocheck.conformance.core.texts import DocumentationPage, count_noun
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.criterion_grading import skip_unlimited
@@ -76,7 +76,8 @@ def readings_command(
     turned = sum(bool(row.readings) for row in result.criteria)
     names = [DEFAULT_READING, *(reading.id for reading in result.readings)]
     count = "changes" if turned == 1 else "change"
-    conclusion = f"{case.id}: {turned} of {len(result.criteria)} criteria {count} side between {len(names)} readings"
+    known = count_noun(len(names), "documented reading")
+    conclusion = f"{case.id}: {turned} of {len(result.criteria)} criteria {count} side between {known}"
     return CommandOutput(
         escape_text(conclusion),
         {"case": case.id, "readings": result.readings, "criteria": result.criteria},

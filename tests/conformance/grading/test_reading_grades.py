@@ -149,3 +149,18 @@ def test_command_prints_one_table_at_80_columns(case: Case, edited_case: EditedC
     edit_toml(sidecar, {"case": None})
     done = pantocheck("readings", sidecar)
     assert (done.exit_code, "key case: names no case" in done.stderr) == (2, True)
+
+
+def test_record_repeats_the_values_of_every_reading(case: Case, tmp_path: Path) -> None:
+    write_record(tmp_path / "records" / "run.csv", Edge().record(case), "own/250")
+    out = tmp_path / "out" / "results.json"
+    options = ("--cases", tmp_path, "--system", f"record:{tmp_path / 'records'}", "--out", out.parent)
+    pantocheck("run", "own/250", *options, "--formats", "json", "--verdicts", "criteria")
+    verify = ("verify", out, "--record", tmp_path / "records" / "run.csv", "--cases", tmp_path, "--any-verdict")
+    assert pantocheck(*verify).exit_code == 0
+    tree = json.loads(out.read_text())
+    assert [reading["id"] for reading in tree["cases"][0]["readings"]] == ["order-4-twice", "one-span"]
+    tree["cases"][0]["readings"][1]["quantities"]["1"]["rms_20_50_N"] += 0.5
+    out.write_text(json.dumps(tree, indent=1))
+    done = pantocheck(*verify, COLUMNS="400")
+    assert (done.exit_code, "under the reading one-span, rms_20_50_N" in done.stdout) == (1, True)
