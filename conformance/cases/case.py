@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw
+from pantocheck.conformance.cases.case_file import CaseFile, PantographByLaw, Reading
 from pantocheck.conformance.cases.lift_force import AppliedForces, LiftForce, resolve_lift_force
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
@@ -175,7 +175,7 @@ class Case:
 
     @cached_property
     def digest(self) -> str:
-        """SHA-256 of the inputs that a system computes with; provenance, title and limits are left out."""
+        """SHA-256 of the inputs that a system computes with; provenance, title, limits and readings are left out."""
         pantograph, unused = self.static_pantograph, self._keys_outside_digest
         inputs = {
             "line": _numbers(self.line),
@@ -193,7 +193,7 @@ class Case:
         unused = {key for key in ("mass_drop", "study") if getattr(self.file, key) is None}
         if isinstance(self.file.study, DampingSensitivity):
             unused.add("study")  # The study runs the case unchanged.
-        return {"limit", "line", "requires", "damping", "on_request", "edition", "superseded_by"} | unused
+        return {"limit", "reading", "line", "requires", "damping", "on_request", "edition", "superseded_by"} | unused
 
     @property
     def sourced_tables(self) -> dict[str, SourcedTable]:
@@ -204,6 +204,7 @@ class Case:
         for i, (use, model) in enumerate(zip(self.file.pantograph, self.pantographs, strict=True), 1):
             tables |= {f"pantograph {i}": use} | _tables(f"pantograph {i}", model)
         tables |= {"mass_drop": self.file.mass_drop, "study": self.file.study}
+        tables |= {f"reading '{reading.id}'": reading for reading in self.file.reading}
         tables |= {f"damping '{name}'": damping for name, damping in self.dampings.items()}
         if self.static_pantograph is not None:
             tables |= _tables("pantograph", self.static_pantograph)
@@ -234,6 +235,13 @@ class Case:
     def without_limits(self) -> "Case":
         """Same case without any limit."""
         return replace(self, file=self.file.model_copy(update={"limit": ()}), limits=())
+
+    def with_reading(self, reading: Reading) -> "Case":
+        """Same case with another reading of its evaluation as its own."""
+        changes: dict[str, object] = {} if reading.filter is None else {"filter": reading.filter}
+        if reading.evaluated_m is not None:
+            changes |= {"evaluated_m": reading.evaluated_m, "evaluated_spans": None, "compared_spans": None}
+        return replace(self, file=self.file.model_copy(update={**changes, "reading": ()}))
 
     def without_study(self) -> "Case":
         """Same case without its study, as a single run of a system."""

@@ -104,6 +104,43 @@ class ApparentMass(InputTable):
     """Frequencies of the apparent mass [Hz]."""
 
 
+class Reading(SourcedTable):
+    """Another documented reading of the evaluation; the keys of the case itself are the default reading."""
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=40)]
+    """Name of the reading in tables."""
+    filter: Filter | None = None
+    """Filter and bands in place of those of the case, in full: a key that is not given has its default."""
+    evaluated_m: Annotated[tuple[NonNegative, Positive] | None, Field(strict=False)] = None
+    """Start and end of the analysis section, in place of that of the case [m]."""
+
+    @cross_check
+    def _differs(self) -> Problems:
+        if self.filter is None and self.evaluated_m is None:
+            yield validation_problem(
+                "filter", "missing", "Give the keys that differ from those of the case: filter, evaluated_m or both."
+            )
+        if self.id == DEFAULT_READING:
+            yield validation_problem("id", f"{self.id!r} is the reading of the case itself", "Give another name.")
+
+    @cross_check
+    def _check_section(self) -> Problems:
+        yield from find_empty_section(self.evaluated_m)
+
+
+DEFAULT_READING = "default"
+"""Name of the reading that the keys of the case state."""
+
+
+def find_empty_section(section: tuple[float, float] | None) -> Problems:
+    """Problem of a section [m, m] that does not end behind its start."""
+    if section is not None and section[1] <= section[0]:
+        start, end = section
+        yield validation_problem(
+            "evaluated_m", f"the end {end:g} m is not greater than the start {start:g} m", "Give [start, end]."
+        )
+
+
 class CaseFile(SourcedTable):
     """Content of a case file. A case without a speed is a static check of the line."""
 
@@ -148,6 +185,8 @@ class CaseFile(SourcedTable):
     """Comparison of several runs."""
     apparent_mass: ApparentMass | None = None
     filter: Filter = Filter()
+    reading: Annotated[tuple[Reading, ...], Field(strict=False, max_length=20, exclude_if=is_absent)] = ()
+    """Further documented readings of the evaluation; a value that changes side between them is marked."""
     discretisation: Discretisation = Discretisation()
     limit: Annotated[tuple[Limit, ...], Field(strict=False, max_length=10_000)] = ()
 
@@ -208,11 +247,7 @@ class CaseFile(SourcedTable):
                 yield validation_problem(
                     "evaluated_m", f"is given together with {key}", f"Leave out {key} or evaluated_m."
                 )
-        start, end = self.evaluated_m
-        if end <= start:
-            yield validation_problem(
-                "evaluated_m", f"the end {end:g} m is not greater than the start {start:g} m", "Give [start, end]."
-            )
+        yield from find_empty_section(self.evaluated_m)
 
     @cross_check
     def _check_spans(self) -> Problems:
@@ -232,6 +267,18 @@ class CaseFile(SourcedTable):
                 f"spans {list(self.compared_spans)} do not include evaluated_spans = {list(spans)}",
                 "Give the first and the last span of a section that includes evaluated_spans.",
             )
+
+    @cross_check
+    def _check_readings(self) -> Problems:
+        if self.reading and (self.speed_km_h is None or self.study is not None):
+            kind = "without a train" if self.speed_km_h is None else "with a study"
+            yield validation_problem("reading", f"is given in a case {kind}", "A reading evaluates one passage.")
+        names = [reading.id for reading in self.reading]
+        for i, name in enumerate(names, 1):
+            if name in names[: i - 1]:
+                yield validation_problem(
+                    f"reading[{i}].id", f"{name!r} is the name of two readings", "Give each reading its own name."
+                )
 
     @cross_check
     def _check_limits(self) -> Problems:

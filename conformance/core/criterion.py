@@ -97,6 +97,8 @@ class Criterion(Requirement):
     """Half-width of the 95 % interval of a limit from a measured record; null: the record states none."""
     close: list[str] = []
     """Remark on a value whose `uncertainty` and `limit_uncertainty` combined exceed its distance from a limit."""
+    readings: Annotated[list[str], Field(exclude_if=lambda remarks: not remarks)] = []
+    """Remarks on the documented readings of the evaluation under which the value lies on the other side of a limit."""
     finding: GradedFinding | None = None
     doubt: Annotated[str | None, Field(exclude_if=lambda text: text is None)] = None
     """Reason why a pass does not count: the user widened a limit of the library, or chose a tolerance that tests
@@ -112,6 +114,11 @@ class Criterion(Requirement):
     def is_close(self) -> bool:
         """Whether a counted value is closer to a limit than its uncertainty, so that its verdict could be reversed."""
         return bool(self.close) and self.verdict in ("pass", "undecided", "fail")
+
+    @property
+    def depends_on_reading(self) -> bool:
+        """Whether another documented reading of the evaluation would reverse the verdict of a counted value."""
+        return bool(self.readings) and self.verdict in ("pass", "fail")
 
     @property
     def error(self) -> float | None:

@@ -31,6 +31,7 @@ class DocumentationPage(Enum):
     LINE_TABLES = "Line tables"
     LOGGER_FILES = "Files of data loggers"
     PANTOGRAPH_RESPONSE = "The measured frequency response of a pantograph"
+    READINGS = "Readings of the evaluation"
     RECORDS = "Records"
     SYSTEMS = "Systems under test"
     VALIDATE = "Validation of a simulator for a line"

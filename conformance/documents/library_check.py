@@ -101,6 +101,9 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     for key, words in RUN_FACTS.items():
         if getattr(result.run, key) != getattr(expected.run, key):
             yield f"the {words} differs from that of the library"
+    read = [(reading.id, reading.filter or case.file.filter) for reading in case.file.reading] if result.traces else []
+    if [(reading.id, reading.filter) for reading in result.readings] != read:
+        yield "the readings of the evaluation differ from those of the library"
     missing = [group.group for group in expected.inputs if group not in result.inputs]
     if missing:
         yield f"sources or trust of the inputs differ from those of the library: {', '.join(missing)}"

@@ -22,6 +22,7 @@ from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import doubt_limit
 from pantocheck.conformance.grading.case_verdict import judge_baseline, judge_case, read_participation
+from pantocheck.conformance.grading.reading_grades import list_reading_remarks
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
@@ -78,6 +79,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -
     ungraded = not graded and case.reason and stated in ("skip", "error")
     yield from _check_criteria(case, case.criteria, trust, rule)
     yield from _check_conformity(case)
+    yield from (f"{case.id}, {text}" for text in _check_readings(case))
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
     verdict = judge_case([judge_criteria(graded)], record)
     if stated != verdict and not ungraded:
@@ -108,6 +110,21 @@ def _check_criteria(
             yield f"{where}: {doubt}, which the criterion does not state"
         for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust, rule, unknown)):
             yield f"{where}: {text}"
+
+
+def _check_readings(case: CaseResult) -> Iterator[str]:
+    """Remarks on other readings of the evaluation must follow from their values, and these from each other."""
+    for row in case.criteria:
+        if row.readings != list_reading_remarks(row, case.readings):
+            place = f"{row.quantity} of pantograph {row.pantograph}"
+            yield f"{place}: the remarks on readings do not follow from their values"
+    for row in () if case.verification is None else case.verification.criteria:
+        if row.readings:
+            yield f"verification, {row.quantity}: a remark on a reading, under which nothing is verified"
+    for reading in case.readings:
+        for key, reported in reading.quantities.items():
+            for text in _check_statistics(select_first(reported)):
+                yield f"reading '{reading.id}', pantograph {key}: {text}"
 
 
 def _check_verification(case: CaseResult, verification: CaseVerification, record: RecordFacts | None) -> Iterator[str]:

@@ -78,7 +78,7 @@ def check_record_quantities(results: Results, path: Path, catalogue: Catalogue =
 
 def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
     """Compare quantities, the parts of their uncertainty that follow from the record, and its state."""
-    stated = result.quantities
+    stated = _list_values(result)
     pairs = (
         (_select(stated, computed.quantities), _select(computed.quantities, stated)),
         (_keep_components(result.uncertainty_components), _keep_components(computed.components)),
@@ -162,7 +162,17 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
     case = load_entry(entry)
     graded = grade_case(case, system.run(case), results.trust)
     state = None if graded.record is None else graded.record.state
-    return RecomputedRecord(graded.quantities, graded.uncertainty_components, state)
+    return RecomputedRecord(_list_values(graded), graded.uncertainty_components, state)
+
+
+def _list_values(result: CaseResult) -> dict[str, dict[str, Number]]:
+    """Quantities of a result by owner, and those under its further readings by owner and reading."""
+    others = {
+        f"{owner} under the reading {reading.id}": values
+        for reading in result.readings
+        for owner, values in reading.quantities.items()
+    }
+    return {**result.quantities, **others}
 
 
 # Check of results by a new run of the built-in simulator.
@@ -175,7 +185,7 @@ MOST_NUMBERS = 10
 """Largest number of differing numbers that are listed."""
 
 NUMBER_PARTS = (
-    *("quantities", "uncertainty", "uncertainty_components", "spread"),
+    *("quantities", "readings", "uncertainty", "uncertainty_components", "spread"),
     *("derived", "traces", "uplift", "charts", "tables"),
 )
 """Parts of a result with the computed numbers. Limits and verdicts follow from them and are checked without a run."""

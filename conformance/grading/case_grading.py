@@ -17,6 +17,7 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.case_verification import verify_evaluation, verify_ungraded
 from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places, find_uplift_place
 from pantocheck.conformance.grading.derived_facts import list_derived_facts, list_input_values, list_law_forces
+from pantocheck.conformance.grading.reading_grades import evaluate_readings, mark_readings
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.grading.validity_warnings import extended_band_warnings, validity_warnings
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -68,7 +69,9 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: Deci
     values, contradiction = evaluation.values, evaluation.contradiction
     findings = evaluation.findings.values()
     # Quantities of a contradicted record are shown but not graded: some would pass.
-    criteria = evaluation.grade_limits(lowest_trust, rule) if contradiction is None else []
+    criteria, readings = [], evaluate_readings(evaluation)
+    if contradiction is None:
+        criteria = mark_readings(evaluation.grade_limits(lowest_trust, rule), readings)
     supports = case.line.geometry.span_limits
     record, start = evaluation.record_facts, evaluation.start_agreement
     verdict = judge_case([judge_criteria(criteria)], record)
@@ -95,6 +98,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: Deci
         conformity=find_case_conformity(criteria, count_passing_starts(evaluation, criteria)),
         record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),
+        readings=readings,
         skipped=key_by_owner(values.evaluation.skipped),
         spread=key_by_owner(values.spread),
         uncertainty=key_by_owner(select_finite(values.uncertainty.combined)),

@@ -100,7 +100,7 @@ def _list_pantograph_facts(case: Case, uplift_forces: Sequence[float]) -> Iterat
 NAME_KEYS = frozenset({"id", "title", "line", "model", "requires", "edition", "superseded_by", "on_request"})
 """Keys that name a case or its files, and are no inputs."""
 
-OTHER_PARTS = frozenset({"limit", "pantograph", "mass_drop", "study", "damping"})
+OTHER_PARTS = frozenset({"limit", "reading", "pantograph", "mass_drop", "study", "damping"})
 """Keys of a case file with groups of their own."""
 
 MOST_LISTED = 12

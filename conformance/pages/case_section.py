@@ -217,9 +217,17 @@ PROVISIONAL = "○"
 
 PROVISIONAL_KEY = f"{PROVISIONAL}: value not traced to a printed source."
 
-KEY_UNITS = {"1_s": "1/s", "1_m": "1/m", "pct": "%", "C": "°C", "K": "K", "1_K": "1/K", "m3": "m3", "deg": "°"} | {
-    key_suffix(symbol): symbol for family in UNIT_FAMILIES for symbol in family.factors
-}
+KEY_UNITS = {
+    "1_s": "1/s",
+    "1_m": "1/m",
+    "pct": "%",
+    "C": "°C",
+    "K": "K",
+    "1_K": "1/K",
+    "m3": "m3",
+    "deg": "°",
+    "dB": "dB",
+} | {key_suffix(symbol): symbol for family in UNIT_FAMILIES for symbol in family.factors}
 """Units by the end of a key."""
 
 

@@ -69,7 +69,8 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
     unit = "" if value is None else criterion.unit
     shown, limits = format_beside_limits(value, lower, upper)
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
-    close = criterion.close if criterion.is_close else ()
+    close = criterion.close if criterion.is_close else []
+    readings = criterion.readings if criterion.depends_on_reading else []
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
@@ -84,6 +85,7 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
                 (
                     criterion.reason,
                     *close,
+                    *readings,
                     remark_shift(criterion),
                     _remark_limit(criterion),
                     describe_conformity(criterion.conformity) if close and criterion.conformity is not None else None,

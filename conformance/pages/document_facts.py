@@ -111,7 +111,9 @@ def list_case_facts(case: CaseResult) -> Facts:
 def _describe_filter(run: RunFacts) -> str:
     settings = run.filter
     kind, cutoff = settings.kind.capitalize(), format_plain(settings.cutoff_Hz)
-    return f"{kind}, order {settings.order}, −3 dB at {cutoff} Hz, {settings.phase} phase"
+    bands = "" if settings.bands == "spectral lines" else f"; bands by {settings.bands}"
+    edge = f"−{settings.attenuation_dB} dB at {cutoff} Hz"
+    return f"{kind}, order {settings.order}, {edge}, {settings.phase} phase{bands}"
 
 
 def _with_unit(value: float | None, unit: str) -> str | None:

@@ -75,6 +75,9 @@ def build_headline(results: Results) -> str:
     if shown := results.information:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
+    if number := sum(row.depends_on_reading for _, row in pairs):
+        values = count_noun(number, "value lies", "values lie")
+        sentences.append(f"{values} on the other side of a limit under another documented reading.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
 
 
@@ -125,6 +128,11 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
         "Closer to a limit than the uncertainty": [
             _close_value(pair) for pair in _criteria(results) if pair[1].is_close
+        ],
+        "Another documented reading reverses the verdict": [
+            f"{_value(pair).removesuffix('.')}; {'; '.join(pair[1].readings)}."
+            for pair in _criteria(results)
+            if pair[1].depends_on_reading
         ],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],

@@ -49,20 +49,24 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
         BandNotObservable: The analysis section is too short for the band, or the rate too low for its upper edge.
         AlreadyFiltered: The force was filtered below the upper edge before delivery.
     """
+    check_band(force.size / rate, rate, low, high, filter_applied_Hz)
+    frequency, power = _power(force, rate)
+    return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
+
+
+def check_band(duration: float, rate: float, low: float, high: float, filter_applied_Hz: float | None) -> None:
+    """Refuse an analysis section of a duration [s] that does not support a band; the rest as in `band_rms`."""
     check_observable(high, rate, f"a band up to {high:g} Hz")
     if filter_applied_Hz is not None and filter_applied_Hz < (1 - CUTOFF_TOLERANCE) * high:
         raise AlreadyFiltered(
             f"the force was low-pass filtered at {filter_applied_Hz:g} Hz before delivery, "
             f"which removed the band {low:g}-{high:g} Hz"
         )
-    duration = force.size / rate
     if (high - low) * duration < MIN_BAND_LINES:
         raise BandNotObservable(
             f"the analysis section lasts {duration:.3g} s; "
             f"a band of {high - low:g} Hz needs at least {MIN_BAND_LINES / (high - low):g} s"
         )
-    frequency, power = _power(force, rate)
-    return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
 
 
 def band_part(force: RealArray, rate: float, low: float, high: float) -> RealArray:

@@ -1,4 +1,4 @@
-"""Low-pass filters in second-order sections.
+"""Low-pass and band-pass filters in second-order sections.
 
 A transfer function in polynomial form overflows at high sampling rates and low cut-offs; sections do not.
 """
@@ -44,17 +44,32 @@ def check_observable(frequency: float, rate: float, purpose: str) -> None:
         )
 
 
+HALF_POWER_DB = 3
+"""Attenuation to half of the power [dB], as it is printed."""
+
+BandDefinition = Literal["spectral lines", "band-pass"]
+"""RMS in a band: of the spectral lines of the unfiltered force, or of the force behind a band-pass."""
+
+
 class Filter(InputTable):
-    """Filter of the graded contact force."""
+    """Filter of the graded contact force, and definition of its bands."""
 
     kind: Literal["butterworth"] = "butterworth"
     """Filter type."""
     order: Annotated[int, Field(ge=1, le=12)] = 6
-    """Total order, over both passes of a zero-phase filter."""
+    """Total order, over both passes of a zero-phase filter; of a band-pass, the order of each edge."""
     cutoff_Hz: Annotated[float, Field(gt=0, le=1000)] = 20.0
-    """Frequency of -3 dB of the whole filter [Hz]."""
+    """Frequency at which the whole filter has the attenuation `attenuation_dB` [Hz]."""
     phase: Literal["zero", "causal"] = "zero"
     """zero: forward and backward pass; causal: forward only."""
+    attenuation_dB: Annotated[Literal[3, 6], Field(exclude_if=lambda attenuation: attenuation == HALF_POWER_DB)] = 3
+    """Attenuation of the whole filter at the cut-off, and at both edges of a band-pass: 3 (half of the power) or 6
+    (half of the amplitude) [dB].
+    """
+    bands: Annotated[BandDefinition, Field(exclude_if=lambda bands: bands == "spectral lines")] = "spectral lines"
+    """spectral lines: bands of the unfiltered force, by Parseval; band-pass: bands behind filters of this order, phase
+    and attenuation at both edges.
+    """
 
     @cross_check
     def _exists(self) -> Problems:
@@ -69,54 +84,78 @@ class Filter(InputTable):
         """Same kind of filter with another cut-off [Hz]."""
         return self.model_copy(update={"cutoff_Hz": cutoff_Hz})
 
-    def sections(self, rate: float) -> RealArray:
-        """Second-order sections of a single run, for a sampling rate [Hz].
+    def sections(self, rate: float, low: float = 0.0) -> RealArray:
+        """Second-order sections of a single run.
+
+        Args:
+            rate: Sampling rate [Hz].
+            low: Lower edge of a band-pass up to the cut-off [Hz]; 0: low-pass.
 
         Raises:
             BandNotObservable: The cut-off is too high for the rate.
         """
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
-        return _design_sections(*self.single_run(rate), rate)
+        order, cutoff = self.single_run(rate)
+        if low == 0:
+            return _design_sections(order, cutoff, rate)
+        return np.asarray(scipy.signal.butter(order, self._single_band(rate, low), "bandpass", fs=rate, output="sos"))
 
     @property
     def runs(self) -> int:
         """Runs of the filter over the signal: 2 for zero phase, forwards and backwards; 1 for a causal filter."""
         return 2 if self.phase == "zero" else 1
 
+    @property
+    def _edge(self) -> float:
+        """Edge of the whole filter over the -3 dB frequency of a single run, both on the axis W of `single_run`."""
+        gain = np.sqrt(2) if self.attenuation_dB == HALF_POWER_DB else 2.0
+        return float((gain ** (2 / self.runs) - 1) ** (self.runs / (2 * self.order)))
+
     def single_run(self, rate: float) -> tuple[int, float]:
         """Order and -3 dB frequency [Hz] of a single run, for a sampling rate [Hz].
 
         A zero-phase filter runs a filter of half the order forwards and backwards. One run of order m has the gain
         1/sqrt(1 + W^2m), two runs have 1/(1 + W^2m), with W = tan(pi f/rate) / tan(pi f0/rate) under the bilinear
-        transform. The cut-off f0 of a single run is therefore raised by W(f_c) = (sqrt(2) - 1)^(1/2m), so that both
-        runs together have -3 dB at the cut-off.
+        transform. The cut-off f0 of a single run is therefore moved by W(f_c) = (g^(2/r) - 1)^(1/2m), so that all r
+        runs together have the gain 1/g at the cut-off, with g = sqrt(2) for -3 dB and g = 2 for -6 dB.
         """
-        if self.phase == "causal":
+        if self.phase == "causal" and self.attenuation_dB == HALF_POWER_DB:
             return self.order, self.cutoff_Hz
-        half = self.order // 2
-        warped = np.tan(np.pi * self.cutoff_Hz / rate) / (np.sqrt(2) - 1) ** (1 / (2 * half))
-        return half, float(rate / np.pi * np.arctan(warped))
+        warped = np.tan(np.pi * self.cutoff_Hz / rate) / self._edge
+        return self.order // self.runs, float(rate / np.pi * np.arctan(warped))
 
-    def __call__(self, signal: RealArray, rate: float) -> RealArray:
-        """Filter a signal; the transients at its ends decay within a few periods of the cut-off.
+    def _single_band(self, rate: float, low: float) -> tuple[float, float]:
+        """-3 dB frequencies [Hz] of a single run of a band-pass; parameters as in `sections`.
+
+        The edges keep their geometric mean on the warped axis; their distance is divided by W of `single_run`.
+        """
+        lower, upper = np.tan(np.pi * np.array([low, self.cutoff_Hz]) / rate)
+        width = (upper - lower) / self._edge
+        upper = (width + np.sqrt(width**2 + 4 * lower * upper)) / 2
+        lower, upper = rate / np.pi * np.arctan([upper - width, upper])
+        return float(lower), float(upper)
+
+    def __call__(self, signal: RealArray, rate: float, low: float = 0.0) -> RealArray:
+        """Filter a signal; the transients at its ends decay within a few periods of the lowest edge.
 
         Args:
             signal: Samples of the whole record, so that the transients lie outside the analysis section, (n,).
             rate: Sampling rate [Hz].
+            low: Lower edge of a band-pass up to the cut-off [Hz]; 0: low-pass.
 
         Returns:
             Filtered samples, (n,).
         """
-        sections = self.sections(rate)
+        sections = self.sections(rate, low)
         if self.phase == "causal":
             filtered, _ = scipy.signal.sosfilt(sections, signal, zi=scipy.signal.sosfilt_zi(sections) * signal[0])
             return np.asarray(filtered)
-        padding = min(signal.size - 1, int(np.ceil(2 * rate / self.cutoff_Hz)))
+        padding = min(signal.size - 1, int(np.ceil(2 * rate / (low or self.cutoff_Hz))))
         return np.asarray(scipy.signal.sosfiltfilt(sections, signal, padlen=padding))
 
-    def gain(self, frequency: RealArray, rate: float) -> RealArray:
-        """Gain of the whole filter at frequencies [Hz], for a sampling rate [Hz]."""
-        _, response = scipy.signal.sosfreqz(self.sections(rate), worN=frequency, fs=rate)
+    def gain(self, frequency: RealArray, rate: float, low: float = 0.0) -> RealArray:
+        """Gain of the whole filter at frequencies [Hz]; other parameters as in `sections`."""
+        _, response = scipy.signal.sosfreqz(self.sections(rate, low), worN=frequency, fs=rate)
         return np.asarray(np.abs(response) ** self.runs)
 
 
@@ -133,7 +172,7 @@ def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:
 def needs_filter(low_pass: Filter, filter_applied_Hz: float | None) -> bool:
     """Whether a delivered force must still be filtered.
 
-    A second filter with the same cut-off would attenuate the force by another 3 dB at the cut-off.
+    A second filter with the same cut-off would attenuate the force at the cut-off once more.
 
     Args:
         low_pass: Filter of the graded force.

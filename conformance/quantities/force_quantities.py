@@ -81,7 +81,8 @@ def _band_quantity(band: Band) -> PantographQuantity:
         name=name,
         label=f"RMS, {low:g}–{high:g} Hz",
         unit="N",
-        definition=f"RMS of the contact force in the band ]{low:g}, {high:g}] Hz, by Parseval on the analysis section",
+        definition=f"RMS of the contact force in the band ]{low:g}, {high:g}] Hz, by Parseval on the analysis section "
+        "unless the filter states band-passes",
         never_negative=True,
         other_definition=f"a zero-phase band-pass changes it by up to {BAND_PASS_CHANGE[name]:g} % on two spans",
         compute=lambda signals, sampling: sampling.band_rms(signals, band),

@@ -1,16 +1,21 @@
 """Contact force of one pantograph, from which quantities are computed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.bands import EXTENDED_BAND, band_part, band_rms
+from pantocheck.conformance.quantities.bands import BANDS, EXTENDED_BAND, band_part, band_rms, check_band
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, Filter, needs_filter
-from pantocheck.conformance.quantities.unavailable import BandNotObservable, ChannelMissing, SectionNotCovered
+from pantocheck.conformance.quantities.unavailable import (
+    AlreadyFiltered,
+    BandNotObservable,
+    ChannelMissing,
+    SectionNotCovered,
+)
 
 EXTENDED_CUTOFF_HZ = float(EXTENDED_BAND.high)
 """Upper edge of the extended band [Hz]."""
@@ -77,6 +82,23 @@ class ForceChannel:
     """Filter of the graded force."""
     filter_applied_Hz: float | None = None
     """Cut-off of the low-pass filter applied before delivery [Hz]; None: unfiltered."""
+    _bands: dict[tuple[float, float], RealArray] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def band_pass(self, low: float, high: float) -> RealArray:
+        """Force behind the band-pass of the case from `low` to `high` [Hz], filtered once per band [N].
+
+        Raises:
+            AlreadyFiltered: The force was filtered in the band before delivery; a second filter attenuates it twice.
+        """
+        band_filter = self.low_pass.change_cutoff(high)
+        if not needs_filter(band_filter, self.filter_applied_Hz):
+            raise AlreadyFiltered(
+                f"the force was low-pass filtered at {self.filter_applied_Hz:g} Hz before delivery; "
+                f"a band-pass up to {high:g} Hz needs the unfiltered force"
+            )
+        if (low, high) not in self._bands:
+            self._bands[low, high] = band_filter(self.delivered, self.rate, low)
+        return self._bands[low, high]
 
     @cached_property
     def graded(self) -> RealArray:
@@ -181,11 +203,17 @@ class PantographSignals:
 
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz, over the analysis section [N]."""
-        return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
+        if self.force.low_pass.bands == "spectral lines":
+            return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
+        check_band(self.delivered.size / self.force.rate, self.force.rate, low, high, self.filter_applied_Hz)
+        return float(self.band_part(low, high).std())
 
     def band_part(self, low: float, high: float) -> RealArray:
-        """Contact force in the band ]low, high] Hz, over the analysis section [N]."""
-        return band_part(self.delivered, self.force.rate, low, high)
+        """Contact force in the band ]low, high] Hz, over the analysis section, without its mean [N]."""
+        if self.force.low_pass.bands == "spectral lines":
+            return band_part(self.delivered, self.force.rate, low, high)
+        part = self.force.band_pass(low, high)[self.inside]
+        return np.asarray(part - part.mean())
 
     def _check_duration(self, cutoff_Hz: float) -> None:
         duration, shortest = self.delivered.size / self.force.rate, SHORTEST_PERIODS / cutoff_Hz
@@ -216,7 +244,9 @@ def edge_warnings(pantographs: Mapping[int, PantographSignals], speed: float) ->
     """
     warnings = []
     for number, signals in pantographs.items():
-        settling = SETTLING_PERIODS / signals.force.low_pass.cutoff_Hz * speed
+        low_pass = signals.force.low_pass
+        lowest = low_pass.cutoff_Hz if low_pass.bands == "spectral lines" else min(low_pass.cutoff_Hz, BANDS[0].high)
+        settling = SETTLING_PERIODS / lowest * speed
         start, end = signals.section
         if signals.position[0] > start - settling or signals.position[-1] < end + settling:
             warnings.append(

@@ -6,7 +6,9 @@ from pydantic import Field
 
 from pantocheck.conformance.core.figure_data import Spectrum
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
+from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.quantities.filters import Filter
 
 
 class ContactLossFacts(ResultsPart):
@@ -134,6 +136,19 @@ class RecordFacts(ResultsPart):
     measured_digest: str | None = None
     start: StartState | None = None
     start_text: str | None = None
+
+
+class ReadingFacts(ResultsPart):
+    """Values under another documented reading of the evaluation."""
+
+    id: str
+    trust: Trust
+    source: str
+    filter: Filter
+    evaluated_m: Annotated[tuple[float, float], Field(strict=False)]
+    quantities: dict[Owner, dict[str, Number]]
+    reason: str | None = None
+    """Reason why the record does not support this reading; null: it does."""
 
 
 # Earlier results, a measured run and the reference simulator beside the case.

@@ -33,6 +33,7 @@ from pantocheck.conformance.results.case_facts_format import (
     EventFacts,
     LawForces,
     MeasuredRun,
+    ReadingFacts,
     RecordFacts,
     ReferenceValues,
     StoredValues,
@@ -195,6 +196,8 @@ class CaseResult(ResultsPart):
     conformity: CaseConformity | None = None
     """Probability that all counted values lie inside their limits; null: no value has a joint sample."""
     quantities: Quantities
+    readings: Annotated[list[ReadingFacts], Field(exclude_if=lambda readings: not readings)] = []
+    """Values under the other documented readings of the case; missing: it documents none, or there is no record."""
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[dict[Owner, dict[str, float]], Field(default_factory=dict)]
     """Largest change when the analysis section is shifted span by span, as in `quantities`; not part of

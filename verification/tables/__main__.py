@@ -52,6 +52,7 @@ PROGRAMS = {
         "tables.overlap_passages", tuple(f"overlap-{name}" for name in ("forces", "difference", "mesh", "cost"))
     ),
     "filter-and-band": Program("tables.filter_and_band", ("filters", "bands")),
+    "readings": Program("tables.readings", ("readings-forces", "readings-bands", "readings-editions")),
     "calibration-start": Program("tables.uncertainty_coverage", ("calibration-start",), "start"),
     "calibration-run-in": Program("tables.uncertainty_coverage", ("calibration-run-in",), "run-in"),
     "calibration-section": Program("tables.uncertainty_coverage", ("calibration-section",), "section"),

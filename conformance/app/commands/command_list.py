@@ -23,6 +23,7 @@ PANELS: dict[str, dict[str, str]] = {
         "cases": "List the cases of library, folders and distributions.",
         "show": "Show inputs, limits and notes of a case.",
         "simulate": "Simulate a case and write its record.",
+        "readings": "Grade a record or case under every documented reading.",
     },
     "write": {
         "new": "Write a commented, valid input file to start from.",

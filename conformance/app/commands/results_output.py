@@ -131,7 +131,7 @@ def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -
     if criteria:
         yield _build_criterion_table(criteria, missing)
     for item in criteria:
-        for remark in filter(None, (item.reason, *item.close)):
+        for remark in filter(None, (item.reason, *item.close, *item.readings)):
             yield indent_text(f"{_name(item)}: {remark}")
 
 

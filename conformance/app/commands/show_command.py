@@ -42,7 +42,7 @@ from pantocheck.conformance.runs.static_quantities import (
 from pantocheck.model import discretise
 from pantocheck.model.description.pantograph import apparent_mass
 
-OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "pantograph", "mass_drop", "study"}
+OTHER_TABLES = {"id", "title", "line", "model", "requires", "limit", "reading", "pantograph", "mass_drop", "study"}
 """Keys of a case file that are no inputs, or that have a table of their own."""
 
 
