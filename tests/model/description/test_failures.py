@@ -7,29 +7,14 @@ import pytest
 
 from helpers.lines import PANTOGRAPH_2002, simple_line
 from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, build_chain, simulate_passage
-from pantocheck.model.description.failures import DidNotConverge, NoInitialState
+from pantocheck.model.description.failures import DidNotConverge
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
+from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.simulation import start_motion
 
 PASSAGE = Passage((PANTOGRAPH_2002,), (20.0,), 50.0, 0.05, 1e-3)
-
-
-def test_discretise_names_a_dropper_that_would_have_to_push() -> None:
-    """A dropper that holds the wire 10 cm below its neighbours."""
-    line = simple_line()
-    droppers = tuple(replace(d, contact_wire_height=-0.1) if d.position == 30.0 else d for d in line.droppers)
-    with pytest.raises(NoInitialState, match=r"x = 30 m would have to push with \d+"):
-        discretise(replace(line, droppers=droppers), 1.0)
-
-
-def test_discretise_rejects_wires_that_cross() -> None:
-    """An encumbrance of 0.2 m is less than the messenger's sag."""
-    line = simple_line()
-    low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
-    with pytest.raises(NoInitialState, match="wires cross"):
-        discretise(replace(line, messenger_supports=low), 1.0)
 
 
 @pytest.mark.parametrize(
@@ -57,6 +42,14 @@ def test_simulate_passage_fails_for_nan_in_a_pantograph(where: str) -> None:
     pantograph = build_chain(masses, stiffness, damping, values["uplift"], 0, values["contact"])
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
         simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
+
+
+def test_time_of_the_step_that_fails_is_named() -> None:
+    line = discretise(simple_line(), 1.0)
+    kernel = build_kernel_arrays(line, 1e-3)
+    load, recording = np.array([0.0, 0.0, np.nan, 0.0]), allocate_recording(line, (), 4, 1)
+    with pytest.raises(DidNotConverge, match=r"time step at 0\.003 s after the start"):
+        simulate_steps(kernel, *start_motion(line, kernel, PASSAGE), load, recording)
 
 
 @pytest.mark.parametrize("where", ["w", "r", "tension", "z", "contact", "far away"])
