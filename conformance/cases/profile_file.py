@@ -132,7 +132,7 @@ class Profile(InputTable):
     speed_tolerance_pct: Annotated[float, Field(gt=0, le=50)] = 5.0
     """Largest deviation from the nominal speed inside the analysis section [%]."""
     verification: Literal["shown", "demanded"] = "shown"
-    """Use of the state of the record (verified or unverified); demanded: an unverified record does not pass; shown:
+    """Use of the state of the record (consistent or unconfirmed); demanded: an unconfirmed record does not pass; shown:
     the report shows the state.
     """
     shortest_contact_loss_s: Annotated[float | None, Field(exclude_if=is_absent, gt=0, le=10)] = None

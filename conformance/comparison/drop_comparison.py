@@ -262,8 +262,8 @@ def _find_clipped(
 
 
 def _demote(verdict: Verdict, drop: RecordedDrop) -> Verdict:
-    """Verdict of a record whose line is not fully known: at best unverified."""
-    return "unverified" if verdict == "pass" and drop.line.state != "verified" else verdict
+    """Verdict of a record whose line is not fully known: at best unconfirmed."""
+    return "unconfirmed" if verdict == "pass" and drop.line.state != "consistent" else verdict
 
 
 def _warn(task: DropTask, motion: DropMotion) -> list[str]:

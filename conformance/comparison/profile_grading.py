@@ -46,7 +46,7 @@ def assess_record(
         trust: Lowest trust of the rules that count.
         measured: Measured record, for a profile that compares.
         limits: The user's own limits, which replace the rules of the same quantity.
-        participation: Accepted unverified records.
+        participation: Accepted unconfirmed records.
 
     Raises:
         InputError: A measured record is missing, not needed, or does not fit the record.
@@ -75,7 +75,7 @@ def grade_record(
         "and a profile has none"
     )
     record = RecordFacts(
-        state="unverified",
+        state="unconfirmed",
         reason=reason,
         demanded=profile.verification == "demanded",
         digest=subject.record_digest,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 from typing import Literal, get_args
 
-Verdict = Literal["error", "fail", "undecided", "skip", "info", "unverified", "pass"]
+Verdict = Literal["error", "fail", "undecided", "skip", "info", "unconfirmed", "pass"]
 
 WORST_FIRST: tuple[Verdict, ...] = get_args(Verdict)
 

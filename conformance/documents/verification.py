@@ -187,7 +187,7 @@ def _find_case_gaps(case: CaseResult) -> Iterator[str]:
 
 
 def _find_record_gap(case: CaseResult) -> Iterator[str]:
-    """A graded passage states whether its record was verified."""
+    """A graded passage states whether its record was consistent."""
     ungraded = not case.criteria and case.reason and case.verdict in ("skip", "error")
     if case.record is None and case.run.evaluated_m is not None and not ungraded:
         yield "the state of the record is missing"

@@ -248,8 +248,8 @@ class DossierFile(InputTable):
     """Decision rule: simple, guarded, or shared-risk: and the largest accepted risk."""
     required: Annotated[tuple[StepName, ...], Field(strict=False, min_length=1)] = STEP_NAMES
     """Steps that decide the verdict; the others are for information."""
-    accept_unverified: EntryNames = ()
-    """Names of systems whose unverified records may pass."""
+    accept_unconfirmed: EntryNames = ()
+    """Names of systems whose unconfirmed records may pass."""
     note: Annotated[str | None, Field(max_length=4000)] = None
     """Remark for the reader."""
     pantograph: Annotated[tuple[PantographEntry, ...], Field(strict=False, max_length=20)] = ()

@@ -65,7 +65,7 @@ def check_pantographs(dossier: Dossier) -> StepResult:
             return StepResult("pantograph_model", "error", text, responses=tuple(responses))
         criteria += [grade_again(row, _state(row, entry, number), dossier.file.trust) for row in responses[-1].criteria]
         criteria += _skip_unlimited(dossier, entry, number)
-    notes = ("A frequency response is unverified: it has no second channel that could confirm it.",)
+    notes = ("A frequency response is unconfirmed: it has no second channel that could confirm it.",)
     return StepResult("pantograph_model", criteria=tuple(criteria), responses=tuple(responses), notes=notes)
 
 
@@ -112,7 +112,7 @@ def check_parameters(dossier: Dossier, runs: Sequence[CaseResult]) -> StepResult
     """Compare the declared simulation parameters with those of the runs of cases and pairs.
 
     Numbers bound the values of all runs. Texts, and runs that do not state a value, cannot be compared: a pass then
-    counts as unverified.
+    counts as unconfirmed.
     """
     table, trust = dossier.file.parameters, dossier.file.trust
     if not any((table.element_m, table.time_step_s, table.shortest_run_s, table.start)):
@@ -129,7 +129,7 @@ def check_parameters(dossier: Dossier, runs: Sequence[CaseResult]) -> StepResult
     open_names = [parameter.name for _, parameter in parts if parameter is not None and not parameter.confirmed]
     return StepResult(
         "simulation_parameters",
-        unverified=f"not confirmed by every run: {', '.join(open_names)}" if open_names else None,
+        unconfirmed=f"not confirmed by every run: {', '.join(open_names)}" if open_names else None,
         criteria=tuple(criterion for criterion, _ in parts if criterion is not None),
         parameters=tuple(parameter for _, parameter in parts if parameter is not None),
         notes=() if table.note is None else (table.note.strip(),),
@@ -211,7 +211,7 @@ def check_statics(dossier: Dossier) -> StepResult:
         stated = {"item": item, "trust": "own", "source": source_text(own_source(entry.tolerance.source))}
         criteria += [grade_again(row, stated, dossier.file.trust) for row in statics[-1].criteria]
         criteria += _skip_ungraded(entry.tolerance, item)
-    notes = ("A table of static values is unverified: it has no second channel that could confirm it.",)
+    notes = ("A table of static values is unconfirmed: it has no second channel that could confirm it.",)
     return StepResult("static_check", criteria=tuple(criteria), statics=tuple(statics), notes=notes)
 
 

@@ -35,8 +35,8 @@ class StepResult:
     """Whether the step was done."""
     reason: str | None = None
     """Reason why it was not done, or could not be completed."""
-    unverified: str | None = None
-    """Reason why a pass counts as unverified."""
+    unconfirmed: str | None = None
+    """Reason why a pass counts as unconfirmed."""
     cases: tuple[CaseResult, ...] = ()
     """Results of the cases and pairs of the step."""
     criteria: tuple[Criterion, ...] = ()
@@ -60,7 +60,7 @@ class StepResult:
             step=self.step,
             required=required,
             state=self.state,
-            unverified=self.unverified,
+            unconfirmed=self.unconfirmed,
             reason=self.reason,
             cases=[case.id for case in self.cases],
             criteria=list(self.criteria),

@@ -93,7 +93,7 @@ class Validation:
         cases = (case for name in for_information if name in self.finished for case in self.finished[name].cases)
         return Participation(
             information=tuple(case.id for case in cases),
-            accepted_unverified=file.accept_unverified,
+            accepted_unconfirmed=file.accept_unconfirmed,
             requested=choose_verdicts(file.reference.verdicts, file.system),
             decision=parse_decision(file.decision),
         )

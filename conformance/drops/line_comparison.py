@@ -60,7 +60,7 @@ def refuse_other_line(comparison: LineComparison, source: str) -> None:
 
 
 def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
-    """Warnings about the line of a fit; none for a verified line."""
+    """Warnings about the line of a fit; none for a consistent line."""
     warnings = []
     if comparison.differences:
         warnings.append(
@@ -69,7 +69,7 @@ def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
         )
     if comparison.missing:
         warnings.append(
-            "The line of the fit is not verified, because the modes do not state all properties of the line of the "
+            "The line of the fit is not confirmed, because the modes do not state all properties of the line of the "
             f"record: {'; '.join(comparison.missing)}."
         )
     return tuple(warnings)
@@ -91,7 +91,7 @@ def _add_sensors(
             missing.append(f"wire and position of sensor {number}")
         else:
             differences += _compare_sensor(number, wire, position, line)
-    state = "contradicted" if differences else "unverified" if missing else "verified"
+    state = "contradicted" if differences else "unconfirmed" if missing else "consistent"
     return LineComparison(state=state, differences=tuple(differences), missing=tuple(dict.fromkeys(missing)))
 
 

@@ -50,8 +50,8 @@ class Plan(InputTable):
     """Builtin, record:DIR or command:PROGRAM ARGUMENTS."""
     information: Names = ()
     """Ids or globs of cases that are shown, but do not take part in the verdict."""
-    accept_unverified: Names = ()
-    """Names of systems whose unverified records may pass."""
+    accept_unconfirmed: Names = ()
+    """Names of systems whose unconfirmed records may pass."""
     timeout_s: Annotated[float, Field(gt=0)] = TIMEOUT_S
     """Time limit of a program for a case [s]."""
     out: str = "report"
@@ -95,7 +95,7 @@ class PreparedPlan:
     baseline: Results | None
     """Earlier results that values are compared with."""
     participation: Participation
-    """Cases shown for information, and accepted unverified records."""
+    """Cases shown for information, and accepted unconfirmed records."""
     added: dict[str, tuple[str, ...]]
     """Cases that are not named themselves, each with the cases that require it."""
 
@@ -133,7 +133,7 @@ def prepare_plan(plan: Plan) -> PreparedPlan:
     baseline = None if plan.baseline is None else read_baseline(Path(plan.baseline))
     participation = Participation(
         information=_list_information(cases, plan, selection),
-        accepted_unverified=plan.accept_unverified,
+        accepted_unconfirmed=plan.accept_unconfirmed,
         requested=requested,
         verification_only=() if plan.cases else selection.list_verification_only(cases),
         decision=parse_decision(plan.decision),

@@ -66,7 +66,7 @@ def run_cases(
         trust: Lowest trust of the limits that count.
         jobs: Number of parallel processes; 1 runs all cases in this process.
         progress: Callback for each result.
-        participation: Cases shown for information, and accepted unverified records.
+        participation: Cases shown for information, and accepted unconfirmed records.
 
     Raises:
         RunInterrupted: Ctrl-C, SIGTERM or SIGHUP ended the run; the exception holds the results.

@@ -175,7 +175,7 @@ class CaseEvaluation:
         start = {"start": self.start_agreement.state, "start_text": self.start_agreement.text}
         if self.delivered.summary is not None:
             reason = "a summary record has no samples to check"
-            return RecordFacts(state="unverified", reason=reason, **digests, **start)
+            return RecordFacts(state="unconfirmed", reason=reason, **digests, **start)
         if self.signals is None:
             return None
         state, reason = judge_record_state(self.findings)

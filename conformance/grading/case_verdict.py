@@ -20,14 +20,14 @@ def judge_case(criteria: Iterable[Verdict], record: RecordFacts | None) -> Verdi
         record: State of the record; None for a case without a record.
 
     Returns:
-        `info` if no criterion counts; `unverified` if all counted criteria pass on an unverified record; `error` if the
-        record is contradicted.
+        `info` if no criterion counts; `unconfirmed` if all counted criteria pass on an unconfirmed record; `error` if
+        the record is contradicted.
     """
     if record is not None and record.state == "contradicted":
         return "error"
     verdict = judge_parts(criteria)
-    lowered = record is not None and record.state == "unverified" and record.demanded
-    return "unverified" if verdict == "pass" and lowered else verdict
+    lowered = record is not None and record.state == "unconfirmed" and record.demanded
+    return "unconfirmed" if verdict == "pass" and lowered else verdict
 
 
 def judge_baseline(drifts: Iterable[Verdict], values: int) -> Verdict:
@@ -42,12 +42,12 @@ def judge_baseline(drifts: Iterable[Verdict], values: int) -> Verdict:
 
 @dataclass(frozen=True)
 class Participation:
-    """Cases and verdicts that decide the verdict of a run, and records that need no verification."""
+    """Cases and verdicts that decide the verdict of a run, and records that need no confirmation."""
 
     information: tuple[str, ...] = ()
     """Ids of the cases that are shown for information."""
-    accepted_unverified: tuple[str, ...] = ()
-    """Names of systems whose unverified records count as a pass."""
+    accepted_unconfirmed: tuple[str, ...] = ()
+    """Names of systems whose unconfirmed records count as a pass."""
     requested: tuple[VerdictName, ...] = ("criteria",)
     """Verdicts that decide; the worst of them is the verdict of the run."""
     verification_only: tuple[str, ...] = ()
@@ -62,9 +62,9 @@ class Participation:
             cases: Id and verdict of each case.
             system: Name of the graded system.
         """
-        accepted = system in self.accepted_unverified
+        accepted = system in self.accepted_unconfirmed
         return judge_parts(
-            "pass" if accepted and verdict == "unverified" else verdict
+            "pass" if accepted and verdict == "unconfirmed" else verdict
             for case, verdict in cases
             if case not in self.information
         )
@@ -87,7 +87,7 @@ class Participation:
         requested = worst_verdict(verdict for verdict in (*verdicts, *errors) if verdict is not None)
         lacking = "verification" in self.requested and case.verification is None
         lacking = lacking and case.record is not None and case.profile is None
-        requested = "unverified" if requested == "pass" and lacking else requested
+        requested = "unconfirmed" if requested == "pass" and lacking else requested
         verdict = worst_verdict([requested, *drift])
         return case.model_copy(update={"verdict": verdict})
 
@@ -105,11 +105,11 @@ class Participation:
             (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases
         ]
         has_baseline = any(case.baseline is not None for case in cases)
-        verdict = judge_parts([overall, *(by_name[name] or "unverified" for name in self.requested)])
+        verdict = judge_parts([overall, *(by_name[name] or "unconfirmed" for name in self.requested)])
         verdict = "info" if overall == "info" else verdict
         procedure = results.procedure
         if procedure is not None:
-            procedure = decide_procedure(procedure, cases, system in self.accepted_unverified)
+            procedure = decide_procedure(procedure, cases, system in self.accepted_unconfirmed)
             verdict = judge_procedure(procedure.steps)
         return results.model_copy(
             update={
@@ -123,7 +123,7 @@ class Participation:
                 "baseline_verdict": self.judge_run(compared, system) if has_baseline else None,
                 "requested": list(self.requested),
                 "information": list(self.information),
-                "accepted_unverified": list(self.accepted_unverified),
+                "accepted_unconfirmed": list(self.accepted_unconfirmed),
                 "verification_only": list(self.verification_only),
             }
         )
@@ -139,7 +139,7 @@ def read_participation(results: Results) -> Participation:
     """Participation that results state."""
     return Participation(
         information=tuple(results.information),
-        accepted_unverified=tuple(results.accepted_unverified),
+        accepted_unconfirmed=tuple(results.accepted_unconfirmed),
         requested=tuple(results.requested),
         verification_only=tuple(results.verification_only),
         decision=parse_decision(results.decision, "results, key decision"),
@@ -147,4 +147,4 @@ def read_participation(results: Results) -> Participation:
 
 
 EVERY_CASE = Participation()
-"""Every case takes part in the EN 50318 criteria, and unverified records are not accepted."""
+"""Every case takes part in the EN 50318 criteria, and unconfirmed records are not accepted."""

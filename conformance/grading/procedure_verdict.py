@@ -28,7 +28,7 @@ def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted
     Args:
         procedure: Procedure whose verdicts are not decided, or are checked.
         cases: Results of all cases, with their verdicts.
-        accepted: Whether the user accepts unverified records of the system.
+        accepted: Whether the user accepts unconfirmed records of the system.
 
     Returns:
         The same procedure with its verdicts, margins and uncertainties.
@@ -60,13 +60,13 @@ def judge_step(step: ProcedureStep, parts: Sequence[Verdict], accepted: bool) ->
     Args:
         step: The step with its own criteria.
         parts: Verdicts of its cases and claims.
-        accepted: Whether the user accepts unverified records of the system.
+        accepted: Whether the user accepts unconfirmed records of the system.
     """
     if step.state != "done":
         return "error" if step.state == "error" else "skip"
     own = [judge_criteria(step.criteria)] if step.criteria else []
     verdict = worst_verdict([*own, *parts])
-    return "unverified" if verdict == "pass" and step.unverified is not None and not accepted else verdict
+    return "unconfirmed" if verdict == "pass" and step.unconfirmed is not None and not accepted else verdict
 
 
 def describe_closest(criteria: Iterable[tuple[str | None, Criterion]]) -> dict[str, str | float | None]:
@@ -165,7 +165,7 @@ def is_reference(case: CaseResult) -> bool:
 
 def _judge_case(case: CaseResult, as_reference: bool, accepted: bool) -> Verdict:
     """Verdict of a case in its step: an own or changed case is no reference model, so that its pass is information."""
-    verdict: Verdict = "pass" if accepted and case.verdict == "unverified" else case.verdict
+    verdict: Verdict = "pass" if accepted and case.verdict == "unconfirmed" else case.verdict
     return worst_verdict([verdict, "info"]) if as_reference and not is_reference(case) else verdict
 
 

@@ -84,7 +84,7 @@ def build_results(
         system: Graded system.
         trust: Lowest trust of the limits that count.
         started: Start of the run, from `utc_now`.
-        participation: Cases and verdicts that decide the verdict of the run, and accepted unverified records.
+        participation: Cases and verdicts that decide the verdict of the run, and accepted unconfirmed records.
         procedure: Steps of a dossier, whose verdicts follow from those of the cases; None: no dossier.
     """
     results = Results(

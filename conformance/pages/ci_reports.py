@@ -24,7 +24,7 @@ from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
 from pantocheck.conformance.results.procedure_format import ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
-TEST_ELEMENTS = {"error": "error", **dict.fromkeys(("fail", "undecided", "unverified"), "failure")}
+TEST_ELEMENTS = {"error": "error", **dict.fromkeys(("fail", "undecided", "unconfirmed"), "failure")}
 TEST_ELEMENTS |= dict.fromkeys(("skip", "info"), "skipped")
 """Name of each verdict in JUnit; a test without such an element has passed."""
 
@@ -77,7 +77,7 @@ def list_step_tests(results: Results) -> Iterator[list[GradedTest]]:
         tests = [_test_criterion(name, row) for row in step.criteria]
         if step.step == "limits_of_validity":
             tests += [_test_claim(name, claim) for claim in procedure.claims]
-        reason = step.reason or step.unverified or step.closest or "no criterion of its own"
+        reason = step.reason or step.unconfirmed or step.closest or "no criterion of its own"
         tests.append(GradedTest(name, "step", step.verdict, f"{step.state}: {reason}"))
         yield tests if step.required else _show_unpassed(tests)
 
@@ -108,9 +108,9 @@ def _test_claim(group: str, claim: ValidityClaim) -> GradedTest:
 
 
 def _test_record(case_id: str, record: RecordFacts, results: Results) -> GradedTest:
-    """Test of the state of the record; for information if the profile or the user accepts an unverified one."""
-    excused = results.system.name in results.accepted_unverified or not record.demanded
-    verdict = "pass" if record.state == "verified" else "info" if excused else "unverified"
+    """Test of the state of the record; for information if the profile or the user accepts an unconfirmed one."""
+    excused = results.system.name in results.accepted_unconfirmed or not record.demanded
+    verdict = "pass" if record.state == "consistent" else "info" if excused else "unconfirmed"
     return GradedTest(case_id, "record", verdict, f"{record.state}: {record.reason}")
 
 
@@ -194,7 +194,7 @@ SEVERITIES: dict[str, Severity] = {
     "error": "error",
     "fail": "error",
     "undecided": "error",
-    "unverified": "error",
+    "unconfirmed": "error",
     "skip": "warning",
 }
 """Severity of each verdict that keeps a pipeline from passing; a limit that does not count has none."""

@@ -110,7 +110,7 @@ DROP_PAGE: PageKind[DropComparison] = PageKind(
     statement="self-declared comparison with a recorded mass drop",
     headlines={
         "pass": "The graded agreement of model and record lies within the limits of the user.",
-        "unverified": "The graded agreement lies within the limits, but the record does not state its line completely.",
+        "unconfirmed": "The graded agreement lies within the limits; the record does not state its line completely.",
         "fail": "The agreement of model and record lies outside a limit of the user.",
         "skip": "The record does not contain all data that the limits need.",
         "info": "No limit was given: the agreement is shown and not graded.",

@@ -25,8 +25,8 @@ RESULT = (
     "The block replaces [damping] in the line file. Mass coefficients multiply M, stiffness coefficients multiply K."
 )
 LINE_STATES = {
-    "verified": "The line of the fit is the line of the record.",
-    "unverified": "The line of the fit is not verified.",
+    "consistent": "The line of the fit is the line of the record.",
+    "unconfirmed": "The line of the fit is not confirmed.",
     "contradicted": "The line of the fit is NOT the line of the record.",
 }
 COMPARISON = "The line as it is: the line with the damping of its line file."

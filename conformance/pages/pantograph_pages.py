@@ -203,7 +203,7 @@ RESPONSE_PAGE: PageKind[ResponseComparison] = PageKind(
         "and static force and height do not change its response. A deviation is the logarithm of the dynamic stiffness "
         "of the model over the measured one: its real part is the relative deviation of the modulus, its imaginary "
         "part that of the phase, and the complex deviation joins both. It has the same size for every kind of "
-        "response. Responses at single contact strips are informative. The records are unverified: a frequency "
+        "response. Responses at single contact strips are informative. The records are unconfirmed: a frequency "
         "response has no second channel that could confirm it."
     ),
     describe=_describe,

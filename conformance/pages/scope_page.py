@@ -203,8 +203,8 @@ def build_procedure_headline(results: Results, procedure: Procedure) -> str:
     if others:
         names = ", ".join(f"{name_step(step)} ({name_verdict(step.verdict)})" for step in others)
         sentences.append(f"Not required, for information: {names}.")
-    if results.system.name in results.accepted_unverified:
-        sentences.append(f"Accepted by the user: unverified records of {results.system.name}.")
+    if results.system.name in results.accepted_unconfirmed:
+        sentences.append(f"Accepted by the user: unconfirmed records of {results.system.name}.")
     return " ".join(sentences)
 
 
@@ -243,7 +243,7 @@ def describe_steps(procedure: Procedure) -> Iterator[str]:
 
 
 def _describe_step(step: ProcedureStep) -> Iterator[str]:
-    yield from (f"{name_step(step)}: {reason}" for reason in (step.reason, step.unverified) if reason)
+    yield from (f"{name_step(step)}: {reason}" for reason in (step.reason, step.unconfirmed) if reason)
     for row in step.criteria:
         remarks = [] if row.reason is None else [row.reason]
         for text in (*remarks, *(row.close if row.is_close else ())):
@@ -260,7 +260,7 @@ def _build_procedure_row(number: int, step: ProcedureStep, cases: Sequence[CaseR
     margin = "–" if step.margin is None else replace_minus(format_margin(step.margin))
     width = step.uncertainty
     missing = list_step_missing(step, cases)
-    texts = [text for text in (step.closest, step.unverified, step.reason) if text]
+    texts = [text for text in (step.closest, step.unconfirmed, step.reason) if text]
     return (
         doc.Link(f"{number} {name_step(step)}", step_anchor(step)),
         name_state(step),

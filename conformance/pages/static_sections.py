@@ -155,7 +155,7 @@ STATIC_PAGE: PageKind[StaticComparison] = PageKind(
     scope=(
         "Static check of the line model against measured values. The tolerances are those of the user, not of a "
         "standard. Every measured value of the evaluated section counts, also an outlier. Differences are model minus "
-        "measurement. The record is unverified: a table of static values has no second channel that could confirm it."
+        "measurement. The record is unconfirmed: a table of static values has no second channel that could confirm it."
     ),
     describe=lambda comparison: f"Line: {comparison.model.name}. Measured values: {comparison.record.name}.",
     label=lambda comparison: comparison.model.name,

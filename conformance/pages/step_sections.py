@@ -57,7 +57,7 @@ def build_step_section(
         cases: Cases of the run.
         index: List of the cases of the step; empty if it has none.
     """
-    word = f"\N{EN SPACE}{step.reason or step.unverified or ''}"
+    word = f"\N{EN SPACE}{step.reason or step.unconfirmed or ''}"
     blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step.verdict), word))]
     if step.criteria:
         anchor = step_anchor(step)

@@ -200,7 +200,7 @@ COLOURS = {
     "fail": "#8c1d18",
     "info": "#24496e",
     "skip": "#625000",
-    "unverified": "#7a3b00",
+    "unconfirmed": "#7a3b00",
     "undecided": "#7a3b00",
     CLOSE: "#8a5a00",
     "error": "#5a1a66",

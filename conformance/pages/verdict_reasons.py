@@ -28,7 +28,7 @@ CLAUSES = {
     "undecided": ("is undecided", "are undecided"),
     "skip": ("could not be evaluated completely", "could not be evaluated completely"),
     "info": ("has no limit that counts", "have no limit that counts"),
-    "unverified": ("has an unverified record", "have an unverified record"),
+    "unconfirmed": ("has an unconfirmed record", "have an unconfirmed record"),
 }
 """Parts of the headline by verdict, in the singular and the plural, the worst first."""
 
@@ -43,8 +43,8 @@ def build_headline(results: Results) -> str:
         return build_procedure_headline(results, results.procedure)
     cases = [case for case in results.cases if case.id not in results.information]
     verdicts: Counter[str] = Counter(case.verdict for case in cases)
-    accepted = verdicts["unverified"] if results.system.name in results.accepted_unverified else 0
-    passed, verdicts["unverified"] = verdicts["pass"] + accepted, verdicts["unverified"] - accepted
+    accepted = verdicts["unconfirmed"] if results.system.name in results.accepted_unconfirmed else 0
+    passed, verdicts["unconfirmed"] = verdicts["pass"] + accepted, verdicts["unconfirmed"] - accepted
     pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
     grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
     counted = sum(grades[verdict] for verdict in ("pass", "undecided", "fail", "skip", "error"))
@@ -57,7 +57,7 @@ def build_headline(results: Results) -> str:
         sentences = [f"Nothing is judged: {names} wider than those of the library, or too wide to test anything."]
     elif not judged:
         sentences = [f"{count_noun(unjudged, 'case')} computed, no limit to judge {'it' if unjudged == 1 else 'them'}."]
-    elif passed == judged and results.verdict in ("pass", "unverified"):
+    elif passed == judged and results.verdict in ("pass", "unconfirmed"):
         close = count_close(results)
         near = f", {close} of {counted} close to a limit" if close else ""
         rest = f"; {count_noun(unjudged, 'case')} not judged" if unjudged else ""
@@ -71,7 +71,7 @@ def build_headline(results: Results) -> str:
                 parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
     if accepted:
-        sentences.append(f"Accepted by the user: unverified records of {results.system.name}.")
+        sentences.append(f"Accepted by the user: unconfirmed records of {results.system.name}.")
     if shown := results.information:
         more = f" and {len(shown) - NAMES_SHOWN} more" if len(shown) > NAMES_SHOWN else ""
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
@@ -103,7 +103,7 @@ def describe_record(case: CaseResult) -> str | None:
     record = case.record
     if record is None:
         return None
-    remark = "" if record.demanded else " The profile does not demand verification."
+    remark = "" if record.demanded else " The profile does not demand consistency."
     return f"Record {record.state}: {record.reason}.{remark}"
 
 
@@ -120,10 +120,10 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
         "Undecided": [*map(_reason, _select(results, "undecided"))],
         "Not evaluated": [*_case_reasons(results, "skip"), *map(_reason, _select(results, "skip"))],
         "Drift from the baseline": [_reason(pair) for pair in drifts],
-        "Not verified": [
+        "Not confirmed": [
             f"{case.id}: {describe_record(case)}"
             for case in results.cases
-            if case.record and case.record.state == "unverified"
+            if case.record and case.record.state == "unconfirmed"
         ],
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
         "Closer to a limit than the uncertainty": [

@@ -112,7 +112,7 @@ class EventFacts(ResultsPart):
 
 
 # Record of the case.
-RecordState = Literal["verified", "unverified", "contradicted"]
+RecordState = Literal["consistent", "unconfirmed", "contradicted"]
 """Result of the consistency checks of a record: confirmed, not all of them possible, or refuted."""
 
 StartState = Literal["as in the case", "differs", "not stated"]
@@ -122,7 +122,7 @@ StartState = Literal["as in the case", "differs", "not stated"]
 class RecordFacts(ResultsPart):
     """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
 
-    `demanded` is false if a profile shows the state `unverified` without lowering the verdict. `digest` is that of the
+    `demanded` is false if a profile shows the state `unconfirmed` without lowering the verdict. `digest` is that of the
     record. `case_digest` is that of the case for which the record was made, as the record states it. `measured_digest`
     is that of the measured record, if a profile compares with one. `start` compares the stated start of the record with
     that of its case, null without a case; `start_text` is the remark on it.

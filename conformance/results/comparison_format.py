@@ -122,7 +122,7 @@ class StaticComparison(ModelComparison):
         "pantocheck.static-comparison/1"
     )
     record: ComparedSource
-    record_state: Literal["unverified"] = "unverified"
+    record_state: Literal["unconfirmed"] = "unconfirmed"
     """A table of static values has no second channel that confirms it."""
     element_m: Rounded
     force_N: tuple[Rounded, ...]
@@ -198,7 +198,7 @@ class ResponseComparison(ModelComparison):
     schema_: Annotated[Literal["pantocheck.response-comparison/1"], Field(alias="schema")] = (
         "pantocheck.response-comparison/1"
     )
-    record_state: Literal["unverified"] = "unverified"
+    record_state: Literal["unconfirmed"] = "unconfirmed"
     """A frequency response has no second channel that confirms it."""
     responses: tuple[ComparedResponse, ...]
 

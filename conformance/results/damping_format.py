@@ -39,8 +39,8 @@ class LineDifference(RoundedModel):
 class LineComparison(RoundedModel):
     """Comparison of the line of the record with the line of the fit."""
 
-    state: Literal["verified", "unverified", "contradicted"]
-    """verified: all properties agree; unverified: some are missing; contradicted: some differ."""
+    state: Literal["consistent", "unconfirmed", "contradicted"]
+    """consistent: all properties agree; unconfirmed: some are missing; contradicted: some differ."""
     differences: tuple[LineDifference, ...]
     missing: tuple[str, ...]
     """Properties of the line that the modes do not state."""

@@ -34,8 +34,8 @@ class ProcedureStep(ResultsPart):
     """error: its data could not be used."""
     verdict: Verdict = "skip"
     """Skip if the step was not done."""
-    unverified: str | None = None
-    """Reason why a pass counts as unverified; null: nothing is unverified."""
+    unconfirmed: str | None = None
+    """Reason why a pass counts as unconfirmed; null: nothing is unconfirmed."""
     reason: str | None = None
     """Reason why the step was not done, or remark on its verdict."""
     closest: str | None = None
@@ -66,7 +66,7 @@ class Evidence(ResultsPart):
 
     id: str
     passed: bool = False
-    """Pass, or an accepted unverified record."""
+    """Pass, or an accepted unconfirmed record."""
     line: str
     """Name of the line in the dossier, or its title."""
     pantographs: list[str]

@@ -269,8 +269,8 @@ class Results(ResultsPart):
     """Findings of publications by outcome; null: the cases grade none."""
     information: list[str] = []
     """Ids of the cases that are shown for information: they do not take part in the verdict."""
-    accepted_unverified: list[str] = []
-    """Names of systems whose unverified records the user accepts."""
+    accepted_unconfirmed: list[str] = []
+    """Names of systems whose unconfirmed records the user accepts."""
     procedure: Annotated[Procedure | None, Field(exclude_if=is_absent)] = None
     """Steps of the EN 50318 procedure for a dossier; missing: no dossier."""
     cases: list[CaseResult]

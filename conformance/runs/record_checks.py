@@ -213,22 +213,22 @@ def check_record(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]
     return findings
 
 
-# State of a record: verified, unverified or contradicted.
-STATES: dict[str, Literal["unverified", "contradicted"]] = {
+# State of a record: consistent, unconfirmed or contradicted.
+STATES: dict[str, Literal["unconfirmed", "contradicted"]] = {
     "contradiction": "contradicted",
-    "doubt": "unverified",
-    "unchecked": "unverified",
+    "doubt": "unconfirmed",
+    "unchecked": "unconfirmed",
 }
 """State of a record with a finding of each kind.
 
-A doubt neither confirms nor refutes a record, so that the record is unverified. Every check is needed.
+A doubt neither confirms nor refutes a record, so that the record is unconfirmed. Every check is needed.
 Otherwise a record could avoid a check by leaving out its channels.
 """
 
 
 def judge_record_state(
     findings: Mapping[CheckName, Finding],
-) -> tuple[Literal["verified", "unverified", "contradicted"], str]:
+) -> tuple[Literal["consistent", "unconfirmed", "contradicted"], str]:
     """State of a record and its reason.
 
     Args:
@@ -236,12 +236,12 @@ def judge_record_state(
             it.
 
     Returns:
-        state: `contradicted` if a check refutes the record; `unverified` if a check doubts it or could not be made;
-            `verified` otherwise.
+        state: `contradicted` if a check refutes the record; `unconfirmed` if a check doubts it or could not be made;
+            `consistent` otherwise.
         reason: One line: the texts of the findings that decide; the confirming checks if there are none.
     """
-    for state in ("contradicted", "unverified"):
+    for state in ("contradicted", "unconfirmed"):
         texts = [finding.text for finding in findings.values() if STATES[finding.kind] == state]
         if texts:
             return state, "; ".join(texts)
-    return "verified", "every consistency check that applies confirms the record"
+    return "consistent", "every consistency check that applies confirms the record"

@@ -4,7 +4,7 @@
 const MANY_ROWS = 10;
 
 /** Verdicts from the worst to the best. */
-const VERDICTS = ["error", "fail", "undecided", "skip", "info", "unverified", "close", "pass"];
+const VERDICTS = ["error", "fail", "undecided", "skip", "info", "unconfirmed", "close", "pass"];
 
 /** Verdict shown in a part of a page; undefined without one. */
 function verdictOf(part) {

@@ -25,7 +25,7 @@ STEPS = [step for step in GITHUB["jobs"]["conformance"]["steps"] if "run" in ste
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Repository as on the page; its simulator copies published results, which the plan accepts unverified."""
+    """Repository as on the page; its simulator copies published results, which the plan accepts unconfirmed."""
     shutil.copy(CI / "conformance.toml", tmp_path)
     shutil.copytree(PASSING, tmp_path / "solver")
     script = tmp_path / "simulate.sh"
@@ -33,7 +33,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     script.chmod(0o755)
     plan = tmp_path / "conformance.toml"
     formats = ["json", "junit", "md", "badge", "annotations", "codequality"]  # the certificate is tested elsewhere
-    accepted = {"accept_unverified": ["published passing code (Wang et al.)"], "verdicts": "criteria"}
+    accepted = {"accept_unconfirmed": ["published passing code (Wang et al.)"], "verdicts": "criteria"}
     edit_toml(plan, accepted | {"formats": formats})
     gated = plan.read_text()
     edit_toml(plan, {"baseline": None, "drift_pct": None})

@@ -120,7 +120,7 @@ def test_action_grades_annotates_and_summarises(checkout: Path) -> None:
 def test_action_passes_a_plan_and_links_the_uploaded_certificate(checkout: Path) -> None:
     (checkout / "plan.toml").write_text(
         'cases = ["en50318-2002/250"]\nsystem = "record:my records"\nverdicts = "criteria"\n'
-        'accept_unverified = ["published passing code (Wang et al.)"]\n'
+        'accept_unconfirmed = ["published passing code (Wang et al.)"]\n'
     )
     inputs = {"plan": "plan.toml", "formats": "html,md,annotations", "out": "my report"}
     graded = run_step("grade", checkout, **inputs)

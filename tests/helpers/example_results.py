@@ -23,7 +23,7 @@ RATE = 1000.0
 SPANS_M = (240.0, 360.0)
 SUPPORTS_M = [240.0, 300.0, 360.0]
 
-VERIFIED = {"state": "verified", "reason": "every consistency check that applies confirms the record"}
+VERIFIED = {"state": "consistent", "reason": "every consistency check that applies confirms the record"}
 
 Signal = NDArray[np.float64]
 

@@ -141,7 +141,7 @@ _STYLES: dict[str, str] = {
     "error": "bold red",
     "skip": "yellow",
     "info": "cyan",
-    "unverified": "yellow",
+    "unconfirmed": "yellow",
     "undecided": "yellow",
     "close": "bold yellow",
 }

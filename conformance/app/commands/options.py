@@ -70,9 +70,9 @@ VerdictsOption = Annotated[
         show_default="criteria for builtin, both for any other system",
     ),
 ]
-AcceptUnverifiedOption = Annotated[
+AcceptUnconfirmedOption = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME", help="System whose unverified records may pass; repeat the option for several."),
+    typer.Option(metavar="NAME", help="System whose unconfirmed records may pass; repeat the option for several."),
 ]
 BaselineOption = Annotated[Path | None, typer.Option(help="Earlier results.json; a value that drifts from it fails.")]
 AdministrationOption = Annotated[

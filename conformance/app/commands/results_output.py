@@ -33,7 +33,7 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, n
 
 EXIT_CODES: dict[Verdict, int] = {
     "pass": 0,
-    "unverified": 1,
+    "unconfirmed": 1,
     "info": 3,
     "skip": 1,
     "undecided": 1,

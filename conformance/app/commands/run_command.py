@@ -10,7 +10,7 @@ from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import error_console, escape_text
 from pantocheck.conformance.app.commands.interruption import Interruption, receive_signals
 from pantocheck.conformance.app.commands.options import (
-    AcceptUnverifiedOption,
+    AcceptUnconfirmedOption,
     AdministrationOption,
     BaselineOption,
     DecisionOption,
@@ -72,7 +72,7 @@ def run_command(
     limits: Annotated[
         Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
     ] = None,
-    accept_unverified: AcceptUnverifiedOption = None,
+    accept_unconfirmed: AcceptUnconfirmedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
     administration: AdministrationOption = None,
@@ -125,7 +125,7 @@ def run_command(
         decision=decision,
         verdicts=verdicts,
         limits=limits,
-        accept_unverified=tuple(accept_unverified) if accept_unverified else None,
+        accept_unconfirmed=tuple(accept_unconfirmed) if accept_unconfirmed else None,
         baseline=baseline,
         drift_pct=drift,
         administration=read_stated_administration(administration, report_number),
@@ -200,7 +200,7 @@ def assess_command(
     uplift_space_mm: Annotated[
         float | None, typer.Option(help="Available uplift at the supports, if the record does not state it.")
     ] = None,
-    accept_unverified: AcceptUnverifiedOption = None,
+    accept_unconfirmed: AcceptUnconfirmedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
     administration: AdministrationOption = None,
@@ -241,7 +241,7 @@ def assess_command(
     check_writable(folder)
     places = locate_record(record, profile, limits)
     participation = Participation(
-        accepted_unverified=tuple(accept_unverified or ()), decision=parse_decision(options.decision)
+        accepted_unconfirmed=tuple(accept_unconfirmed or ()), decision=parse_decision(options.decision)
     )
     results = assess_record(assessed, rules, options.trust, reference, own_limits, participation)
     results = results.model_copy(update={"administration": options.administration})

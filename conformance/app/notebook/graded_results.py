@@ -37,7 +37,7 @@ class GradedResults:
 
     @property
     def verdict(self) -> Verdict:
-        """Overall verdict: `pass`, `unverified`, `info`, `skip`, `fail` or `error`."""
+        """Overall verdict: `pass`, `unconfirmed`, `info`, `skip`, `fail` or `error`."""
         return self.results.verdict
 
     def to_dataframe(self) -> Any:

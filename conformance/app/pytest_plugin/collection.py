@@ -9,9 +9,9 @@ import pytest
 from pantocheck.conformance.app.pytest_plugin.session import PlanSession, list_registered
 from pantocheck.conformance.app.pytest_plugin.shared_folder import shared_folder
 from pantocheck.conformance.app.pytest_plugin.user_fixtures import (
+    describe_unconfirmed,
     describe_unmet_criterion,
-    describe_unverified,
-    is_unverified,
+    is_unconfirmed,
     list_verdict_criteria,
 )
 from pantocheck.conformance.cases.case import Case
@@ -212,8 +212,8 @@ class CriterionItem(OneLineItem):
             pytest.skip(criterion.reason or criterion.verdict)
         if criterion.verdict == "fail":
             self.case_node.report(describe_unmet_criterion(criterion))
-        if is_unverified(result) and not campaign.accepts_unverified:
-            self.case_node.report(describe_unverified(result))
+        if is_unconfirmed(result) and not campaign.accepts_unconfirmed:
+            self.case_node.report(describe_unconfirmed(result))
 
 
 def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], bool]:

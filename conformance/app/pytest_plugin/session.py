@@ -59,9 +59,9 @@ class PlanSession:
         return self._finished[case.id]
 
     @property
-    def accepts_unverified(self) -> bool:
-        """Whether the plan accepts unverified records of its system."""
-        return self._start_system().name in self.prepared.participation.accepted_unverified
+    def accepts_unconfirmed(self) -> bool:
+        """Whether the plan accepts unconfirmed records of its system."""
+        return self._start_system().name in self.prepared.participation.accepted_unconfirmed
 
     def compare(self, case: Case) -> CaseResult:
         """Result of a case with its criteria of drift from the baseline of the plan."""

@@ -56,27 +56,27 @@ class GradedCase:
         """Value of a quantity of a pantograph (0: line), with or without limits."""
         return self.result.quantities[str(pantograph)][quantity]
 
-    def check(self, *quantities: str, accept_unverified: bool = False) -> None:
-        """Fail the test, with a line per reason, unless the criteria of these quantities pass on a verified record.
+    def check(self, *quantities: str, accept_unconfirmed: bool = False) -> None:
+        """Fail the test, with a line per reason, unless the criteria of these quantities pass on a consistent record.
 
         Args:
             *quantities: Names of quantities; default: all with limits that count.
-            accept_unverified: Whether an unverified record may pass.
+            accept_unconfirmed: Whether an unconfirmed record may pass.
 
         Raises:
             AssertionError: A criterion is not met or does not count, a quantity has no limits, a requested verification
-                is impossible, or the record is not verified.
+                is impossible, or the record is not consistent.
         """
         __tracebackhide__ = True
         criteria = [c for c in self._criteria if not quantities or c.quantity in quantities]
-        reasons = self._list_reasons(criteria, accept_unverified)
+        reasons = self._list_reasons(criteria, accept_unconfirmed)
         reasons += [describe_unmet_criterion(c) for c in criteria if quantities and c.verdict == "info"]
         limited = {criterion.quantity for criterion in criteria}
         reasons += [f"{name} has no limits" for name in quantities if name not in limited]
         if reasons:
             raise AssertionError(f"{self.result.id}: " + "\n".join(reasons))
 
-    def _list_reasons(self, criteria: Sequence[Criterion], accept_unverified: bool = False) -> list[str]:
+    def _list_reasons(self, criteria: Sequence[Criterion], accept_unconfirmed: bool = False) -> list[str]:
         """Reasons why some criteria of the case do not pass, or why a requested verification has no criteria."""
         result = self.result
         if result.reason:
@@ -86,8 +86,8 @@ class GradedCase:
             reasons.append("no limit counts")
         if "verification" in self.requested and result.verification is not None and result.verification.reason:
             reasons.append(f"verification: {result.verification.verdict}, {result.verification.reason}")
-        if is_unverified(result) and not accept_unverified:
-            reasons.append(describe_unverified(result))
+        if is_unconfirmed(result) and not accept_unconfirmed:
+            reasons.append(describe_unconfirmed(result))
         return reasons
 
 
@@ -98,14 +98,14 @@ def list_verdict_criteria(result: CaseResult, name: VerdictName) -> list[Criteri
     return [] if result.verification is None else result.verification.criteria
 
 
-def is_unverified(result: CaseResult) -> bool:
-    """Whether the record of a case is unverified and has to be verified."""
-    return result.record is not None and result.record.state == "unverified" and result.record.demanded
+def is_unconfirmed(result: CaseResult) -> bool:
+    """Whether the record of a case is unconfirmed and has to be consistent."""
+    return result.record is not None and result.record.state == "unconfirmed" and result.record.demanded
 
 
-def describe_unverified(result: CaseResult) -> str:
-    """Line of a case with an unverified record."""
-    return f"the record is unverified: {'' if result.record is None else result.record.reason}"
+def describe_unconfirmed(result: CaseResult) -> str:
+    """Line of a case with an unconfirmed record."""
+    return f"the record is unconfirmed: {'' if result.record is None else result.record.reason}"
 
 
 def describe_unmet_criterion(criterion: Criterion) -> str:

@@ -289,7 +289,7 @@ def _check_units(values: tuple[AdapterValue, ...]) -> Iterator[AdapterFinding]:
 
 def _check_state(record: RecordFacts) -> Iterator[AdapterFinding]:
     """Consistency checks of the record."""
-    states: dict[RecordState, FindingState] = {"verified": "ok", "unverified": "missing", "contradicted": "wrong"}
+    states: dict[RecordState, FindingState] = {"consistent": "ok", "unconfirmed": "missing", "contradicted": "wrong"}
     yield AdapterFinding(states[record.state], "record", f"{record.state}: {record.reason}.")
 
 

@@ -154,29 +154,29 @@ def test_good_line_is_accepted_with_its_uncertainty(train: Train) -> None:
 
 
 @pytest.mark.parametrize(
-    ("verification", "verdict", "junit"), [("shown", "pass", "skipped"), ("demanded", "unverified", "failure")]
+    ("verification", "verdict", "junit"), [("shown", "pass", "skipped"), ("demanded", "unconfirmed", "failure")]
 )
-def test_profile_decides_whether_an_unverified_record_passes(
+def test_profile_decides_whether_an_unconfirmed_record_passes(
     train: Train, tmp_path: Path, verification: str, verdict: str, junit: str
 ) -> None:
-    """A profile names no case, so the state is unverified; it is shown by either profile."""
+    """A profile names no case, so the state is unconfirmed; it is shown by either profile."""
     profile = tmp_path / "own.toml"
     text = (library_folder() / "profiles" / "acceptance-ac.toml").read_text()
     profile.write_text(text.replace("speed_tolerance_pct", f'verification = "{verification}"\nspeed_tolerance_pct', 1))
     results = graded(train(), str(profile))
     record = results.cases[0].record
-    assert (results.verdict, record.state, record.demanded) == (verdict, "unverified", verification == "demanded")
+    assert (results.verdict, record.state, record.demanded) == (verdict, "unconfirmed", verification == "demanded")
     assert "need the pantograph and the line of a case, and a profile has none" in record.reason
     assert {row.verdict for row in results.cases[0].criteria} == {"pass"}
     assert find_discrepancies(results) == []
     test = ElementTree.fromstring(render_junit(results)).find(".//testcase[@name='record']")
     assert test[0].tag == junit
-    accepted = graded(train(), str(profile), participation=Participation(accepted_unverified=("train",)))
+    accepted = graded(train(), str(profile), participation=Participation(accepted_unconfirmed=("train",)))
     assert accepted.verdict == "pass"
     if verification == "demanded":
         assert graded(train(sigma=40.0), str(profile)).verdict == "fail"
         result = pantocheck("assess", train(), "--profile", profile, "--out", tmp_path / "out", "--formats", "json")
-        assert (result.exit_code, result.output.split()[0]) == (1, "UNVERIFIED")
+        assert (result.exit_code, result.output.split()[0]) == (1, "UNCONFIRMED")
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,7 @@ def build_results(**changes: Any) -> DropComparison:
         "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
         "model": {"name": "My line", "digest": "sha256:a"},
         "record": {"name": "T1", "source": "T1.h5", "digest": None}, "verdict": "fail",
-        "line_comparison": {"state": "verified", "differences": [], "missing": []}, "drop": drop, "rate_Hz": 200.0,
+        "line_comparison": {"state": "consistent", "differences": [], "missing": []}, "drop": drop, "rate_Hz": 200.0,
         "element_m": 0.5, "time_step_s": 0.001, "windows_s": WINDOWS, "bands_Hz": [[0.3, 20.0]],
         "models": [{"name": name, "source": f"{name}.toml", "damping": {}, "last_slack_s": None}
                    for name in ("own", "other")],

@@ -66,7 +66,7 @@ def build_results(**changes: Any) -> ResponseComparison:
     }  # fmt: skip
     content = {
         "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
-        "model": {"name": "My pantograph", "digest": "sha256:b"}, "record_state": "unverified", "verdict": "fail",
+        "model": {"name": "My pantograph", "digest": "sha256:b"}, "record_state": "unconfirmed", "verdict": "fail",
         "responses": [build_response()], "criteria": [common | failed, common | skipped], "warnings": ["a caveat"],
         **changes,
     }  # fmt: skip

@@ -43,7 +43,7 @@ def build_results(spans: int = 12, **changes: Any) -> StaticComparison:
     content = {
         "suite": {"version": "1", "commit": None, "digest": "sha256:c"},
         "model": {"name": "My line", "digest": "sha256:a"},
-        "record": {"name": "measured.csv", "digest": "sha256:b"}, "record_state": "unverified", "verdict": "fail",
+        "record": {"name": "measured.csv", "digest": "sha256:b"}, "record_state": "unconfirmed", "verdict": "fail",
         "element_m": 0.5, "force_N": [60.0, 120.0], "evaluated_spans": [2, 11], "evaluated_m": [60.0, 660.0],
         "largest_distance_m": None, "values": [values], "criteria": [criterion], "note": None,
         "warnings": ["elasticity: no value in row 12"], **changes,

@@ -72,7 +72,7 @@ def test_published_results_pass_and_each_value_outside_its_limits_fails_alone(sp
 
 
 def test_worst_verdict_decides_and_limits_count_from_the_lowest_trust_up() -> None:
-    order: tuple[Verdict, ...] = ("pass", "unverified", "info", "skip", "fail", "error")
+    order: tuple[Verdict, ...] = ("pass", "unconfirmed", "info", "skip", "fail", "error")
     for better, worse in pairwise(order):
         assert worst_verdict([better, worse, "pass"]) == worst_verdict([worse, better]) == worse
     assert worst_verdict(["pass", "skip"]) == "skip"

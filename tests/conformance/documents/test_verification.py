@@ -121,9 +121,9 @@ TAMPERINGS = {
         lambda r: r["cases"][0].update(criteria=[], criteria_verdict="pass", reason="not needed"),
         "verdict 'pass' stated, 'info' follows from the criteria",
     ),
-    "unverified without criteria": (
-        lambda r: r["cases"][0].update(criteria=[], criteria_verdict="unverified", reason="not needed"),
-        "verdict 'unverified' stated, 'info' follows from the criteria",
+    "unconfirmed without criteria": (
+        lambda r: r["cases"][0].update(criteria=[], criteria_verdict="unconfirmed", reason="not needed"),
+        "verdict 'unconfirmed' stated, 'info' follows from the criteria",
     ),
     "band": (lambda r: set_quantity(r, "rms_20_50_N", 9.0), "follows from the spectrum"),
 }  # fmt: skip

@@ -72,10 +72,10 @@ def test_headline_names_steps_that_are_missing_or_for_information(content: dict[
     changed = copy.deepcopy(content)
     steps = changed["procedure"]["steps"]
     change_keys(steps, {"0.state": "not done", "0.verdict": "skip", "4.verdict": "fail", "5.required": False})
-    changed["accepted_unverified"] = [changed["system"]["name"]]
+    changed["accepted_unconfirmed"] = [changed["system"]["name"]]
     assert headline(changed) == (
         "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
-        "Limits of validity (PASS). Accepted by the user: unverified records of Pantocheck reference simulator."
+        "Limits of validity (PASS). Accepted by the user: unconfirmed records of Pantocheck reference simulator."
     )
 
 
@@ -86,7 +86,7 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
         changed["procedure"],
         {
             "steps.1.criteria.0.reason": "2 % above the upper limit",
-            "steps.2.unverified": "not confirmed by every run: start",
+            "steps.2.unconfirmed": "not confirmed by every run: start",
             "steps.4.reason": "the run was interrupted",
             "claims.2.reason": "the runs that passed cover 160 to 180 km/h",
         },

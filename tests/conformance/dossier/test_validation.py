@@ -19,7 +19,7 @@ ALL_PASS = dict.fromkeys(STEP_NAMES, "pass")
 NOT_VERIFIED = {"limits_of_validity": "skip"}
 """Claims of the example without the pair that verifies them."""
 
-ORDER = ["error", "fail", "skip", "info", "unverified", "pass"]
+ORDER = ["error", "fail", "skip", "info", "unconfirmed", "pass"]
 
 Spoil = Callable[[Path], object]
 
@@ -82,7 +82,7 @@ def test_complete_dossier_passes(system: CachedSimulator, tmp_path: Path, change
     assert results.verdict == "pass"
     assert find_discrepancies(results) == []
     assert [step.step for step in results.procedure.steps] == list(STEP_NAMES)
-    assert all(case.record is not None and case.record.state == "verified" for case in results.cases)
+    assert all(case.record is not None and case.record.state == "consistent" for case in results.cases)
     for step in results.procedure.steps[:-1]:
         assert step.margin >= 0
 
@@ -168,7 +168,7 @@ VARIANTS = {
     "no parameters": change({"parameters": None}, "simulation_parameters skip"),
     "smaller time step declared": change({"parameters.time_step_s": 5e-4}, "simulation_parameters fail"),
     "no start declared": change({"parameters.start": None}, "simulation_parameters skip"),
-    "mesh declared in words": change({"parameters.element_m": "fine"}, "simulation_parameters unverified"),
+    "mesh declared in words": change({"parameters.element_m": "fine"}, "simulation_parameters unconfirmed"),
     "no reference model": change({"reference": None}, "reference_models skip"),
     "reference model without limits": change({"reference.cases": ["run-160.toml"]}, "reference_models info"),
     "own case with limits as reference model": change(

@@ -81,7 +81,7 @@ def validate_record(folder: Path, system: CachedSimulator, accepted: bool) -> Re
     changes: dict[str, Any] = {"pair.2": None, "pair.1": None, "pair.0.simulated": run, "reference": None}
     changes |= {"required": ["line_test"], "validity.spacing_m": None}
     changes |= {"validity.speed_km_h": [160.0, 160.0]}
-    changes |= {"accept_unverified": [ForeignSystem.name]} if accepted else {}
+    changes |= {"accept_unconfirmed": [ForeignSystem.name]} if accepted else {}
     path = copy_example(folder / "in", changes)
     (case,) = select_cases([str(EXAMPLE / "run-160.toml")])
     delivered = system.run(case)
@@ -96,14 +96,14 @@ def validate_record(folder: Path, system: CachedSimulator, accepted: bool) -> Re
 
 
 @pytest.mark.parametrize("accepted", [False, True])
-def test_record_without_a_case_is_unverified(system: CachedSimulator, tmp_path: Path, accepted: bool) -> None:
+def test_record_without_a_case_is_unconfirmed(system: CachedSimulator, tmp_path: Path, accepted: bool) -> None:
     """Only the user can accept a record that no check confirms; the runs of the claims are those that then pass."""
     # The claims do not pass without reference models, although the dossier does not require them.
     results = validate_record(tmp_path, system, accepted)
-    assert list_verdicts(results)["line_test"] == results.verdict == ("pass" if accepted else "unverified")
+    assert list_verdicts(results)["line_test"] == results.verdict == ("pass" if accepted else "unconfirmed")
     assert {claim.verdict for claim in results.procedure.claims} == {"skip"}
     assert {tuple(claim.evidence) for claim in results.procedure.claims} == {("pair/160-up",) if accepted else ()}
-    assert results.cases[0].verdict == "unverified"
+    assert results.cases[0].verdict == "unconfirmed"
     assert find_discrepancies(results) == []
 
 

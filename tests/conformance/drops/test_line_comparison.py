@@ -116,7 +116,7 @@ def test_sections_and_stitch_wires_carry_their_sensors() -> None:
     facts = describe_line(line)
     modes = [build_mode(facts, position=position) for position in (30.0, 510.0)]
     comparison = compare_line(modes, build_catenary(line))
-    assert (comparison.state, len(facts.spans_m)) == ("verified", 9)
+    assert (comparison.state, len(facts.spans_m)) == ("consistent", 9)
     # Stitch wires exist only around the supports; a sensor at mid-span hangs on none.
     case = select_cases(["en50318-2018/ac-stitched/275*"])[0]
     line, geometry = build_catenary(case.line), case.line.geometry
@@ -124,7 +124,7 @@ def test_sections_and_stitch_wires_carry_their_sensors() -> None:
         compare_line([build_mode(describe_line(case.line), wire="SW", position=x)], line).state
         for x in (geometry.supports[1], geometry.mid_span(3))
     ]
-    assert states == ["verified", "contradicted"]
+    assert states == ["consistent", "contradicted"]
 
 
 def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary) -> None:
@@ -135,7 +135,7 @@ def test_line_of_the_record_is_verified(file: LineFile, catenary: Catenary) -> N
         {"contact_wire_tension_N": 20.19e3, "messenger_wire_tension_N": 13.87e3},
     ):
         comparison = compare_line([build_mode(describe_line(file).model_copy(update=changes))], catenary)
-        assert (comparison.state, comparison.differences, comparison.missing) == ("verified", (), ())
+        assert (comparison.state, comparison.differences, comparison.missing) == ("consistent", (), ())
         refuse_other_line(comparison, "modes.json")
 
 
@@ -195,7 +195,7 @@ def test_line_or_sensor_with_a_missing_fact_is_not_verified(
 ) -> None:
     facts = describe_line(file).model_copy(update=changes)
     comparison = compare_line([build_mode(facts, wire=wire, position=position)], catenary)
-    assert (comparison.state, comparison.missing) == ("unverified", (missing,))
+    assert (comparison.state, comparison.missing) == ("unconfirmed", (missing,))
     refuse_other_line(comparison, "modes.json")
 
 
@@ -206,7 +206,7 @@ def test_modes_without_facts_or_with_a_missing_fact_hide_no_difference(file: Lin
     # Record T1, without facts on the line, is from another line, which the fit can only see by its matching.
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
     results = build_damping_results(modes, catenary, 1.5, "modes.json")
-    assert results.line.state == "unverified"
+    assert results.line.state == "unconfirmed"
     assert "not verified" in results.warnings[0]
     assert results.matching.matched_share < 0.8
     assert results.matching.median_mac < 0.9
@@ -229,7 +229,7 @@ def test_difference_names_the_record_if_there_are_two_lines(file: LineFile, cate
 def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode, ...], unequal: Catenary) -> None:
     """Perfect modes of the same mesh: every mode is matched, and each coefficient returns within 1 %."""
     results = build_damping_results(measured, unequal, 1.0, "modes.json")
-    assert (results.line.state, results.warnings) == ("verified", ())
+    assert (results.line.state, results.warnings) == ("consistent", ())
     assert (results.matching.modes, results.matching.matched, results.matching.matched_share) == (30, 30, 1.0)
     assert results.matching.lowest_mac == pytest.approx(1.0, abs=1e-6)
     for c in results.coefficients:

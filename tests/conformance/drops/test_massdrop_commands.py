@@ -87,7 +87,7 @@ def test_fit_damping_recovers_the_damping_of_the_line(folder: Path) -> None:
     text = (folder / "fit" / "damping.toml").read_text()
     Damping.model_validate(tomllib.loads(text)["damping"])
     results = json.loads((folder / "fit" / "damping.json").read_text())
-    assert (results["line"]["state"], results["line"]["missing"]) == ("verified", [])
+    assert (results["line"]["state"], results["line"]["missing"]) == ("consistent", [])
     assert results["matching"]["matched_share"] == 1.0
     assert sum(row["value"] for row in results["coefficients"] if row["matrix"] == "mass") > 0.0125
     for row in results["coefficients"]:

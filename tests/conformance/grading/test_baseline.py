@@ -42,15 +42,15 @@ CRITERIA = ("--verdicts", "criteria")
 
 @pytest.fixture
 def results() -> Results:
-    """Published statistics that pass; the user accepts that they are unverified."""
+    """Published statistics that pass; the user accepts that they are unconfirmed."""
     system = choose_system(PASSING)
-    accepted = Participation(accepted_unverified=(system.name,))
+    accepted = Participation(accepted_unconfirmed=(system.name,))
     return run_cases(select_cases(["en50318-2002/*"]), system, participation=accepted)
 
 
 def build_command(cases: str, out: Path, accepted: str, formats: str = "json") -> list[str | Path]:
-    """Run on the published statistics, whose unverified records the user accepts."""
-    options = ["--system", PASSING, *CRITERIA, "--formats", formats, "--accept-unverified", accepted]
+    """Run on the published statistics, whose unconfirmed records the user accepts."""
+    options = ["--system", PASSING, *CRITERIA, "--formats", formats, "--accept-unconfirmed", accepted]
     return ["run", f"en50318-2002/{cases}", *options, "--out", out]
 
 
@@ -100,7 +100,7 @@ def test_value_that_drifts_fails_within_its_limits(results: Results, was: float,
         assert (finding.lower, finding.upper) == (round(0.98 * was, 4), round(1.02 * was, 4))
         assert find_discrepancies(compared) == []
         assert b'name="drift of std_force_N of pantograph 1"' in render_junit(compared)
-        assert compared.cases[1].verdict == "unverified"
+        assert compared.cases[1].verdict == "unconfirmed"
 
 
 @pytest.mark.parametrize(
@@ -155,7 +155,7 @@ FORGERIES: dict[str, Callable[[dict[str, Any]], None]] = {
     "comparison": lambda case: case.pop("baseline"),
     "row and comparison": lambda case: (remove_row(case), case.pop("baseline"))[0],
     "verdict of the case by the baseline": lambda case: case["baseline"].update(verdict="pass"),
-    "verdict of the case": lambda case: case.update(verdict="unverified"),
+    "verdict of the case": lambda case: case.update(verdict="unconfirmed"),
     "bounds": lambda case: case["criteria"][-1].update(upper=29.0, verdict="pass", margin=0.2),
     "accepted drift": lambda case: case["baseline"].update(drift_pct=5.0),
     "number": lambda case: case["baseline"].update(drifted=0),
@@ -197,7 +197,7 @@ def test_value_or_case_that_one_side_lacks_is_skipped(results: Results) -> None:
     assert find_discrepancies(compared) == []
     other = results.model_copy(update={"cases": results.cases[:1]})
     compared = compare_with_baseline(results, other, 1.0, "b.json")
-    assert compared.cases[0].verdict == "unverified"
+    assert compared.cases[0].verdict == "unconfirmed"
     lacking = compared.cases[1]
     assert (lacking.verdict, lacking.criteria[-1].reason) == ("skip", "baseline b.json has no case en50318-2002/300")
     assert compared.verdict == "skip"
@@ -226,7 +226,7 @@ def test_baseline_of_another_case_is_no_pass(results: Results, change: dict[str,
     finding = compared.cases[0].criteria[-1]
     assert (finding.quantity, finding.verdict) == ("baseline", "skip")
     assert finding.reason == f"baseline b.json has other {difference}; renew the baseline"
-    assert [case.verdict for case in compared.cases] == ["skip", "unverified"]
+    assert [case.verdict for case in compared.cases] == ["skip", "unconfirmed"]
     assert compared.verdict == "skip"
     assert find_discrepancies(compared) == []
 
@@ -281,7 +281,7 @@ def test_baseline_on_the_command_line_and_in_a_plan(results: Results, tmp_path: 
     assert "fail" in (tmp_path / "out" / "badge.svg").read_text().lower()
     assert pantocheck(*command, "--baseline", base, "--drift", "3").exit_code == 0
     plan = tmp_path / "plan.toml"
-    options = {"verdicts": "criteria", "formats": ["json"], "accept_unverified": [results.system.name]}
+    options = {"verdicts": "criteria", "formats": ["json"], "accept_unconfirmed": [results.system.name]}
     write_toml(plan, options | {"system": PASSING, "cases": ["en50318-2002/*"], "baseline": "baseline.json"})
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p").exit_code == 1
     assert pantocheck("run", "--plan", plan, "--out", tmp_path / "p", "--drift", "3").exit_code == 0

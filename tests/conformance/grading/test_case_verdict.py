@@ -1,4 +1,4 @@
-"""Verdict of a case and of a run: no pass without a counted limit and a verified record."""
+"""Verdict of a case and of a run: no pass without a counted limit and a consistent record."""
 
 from pathlib import Path
 from typing import Any, get_args
@@ -43,15 +43,15 @@ def record(state: RecordState, demanded: bool = True) -> RecordFacts:
 @pytest.mark.parametrize(
     ("criteria", "state", "verdict"),
     [
-        (["pass", "info"], "verified", "pass"),
-        (["pass", "info"], "unverified", "unverified"),
+        (["pass", "info"], "consistent", "pass"),
+        (["pass", "info"], "unconfirmed", "unconfirmed"),
         (["pass"], "contradicted", "error"),
-        (["info", "info"], "verified", "info"),
-        (["info"], "unverified", "info"),
-        ([], "verified", "info"),
-        (["pass", "skip", "info"], "verified", "skip"),
-        (["pass", "skip"], "unverified", "skip"),
-        (["fail", "skip"], "unverified", "fail"),
+        (["info", "info"], "consistent", "info"),
+        (["info"], "unconfirmed", "info"),
+        ([], "consistent", "info"),
+        (["pass", "skip", "info"], "consistent", "skip"),
+        (["pass", "skip"], "unconfirmed", "skip"),
+        (["fail", "skip"], "unconfirmed", "fail"),
     ],
 )
 def test_case_is_as_good_as_its_worst_row(criteria: list[Verdict], state: RecordState, verdict: Verdict) -> None:
@@ -61,33 +61,33 @@ def test_case_is_as_good_as_its_worst_row(criteria: list[Verdict], state: Record
 @given(grades, st.sampled_from(get_args(RecordState)))
 def test_pass_needs_a_counted_criterion_and_a_verified_record(criteria: list[Verdict], state: RecordState) -> None:
     passes = judge_case(criteria, record(state)) == "pass"
-    assert passes == ("pass" in criteria and set(criteria) <= {"pass", "info"} and state == "verified")
+    assert passes == ("pass" in criteria and set(criteria) <= {"pass", "info"} and state == "consistent")
 
 
 def test_only_pass_ends_with_exit_code_0_and_the_worst_case_decides() -> None:
     assert {verdict: EXIT_CODES[verdict] for verdict in WORST_FIRST} == {
-        "pass": 0, "unverified": 1, "info": 3, "skip": 1, "undecided": 1, "fail": 1, "error": 2
+        "pass": 0, "unconfirmed": 1, "info": 3, "skip": 1, "undecided": 1, "fail": 1, "error": 2
     }  # fmt: skip
-    cases: list[tuple[str, Verdict]] = [("a", "pass"), ("b", "unverified"), ("c", "fail")]
+    cases: list[tuple[str, Verdict]] = [("a", "pass"), ("b", "unconfirmed"), ("c", "fail")]
     assert Participation().judge_run(cases, "mine") == "fail"
-    assert Participation(information=("c",)).judge_run(cases, "mine") == "unverified"
+    assert Participation(information=("c",)).judge_run(cases, "mine") == "unconfirmed"
     assert Participation(("c",), ("mine",)).judge_run(cases, "mine") == "pass"
-    assert Participation(("c",), ("other",)).judge_run(cases, "mine") == "unverified"
+    assert Participation(("c",), ("other",)).judge_run(cases, "mine") == "unconfirmed"
     assert Participation(("a", "b", "c")).judge_run(cases, "mine") == "info"
-    assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
+    assert judge_case(["pass"], record("unconfirmed", demanded=False)) == "pass"
     assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
     assert [judge_baseline([], values) for values in (0, 1)] == ["info", "pass"]
 
 
 def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250: Case) -> None:
-    """With its height the record is verified; without it, the motion cannot be checked."""
+    """With its height the record is consistent; without it, the motion cannot be checked."""
     results = run_cases([case_250], wave()).to_dict()
-    assert results["cases"][0]["record"]["state"] == "verified"
+    assert results["cases"][0]["record"]["state"] == "consistent"
     results["cases"][0]["record"] = None
     assert any("the state of the record is missing" in text for text in find_gaps(Results.model_validate(results)))
 
 
-def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: Path) -> None:
+def test_published_statistics_are_unconfirmed_unless_accepted_by_name(tmp_path: Path) -> None:
     def exit_code(*arguments: str) -> int:
         return pantocheck(*PUBLISHED, "--out", tmp_path, *arguments).exit_code
 
@@ -96,16 +96,16 @@ def test_published_statistics_are_unverified_unless_accepted_by_name(tmp_path: P
 
     assert exit_code() == 1
     assert junit().get("failures") == "2"
-    assert exit_code("--accept-unverified", "another code") == 1
+    assert exit_code("--accept-unconfirmed", "another code") == 1
     assert exit_code("--trust", "primary") == 3  # no limit counts
-    assert exit_code("--accept-unverified", CODE) == 0
+    assert exit_code("--accept-unconfirmed", CODE) == 0
     # Ten quantities of each case are verified for information; the records are accepted.
     assert (junit().get("failures"), junit().get("skipped")) == ("0", "22")
 
 
 def test_published_statistics_do_not_meet_the_converged_solution(tmp_path: Path) -> None:
     """Verification is requested by default of another system; its result is shown as it comes out."""
-    arguments = (*PUBLISHED[:4], "--accept-unverified", CODE, "--formats", "json", "--out", tmp_path)
+    arguments = (*PUBLISHED[:4], "--accept-unconfirmed", CODE, "--formats", "json", "--out", tmp_path)
     assert pantocheck(*arguments).exit_code == 1
     results = read_results(tmp_path / "results.json")
     assert (results.verdict, results.criteria_verdict, results.verification_verdict) == ("fail", "pass", "fail")
@@ -121,11 +121,11 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
         "All 16 counted criteria in 1 case lie inside their limits. "
         "For information, not part of the verdict: 0, 1, 2, 3."
     )
-    unverified = passing | {"cases": [first | {"verdict": "unverified"}]}
-    assert build_headline(Results.model_validate(unverified)) == "0 of 1 case passes, 1 has an unverified record."
+    unconfirmed = passing | {"cases": [first | {"verdict": "unconfirmed"}]}
+    assert build_headline(Results.model_validate(unconfirmed)) == "0 of 1 case passes, 1 has an unconfirmed record."
     name = passing["system"]["name"]
-    accepted = build_headline(Results.model_validate(unverified | {"accepted_unverified": [name]}))
-    assert accepted.endswith(f"Accepted by the user: unverified records of {name}.")
+    accepted = build_headline(Results.model_validate(unconfirmed | {"accepted_unconfirmed": [name]}))
+    assert accepted.endswith(f"Accepted by the user: unconfirmed records of {name}.")
 
 
 def test_junit_passes_only_what_counts_in_the_default_run(results: dict[str, Any]) -> None:
@@ -182,7 +182,7 @@ def test_case_is_as_good_as_the_worst_requested_verdict(
     chosen += [verification] if "verification" in requested and verification is not None else []
     expected = min(chosen, key=rank) if chosen else "info"
     lacking = "verification" in requested and verification is None
-    assert decided.verdict == ("unverified" if expected == "pass" and lacking else expected)
+    assert decided.verdict == ("unconfirmed" if expected == "pass" and lacking else expected)
 
 
 @given(VERDICTS, st.none() | VERDICTS, st.none() | VERDICTS, REQUESTS)
@@ -196,7 +196,7 @@ def test_verification_never_lifts_the_criteria(
     if "criteria" in requested:
         assert rank(results.verdict) <= rank(criteria)
     if "verification" in requested:
-        assert rank(results.verdict) <= rank(verification or "unverified")
+        assert rank(results.verdict) <= rank(verification or "unconfirmed")
     if requested == ("criteria",):
         assert results.verdict == criteria
 
@@ -213,7 +213,7 @@ def test_case_without_a_limit_or_verdict_that_counts_is_informative() -> None:
     alone = decide(Participation(requested=("verification",)), case_result("a", "pass", None))
     assert (alone.verdict, alone.verification_verdict, alone.criteria_verdict) == ("info", None, "pass")
     both = decide(Participation(requested=("criteria", "verification")), case_result("a", "pass", None))
-    assert (both.verdict, both.cases[0].verdict) == ("unverified", "unverified")
+    assert (both.verdict, both.cases[0].verdict) == ("unconfirmed", "unconfirmed")
     cases = case_result("a", "pass", "pass"), case_result("b", "info", "pass")
     both = ("criteria", "verification")
     assert decide(Participation(requested=both), *cases).verdict == "pass"  # that of the judged case
@@ -229,9 +229,9 @@ def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     failed = case_result("a", "fail", "pass")
     assert decide(Participation(requested=("verification",)), failed).verdict == "pass"
     both, name = ("criteria", "verification"), RESULTS.system.name
-    case = case_result("a", "unverified", "unverified")
-    assert decide(Participation(requested=both), case).verdict == "unverified"
-    assert decide(Participation(requested=both, accepted_unverified=(name,)), case).verdict == "pass"
+    case = case_result("a", "unconfirmed", "unconfirmed")
+    assert decide(Participation(requested=both), case).verdict == "unconfirmed"
+    assert decide(Participation(requested=both, accepted_unconfirmed=(name,)), case).verdict == "pass"
 
 
 @given(VERDICTS, st.none() | VERDICTS, VERDICTS, REQUESTS, st.booleans())
@@ -239,7 +239,7 @@ def test_baseline_never_improves_a_verdict(
     criteria: Verdict, verification: Verdict | None, drift: Verdict, requested: tuple[VerdictName, ...], listed: bool
 ) -> None:
     """Whether its criteria are listed or only its verdict is stated; the other verdicts do not depend on it."""
-    participation = Participation(requested=requested, accepted_unverified=(RESULTS.system.name,))
+    participation = Participation(requested=requested, accepted_unconfirmed=(RESULTS.system.name,))
     plain = case_result("a", criteria, verification)
     comparison = BaselineComparison(verdict=drift, name="b.json", drift_pct=1.0, values=8, drifted=1)
     row = case_result("a", criteria, verification, drift).criteria

@@ -129,7 +129,7 @@ def test_verified_record_passes(state_converged: StateConverged, twin: Case, rec
     }
     assert result.verification.confirmed_by == "finite differences"
     state_converged(twin, values)
-    assert verdict(grade(twin, replace(record, contact_height=None))) == "unverified"
+    assert verdict(grade(twin, replace(record, contact_height=None))) == "unconfirmed"
     contradicted = grade(twin, replace(record, contact_height=2 * record.contact_height))
     assert (contradicted.criteria_verdict, verdict(contradicted)) == ("error", "error")
     assert contradicted.verification.criteria == []

@@ -70,7 +70,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     )
     (tmp_path / "plan.toml").write_text(
         'system = "record:records"\nout = "report"\nverdicts = "criteria"\nlimits = "limits.toml"\n'
-        f'accept_unverified = ["{ACCEPTED}"]\nformats = ["annotations", "codequality", "junit", "md"]\n'
+        f'accept_unconfirmed = ["{ACCEPTED}"]\nformats = ["annotations", "codequality", "junit", "md"]\n'
         'cases = ["en50318-2002/250", "mine.toml"]\n'
     )
     return tmp_path

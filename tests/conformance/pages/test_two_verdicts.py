@@ -131,7 +131,7 @@ def test_certificate_lists_what_is_not_confirmed_and_failures_that_decide(failin
 def test_junit_skips_the_verdict_that_does_not_decide(
     failing: Results, requested: tuple[VerdictName, ...], failures: int, skipped: int
 ) -> None:
-    """The example has 16 criteria, a verified record, and one criterion of the verification."""
+    """The example has 16 criteria, a consistent record, and one criterion of the verification."""
     root = ElementTree.fromstring(render_junit(Results.model_validate(decide(failing, *requested))))
     assert (int(root.get("failures", "")), int(root.get("skipped", ""))) == (failures, skipped)
     assert any(test.get("name", "").startswith(f"verification: {BAND}") for test in root.iter("testcase"))

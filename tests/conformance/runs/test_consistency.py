@@ -141,10 +141,10 @@ def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, 
 # State of a record by the findings of its checks.
 def test_state_follows_from_the_worst_finding() -> None:
     """Beside a contradiction, a missing channel is not the reason: the record cannot be graded even with it."""
-    assert judge_record_state({}) == ("verified", "every consistency check that applies confirms the record")
+    assert judge_record_state({}) == ("consistent", "every consistency check that applies confirms the record")
     findings: dict[CheckName, Finding] = {"support passing": Finding("unchecked", "no uplift")}
     assert judge_record_state(findings | {"dynamics": Finding("doubt", "late force")}) == (
-        "unverified",
+        "unconfirmed",
         "no uplift; late force",
     )
     assert judge_record_state(findings | {"dynamics": Finding("contradiction", "gain")}) == ("contradicted", "gain")

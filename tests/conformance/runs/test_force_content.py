@@ -173,7 +173,7 @@ def test_equal_forces_need_equal_uplifts(two_pantograph_case: Case, alike: Recor
     assert (finding is not None) == found
 
 
-def test_copy_stays_unverified_without_the_uplift_to_compare(slow_run: tuple[Case, Record]) -> None:
+def test_copy_stays_unconfirmed_without_the_uplift_to_compare(slow_run: tuple[Case, Record]) -> None:
     """A copy at the same time, two spans of 55 m behind, needs the uplift at supports two spans apart."""
     # A record without these supports, or without their uplift at the passage, does not become verified.
     case, record = slow_run

@@ -164,5 +164,5 @@ def test_missing_uplift_changes_no_grade(case_250: Case, records: tuple[Record, 
     read = run_case(case_250, open_record_folder(tmp_path), "secondary")
     for result in (windowed, whole, read):
         assert result.verdict == "pass"
-        assert result.record.state == "verified"
+        assert result.record.state == "consistent"
         assert result.quantities["0"][UPLIFT] == pytest.approx(whole.quantities["0"][UPLIFT], abs=1e-6)

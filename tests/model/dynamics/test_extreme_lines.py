@@ -56,7 +56,7 @@ LINES: dict[str, dict[str, Any]] = {
     "three pantographs": {"pantographs": 3, "spacing": 60.0},
 }
 
-UNVERIFIED = {"105 % of the wave speed"}
+UNCONFIRMED = {"105 % of the wave speed"}
 """Lines whose trailing pantograph does not touch the wire at the supports: nothing there confirms its position."""
 
 
@@ -99,7 +99,7 @@ def test_correct_record_of_an_extreme_line_is_not_contradicted(
     records: dict[str, tuple[Case, Record]], name: str
 ) -> None:
     case, record = records[name]
-    assert state(case, record)[0] == ("unverified" if name in UNVERIFIED else "verified")
+    assert state(case, record)[0] == ("unconfirmed" if name in UNCONFIRMED else "consistent")
 
 
 @pytest.mark.parametrize("name", LINES)
@@ -123,7 +123,7 @@ def test_shifted_position_of_either_pantograph_is_not_verified(
     records: dict[str, tuple[Case, Record]], name: str, number: int, distance: float
 ) -> None:
     case, record = records[name]
-    assert state(case, shift(record, number, distance))[0] != "verified"
+    assert state(case, shift(record, number, distance))[0] != "consistent"
 
 
 @pytest.mark.parametrize("number", [1, 2])
@@ -188,4 +188,4 @@ def test_record_of_another_start_is_verified(seconds: float, start: float) -> No
     case = replace(case, file=case.file.model_copy(update={"start_m": start}))
     record = simulate(case, ramp(seconds))
     assert record.force[:, 0].max() < 40.0, "the ramp starts near a tenth of 150 N"
-    assert state(case, record) == ("verified", "every consistency check that applies confirms the record")
+    assert state(case, record) == ("consistent", "every consistency check that applies confirms the record")

@@ -65,7 +65,7 @@ assert skipped < 15, skipped
 from pantocheck.conformance.app.commands.command_list import app
 arguments = ["run", "en50318-2002/250", "--system", "record:en50318-2002/known-passing-code", "--verdicts", "criteria"]
 result = typer.testing.CliRunner().invoke(app, [*arguments, "--out", sys.argv[1]])
-assert (result.exit_code, "UNVERIFIED" in result.output) == (1, True), result.output
+assert (result.exit_code, "UNCONFIRMED" in result.output) == (1, True), result.output
 """
 
 

@@ -173,7 +173,7 @@ def test_failed_case_or_missing_record_fails_its_criteria_with_the_reason(
 
 @pytest.mark.parametrize("case", [0, 1])
 def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan: Path, case: int) -> None:
-    edit_toml(plan, {"system": PUBLISHED, "accept_unverified": [CODE]})
+    edit_toml(plan, {"system": PUBLISHED, "accept_unconfirmed": [CODE]})
     assert session(pytester, "conformance.toml", "--pantocheck-out", "before").ret == 0
     (pytester.path / "before" / "results.json").rename(pytester.path / "baseline.json")
     edit_toml(plan, {"baseline": "baseline.json"})
@@ -196,7 +196,7 @@ def test_drift_from_a_baseline_fails_the_session(pytester: pytest.Pytester, plan
 
 
 def test_case_that_the_baseline_does_not_have_is_skipped(pytester: pytest.Pytester, plan: Path) -> None:
-    edit_toml(plan, {"system": PUBLISHED, "accept_unverified": [CODE], "cases": ["en50318-2002/250"]})
+    edit_toml(plan, {"system": PUBLISHED, "accept_unconfirmed": [CODE], "cases": ["en50318-2002/250"]})
     session(pytester, "conformance.toml", "--pantocheck-out", "before")
     edit_toml(plan, {"baseline": "before/results.json", "cases": ["en50318-2002/*"]})
     done = session(pytester, "conformance.toml", "-rs")
@@ -206,12 +206,12 @@ def test_case_that_the_baseline_does_not_have_is_skipped(pytester: pytest.Pytest
 
 
 def test_session_passes_only_with_the_verdict_pass(pytester: pytest.Pytester, plan: Path) -> None:
-    """Published statistics are inside all limits, but unverified: exit 0 only if the user accepts the system."""
+    """Published statistics are inside all limits, but unconfirmed: exit 0 only if the user accepts the system."""
     edit_toml(plan, {"system": PUBLISHED})
     done = session(pytester, "conformance.toml")
     done.assert_outcomes(failed=16)
-    done.stdout.fnmatch_lines(["the record is unverified: a summary record*"])
-    edit_toml(plan, {"accept_unverified": [CODE]})
+    done.stdout.fnmatch_lines(["the record is unconfirmed: a summary record*"])
+    edit_toml(plan, {"accept_unconfirmed": [CODE]})
     accepted = session(pytester, "conformance.toml")
     accepted.assert_outcomes(passed=16)
     assert accepted.ret == 0
@@ -228,24 +228,24 @@ def test_case_for_information_does_not_fail_the_session(pytester: pytest.Pyteste
     assert done.ret == 1  # no case takes part in the verdict
 
 
-def test_check_fails_on_uncounted_limits_and_unverified_records(pytester: pytest.Pytester, plan: Path) -> None:
+def test_check_fails_on_uncounted_limits_and_unconfirmed_records(pytester: pytest.Pytester, plan: Path) -> None:
     pytester.makepyfile(
         f"""
         import pytest
 
         def test_check(pantocheck_run):
             graded = pantocheck_run("en50318-2002/250", system="{PUBLISHED}")
-            with pytest.raises(AssertionError, match="the record is unverified: a summary record"):
+            with pytest.raises(AssertionError, match="the record is unconfirmed: a summary record"):
                 graded.check("std_force_N")
-            graded.check("std_force_N", accept_unverified=True)
-            graded.check(accept_unverified=True)
+            graded.check("std_force_N", accept_unconfirmed=True)
+            graded.check(accept_unconfirmed=True)
             assert len(graded.reasons) == 1
 
         def test_check_of_uncounted_limits(pantocheck_run):
             graded = pantocheck_run("en50318-2002/250", system="{PUBLISHED}", trust="primary")
             for quantities in ((), ("std_force_N",)):
                 with pytest.raises(AssertionError, match="no limit counts"):
-                    graded.check(*quantities, accept_unverified=True)
+                    graded.check(*quantities, accept_unconfirmed=True)
         """
     )
     session(pytester, "--pantocheck-verdicts", "criteria").assert_outcomes(passed=2)
