@@ -26,7 +26,7 @@ commit, states the reason there, and adds at most 1,800 lines to the product, 1,
 `verification/`.
 """
 
-MOST_WORDS = 62_400
+MOST_WORDS = 62_450
 """Largest number of words in the pages of `docs/`."""
 
 
