@@ -136,16 +136,13 @@ class CaseEvaluation:
             "sampling": sampling_component(signals, 1 / case.file.discretisation.time_step_s),
             "resolution": resolution_component(signals),
         }
-        runs = [signals, *starts]
+        runs, earlier = [signals, *starts], () if starts else list_earlier_sections(case)
         parts = SampleParts(
             values=signals.evaluation.values,
             members=[
                 *(start.evaluation.values for start in starts),
                 *(run.evaluate_section(section).values for run in runs for section in sections),
-                *(
-                    signals.evaluate_section(section).values
-                    for section in ([] if starts else list_earlier_sections(case))
-                ),
+                *(signals.evaluate_section(section).values for section in earlier),
             ],
             deviations=draw_lengths(lengths, digest),
             mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),

@@ -190,13 +190,8 @@ def _test_case(test: GradedTest) -> ElementTree.Element:
 # Failed criteria at the lines of the files that state their limits, for the page of a change.
 Severity = Literal["error", "warning"]
 
-SEVERITIES: dict[str, Severity] = {
-    "error": "error",
-    "fail": "error",
-    "undecided": "error",
-    "unconfirmed": "error",
-    "skip": "warning",
-}
+SEVERITIES: dict[str, Severity] = {"skip": "warning"}
+SEVERITIES |= dict.fromkeys(("error", "fail", "undecided", "unconfirmed"), "error")
 """Severity of each verdict that keeps a pipeline from passing; a limit that does not count has none."""
 
 WORKSPACE_VARIABLES = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")

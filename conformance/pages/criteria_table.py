@@ -71,6 +71,8 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
     close = criterion.close if criterion.is_close else []
     readings = criterion.readings if criterion.depends_on_reading else []
+    chance = describe_conformity(criterion.conformity) if close and criterion.conformity is not None else None
+    remarks = (criterion.reason, *close, *readings, remark_shift(criterion), _remark_limit(criterion), chance)
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
@@ -79,19 +81,7 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
         limits=limits,
         margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion.trust or "",
-        remarks=tuple(
-            filter(
-                None,
-                (
-                    criterion.reason,
-                    *close,
-                    *readings,
-                    remark_shift(criterion),
-                    _remark_limit(criterion),
-                    describe_conformity(criterion.conformity) if close and criterion.conformity is not None else None,
-                ),
-            )
-        ),
+        remarks=tuple(filter(None, remarks)),
     )
 
 

@@ -1,7 +1,7 @@
 """Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.decision import describe_decision, parse_decision
@@ -49,10 +49,11 @@ def build_headline(results: Results) -> str:
     grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
     counted = sum(grades[verdict] for verdict in ("pass", "undecided", "fail", "skip", "error"))
     total = count_noun(len(cases), "case")
+    doubted = [row for case in cases for row in case.criteria if row.doubt is not None]
     judged, unjudged = len(cases) - verdicts["info"], verdicts["info"]
     if not cases:
         sentences = ["No case takes part in the verdict."]
-    elif results.verdict == "info" and (doubted := _list_doubted(cases)):
+    elif results.verdict == "info" and doubted:
         names = count_noun(len(doubted), "own limit is", "own limits are")
         sentences = [f"Nothing is judged: {names} wider than those of the library, or too wide to test anything."]
     elif not judged:
@@ -79,11 +80,6 @@ def build_headline(results: Results) -> str:
         values = count_noun(number, "value lies", "values lie")
         sentences.append(f"{values} on the other side of a limit under another documented reading.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
-
-
-def _list_doubted(cases: Sequence[CaseResult]) -> list[Criterion]:
-    """Criteria whose pass does not count."""
-    return [row for case in cases for row in case.criteria if row.doubt is not None]
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:

@@ -98,21 +98,8 @@ class Uncertainty:
         value, draws = self.values.get(owner, {}).get(quantity), self.sample.get(owner, {}).get(quantity, ())
         if draws and isinstance(value, float | int):
             return interval_half_width(value, draws)
-        return combine_half_widths(self.list_components(owner, quantity))
-
-
-def combine_half_widths(components: Mapping[ComponentName, Value]) -> Value:
-    """Combine half-widths without a joint sample: the root of the sum of their squares.
-
-    Without a sample, a quantity has the component of mesh and time step alone.
-
-    Args:
-        components: Half-widths; of a quantity with several values, one per item.
-
-    Returns:
-        Combined half-width; zero without a component.
-    """
-    return map_items(math.hypot, *components.values())
+        # Without a sample, mesh and time step are the only component.
+        return map_items(math.hypot, *self.list_components(owner, quantity).values())
 
 
 def _is_finite(value: Value) -> bool:

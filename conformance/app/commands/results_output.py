@@ -21,7 +21,7 @@ from pantocheck.conformance.app.commands.console import (
     style_verdict,
 )
 from pantocheck.conformance.core.criterion import Criterion
-from pantocheck.conformance.core.verdicts import Verdict
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_results
@@ -31,16 +31,8 @@ from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import explain_mark, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 
-EXIT_CODES: dict[Verdict, int] = {
-    "pass": 0,
-    "unconfirmed": 1,
-    "info": 3,
-    "skip": 1,
-    "undecided": 1,
-    "fail": 1,
-    "error": 2,
-}
-"""Exit code by verdict: 0 only for `pass`."""
+EXIT_CODES: dict[Verdict, int] = {**dict.fromkeys(WORST_FIRST, 1), "pass": 0, "error": 2, "info": 3}
+"""Exit code by verdict: 0 only for `pass`, 3 where no limit judges."""
 
 SHIFT_LEGEND = " shift: its change when the analysis section is shifted span by span;"
 """Part of the legend for tables with the column `shift`."""

@@ -200,7 +200,7 @@ def test_clipped_channel_unknown_line_and_high_band_leave_limits_open() -> None:
     assert comparison.criteria[1].reason == "the channel is clipped in this window"
     comparison = grade(replace(record_drop(), line=MeasuredLine()), limit())
     assert comparison.verdict == "unconfirmed"
-    assert any("not verified" in text for text in comparison.warnings)
+    assert any("not confirmed" in text for text in comparison.warnings)
     # A record of 100 samples per second supports 40 Hz.
     record = replace(record_drop(), signals=record_drop().signals[::2].copy(), rate=RATE / 2)
     comparison = grade(record, limit(band_Hz=(20.0, 50.0)))

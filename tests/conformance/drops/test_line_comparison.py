@@ -207,7 +207,7 @@ def test_modes_without_facts_or_with_a_missing_fact_hide_no_difference(file: Lin
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
     results = build_damping_results(modes, catenary, 1.5, "modes.json")
     assert results.line.state == "unconfirmed"
-    assert "not verified" in results.warnings[0]
+    assert "not confirmed" in results.warnings[0]
     assert results.matching.matched_share < 0.8
     assert results.matching.median_mac < 0.9
     assert not any(c.determined for c in results.coefficients)
