@@ -22,6 +22,7 @@ def test_private_folder_is_provided_once(
     monkeypatch.delitem(sys.modules, "numba")
     monkeypatch.setenv(kernel_cache.VARIABLE, "")
     monkeypatch.delenv(kernel_cache.VARIABLE)
+    assert not kernel_cache.has_kept_kernels()
     kernel_cache.provide_kernel_cache()
     kernel_cache.provide_kernel_cache()
     (folder,) = tmp_path.iterdir()

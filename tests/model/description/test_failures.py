@@ -7,29 +7,13 @@ import pytest
 
 from helpers.lines import PANTOGRAPH_2002, simple_line
 from pantocheck.model import Dropper, MessengerSupport, Passage, SteadyArm, build_chain, simulate_passage
-from pantocheck.model.description.failures import DidNotConverge, NoInitialState
+from pantocheck.model.description.failures import DidNotConverge
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 
 PASSAGE = Passage((PANTOGRAPH_2002,), (20.0,), 50.0, 0.05, 1e-3)
-
-
-def test_discretise_names_a_dropper_that_would_have_to_push() -> None:
-    """A dropper that holds the wire 10 cm below its neighbours."""
-    line = simple_line()
-    droppers = tuple(replace(d, contact_wire_height=-0.1) if d.position == 30.0 else d for d in line.droppers)
-    with pytest.raises(NoInitialState, match=r"x = 30 m would have to push with \d+"):
-        discretise(replace(line, droppers=droppers), 1.0)
-
-
-def test_discretise_rejects_wires_that_cross() -> None:
-    """An encumbrance of 0.2 m is less than the messenger's sag."""
-    line = simple_line()
-    low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
-    with pytest.raises(NoInitialState, match="wires cross"):
-        discretise(replace(line, messenger_supports=low), 1.0)
 
 
 @pytest.mark.parametrize(

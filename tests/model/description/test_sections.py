@@ -19,7 +19,7 @@ def test_section_is_shifted_renamed_and_raised() -> None:
     contact, messenger = line.wires
     relieved = replace(messenger, tension_changes=(TensionChange(52.0, 68.0, -3e3),), stagger=((0.0, 0.1),))
     contact = replace(
-        contact, end_heights=(0.1, 0.3), irregularity=Irregularity((10.0, 20.0), (0.0, 1e-3)),
+        contact, start=10.0, end_heights=(0.1, 0.3), irregularity=Irregularity((10.0, 20.0), (0.0, 1e-3)),
         section_changes=(SectionChange(5.0, 9.0, 1.1),),
     )  # fmt: skip
     stitch = Wire("stitch", Kind.STITCH_WIRE, 52.0, 68.0, 3e3, 0.3, 0.0)
@@ -30,9 +30,9 @@ def test_section_is_shifted_renamed_and_raised() -> None:
     )  # fmt: skip
     placed = place_section(line, "second", 200.0, lambda x: x / 100)
     assert [(w.name, w.start, w.end) for w in placed.wires] == [
-        ("second contact", 200.0, 320.0), ("second messenger", 200.0, 320.0), ("second stitch", 252.0, 268.0)
+        ("second contact", 210.0, 320.0), ("second messenger", 200.0, 320.0), ("second stitch", 252.0, 268.0)
     ]  # fmt: skip
-    assert [w.end_heights for w in placed.wires] == [(2.1, 3.5), (3.2, 4.4), None]
+    assert [w.end_heights for w in placed.wires] == [(2.2, 3.5), (3.2, 4.4), None]
     assert placed.wires[1].tension_changes == (TensionChange(252.0, 268.0, -3e3),)
     assert placed.wires[1].stagger == ((200.0, 0.1),)
     assert placed.wires[0].irregularity == Irregularity((210.0, 220.0), (0.0, 1e-3))

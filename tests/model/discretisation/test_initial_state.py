@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.lines import Array, simple_line
-from pantocheck.model import Catenary, Clamp, Dropper, Kind, MessengerSupport, SteadyArm, Wire
+from pantocheck.model import Catenary, Clamp, Dropper, Kind, MessengerSupport, PointMass, SteadyArm, Wire
 from pantocheck.model.description.catenary import GRAVITY
+from pantocheck.model.description.failures import NoInitialState
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
 from pantocheck.model.fem.beams import weight, wire_stiffness
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, connector_directions
@@ -69,9 +70,9 @@ def test_initial_state_balances_the_forces_on_each_wire(carries_share: bool) -> 
     """Weight of wire, clamps and half droppers against droppers, arms, anchors and supports: to rounding, 1e-9."""
     catenary = simple_line(spans=3, carries_share=carries_share)
     heavy = tuple(replace(d, mass=0.3, upper_clamp_mass=0.2, lower_clamp_mass=0.1) for d in catenary.droppers)
-    line = discretise(replace(catenary, droppers=heavy), 0.5)
+    line = discretise(replace(catenary, droppers=heavy, point_masses=(PointMass(27.0, "contact", 12.0),)), 0.5)
     tension, arms = line.state.dropper_tension.sum(), line.state.arm_force[:, 1].sum()
-    contact_weight = GRAVITY * (180 * 1.35 + len(heavy) * (0.15 + 0.1))
+    contact_weight = GRAVITY * (180 * 1.35 + len(heavy) * (0.15 + 0.1) + 12.0)
     messenger_weight = GRAVITY * (180 * 1.07 + len(heavy) * (0.15 + 0.2))
     assert tension + arms + end_pull(line, "contact") == pytest.approx(contact_weight, rel=1e-9)
     assert end_pull(line, "messenger") == pytest.approx(messenger_weight + tension, rel=1e-9)
@@ -123,6 +124,34 @@ def test_wire_is_level_at_an_arm_that_carries_its_share_and_sags_at_one_that_doe
         assert (line.state.arm_force[:, 1] > 0).all() == carries_share
     assert at_arm[0] == 0.0
     assert -1.35 * GRAVITY * 10.0**2 / (8 * 20e3) < at_arm[1] < -6e-3
+
+
+def test_dropper_that_would_have_to_push_is_refused() -> None:
+    """The tension is linear in the height of one dropper: one with 0.5 N is accepted, one with -0.5 N is not."""
+    line = simple_line()
+
+    def tension(height: float) -> float:
+        droppers = (replace(d, contact_wire_height=height) if d.position == 30.0 else d for d in line.droppers)
+        return float(discretise(replace(line, droppers=tuple(droppers)), 1.0).state.dropper_tension[4])
+
+    per_metre = (tension(1e-3) - tension(0.0)) / 1e-3
+    light = (0.5 - tension(0.0)) / per_metre
+    assert tension(light) == pytest.approx(0.5, rel=1e-6)
+    with pytest.raises(NoInitialState, match=r"x = 30 m would have to push with 0\.5 N"):
+        tension(light - 1 / per_metre)
+
+
+def test_wires_that_cross_are_refused() -> None:
+    """An encumbrance of 0.2 m is less than the messenger's sag."""
+    line = simple_line()
+    low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
+    with pytest.raises(NoInitialState, match="wires cross"):
+        discretise(replace(line, messenger_supports=low), 1.0)
+
+
+def test_messenger_without_supports_ends_at_the_datum() -> None:
+    line = discretise(replace(simple_line(droppers=()), messenger_supports=()), 1.0)
+    assert line.state.deflection[1, [0, -1], 0].tolist() == [0.0, 0.0]
 
 
 def test_dropper_is_as_stiff_as_stated() -> None:

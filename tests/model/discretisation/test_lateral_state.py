@@ -8,15 +8,19 @@ import pytest
 from helpers.lines import PANTOGRAPH_2002, Array, simple_line
 from pantocheck.model import (
     Catenary,
+    Clamp,
     DiscretisedLine,
     Dropper,
     Kind,
     Passage,
+    Rayleigh,
     SteadyArm,
+    TrackCurve,
     Wire,
     discretise,
     simulate_passage,
 )
+from pantocheck.model.description.catenary import Spring
 from pantocheck.model.description.pantograph import preload_springs
 from pantocheck.model.discretisation.connectors import RIGID
 from pantocheck.model.fem.beams import wire_stiffness
@@ -75,6 +79,28 @@ def test_steady_arm_carries_the_change_of_direction_of_the_wire() -> None:
     assert np.abs(inner) == pytest.approx(by_hand, rel=0.01)
     # Pulled outwards: a wire at positive stagger towards positive y.
     assert np.sign(inner).tolist() == [-1.0, 1.0]
+    # In a curve of radius R the arms carry the radial force T L / R as well.
+    curve = TrackCurve(-1.0, 301.0, 1000.0)
+    curved = discretise(replace(line.catenary, curves=(curve,)), 0.25).state.arm_force[1:-1, 0]
+    assert curved - inner == pytest.approx(-TENSION * SPAN / 1000.0, rel=0.01)
+
+
+def test_bars_act_along_their_directions_and_are_damped_in_proportion_to_their_stiffness() -> None:
+    """Clamps in both fields, springs in the vertical one; C = beta K of droppers and arms if the wires have this beta.
+
+    Bars in series with flexible wires of the same beta keep the ratio.
+    """
+    line = with_stagger(simple_line(damping=dict.fromkeys(Kind, Rayleigh(0.0, 1e-3))), STAGGER, 2)
+    stitch = Wire("stitch", Kind.STITCH_WIRE, 52.0, 68.0, 3e3, 0.3, 0.0)
+    line = replace(
+        line, wires=(*line.wires, stitch), clamps=tuple(Clamp(x, "messenger", "stitch") for x in (52.0, 68.0)),
+        springs=(Spring(90.0, "messenger", "contact", 1e3),),
+    )  # fmt: skip
+    discretised = discretise(line, 0.5)
+    bars, rows = discretised.connectors, [discretised.mesh.row_of["messenger", axis] for axis in "yz"]
+    assert bars.coefficient[18:23, rows].tolist() == [[0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+    damped = [*range(18), -1]  # droppers, and the steady arm across its axis
+    assert bars.damping[damped] == pytest.approx(1e-3 * bars.stiffness[damped], rel=1e-9)
 
 
 @pytest.mark.parametrize(("acts", "sign"), [("pull", 1.0), ("push", -1.0)])
