@@ -32,7 +32,8 @@ FILES = {
     "model/grading/grade.py": SOURCE,
     "model/grading/kernel.py": "import numba\n\nX = 1\n",
     "model/use.py": "from dataclasses import dataclass\nfrom pantocheck.model.grading.grade import grade\n\n\n"
-    "@dataclass(frozen=True)\nclass Use:\n    pass\n",
+    "@dataclass(frozen=True)\nclass Use:\n    pass\n"
+    "\n\n@inline_kernel\ndef double(value):\n    return 2 * value\n",
     "tests/model/test_near.py": "from toy.model.grading.grade import grade\n\n\n"
     "def test_grade():\n    assert grade(0.4)\n    assert not grade(0.6)\n",
     "tests/model/grading/test_grade.py": "from pantocheck.model.grading.grade import grade\n",
@@ -69,7 +70,7 @@ def test_sample_is_seeded_and_leaves_kernels_and_listed_mutants_out(toy: Path) -
     known = {"file": "model/grading/grade.py", "line": "return value < LIMIT", "mutant": "return value <= LIMIT"}
     assert len(draw_sample(toy, folders["model/grading"], 4, [known])) == 3
     assert len(draw_sample(toy, folders["model/grading"], 4, [{**known, "mutant": "return True"}])) == 4
-    assert draw_sample(toy, folders["model"], 4, []) == []  # the type checker finds a change of `frozen`
+    assert draw_sample(toy, folders["model"], 4, []) == []  # neither `frozen`, which the type checker finds, nor kernels
 
 
 def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy: Path) -> None:

@@ -213,7 +213,7 @@ def name_definitions(source: str, line: int) -> list[str]:
 
 
 def list_folders(root: Path) -> dict[str, list[str]]:
-    """Files with code of every folder below `model` and `conformance`, subfolders included; no compiled kernels."""
+    """Files with code of every folder below `model` and `conformance`, subfolders included; no use of numba."""
     folders: dict[str, list[str]] = {}
     for top in ROOTS:
         for path in sorted((root / top).rglob("*.py")):
@@ -225,15 +225,18 @@ def list_folders(root: Path) -> dict[str, list[str]]:
 
 
 def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
-    """All mutants of a file; annotations of types hold none of these operators but numbers of a literal."""
+    """All mutants of a file but those of kernels; annotations hold none of these operators but numbers of a literal."""
     source = (root / file).read_text("utf-8")
     lines, nodes = source.splitlines(), list(ast_nodes(get_ast(source)))
+    functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
+    kernels = [n for n in functions if any(ast.unparse(d).endswith("kernel") for d in n.decorator_list)]
+    compiled = {line for node in kernels for line in range(node.lineno, (node.end_lineno or 0) + 1)}
     for name in OPERATORS:
         operator = get_operator(name)()
         places = [begin for node in nodes for begin, _ in operator.mutation_positions(node)]
         for occurrence, (line, column) in enumerate(places):
             text = lines[line - 1]
-            if not NOT_FOR_TESTS.match(text) and not ASSERTION.search(text[:column]):
+            if line not in compiled and not NOT_FOR_TESTS.match(text) and not ASSERTION.search(text[:column]):
                 yield Mutant(file, name, occurrence)
 
 
