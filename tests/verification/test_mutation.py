@@ -70,7 +70,7 @@ def test_sample_is_seeded_and_leaves_kernels_and_listed_mutants_out(toy: Path) -
     known = {"file": "model/grading/grade.py", "line": "return value < LIMIT", "mutant": "return value <= LIMIT"}
     assert len(draw_sample(toy, folders["model/grading"], 4, [known])) == 3
     assert len(draw_sample(toy, folders["model/grading"], 4, [{**known, "mutant": "return True"}])) == 4
-    assert draw_sample(toy, folders["model"], 4, []) == []  # neither `frozen`, which the type checker finds, nor kernels
+    assert draw_sample(toy, folders["model"], 4, []) == []  # no `frozen`, which the type checker finds, no kernels
 
 
 def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy: Path) -> None:

@@ -74,6 +74,7 @@ def test_initial_state_balances_the_forces_on_each_wire(carries_share: bool) -> 
     tension, arms = line.state.dropper_tension.sum(), line.state.arm_force[:, 1].sum()
     contact_weight = GRAVITY * (180 * 1.35 + len(heavy) * (0.15 + 0.1) + 12.0)
     messenger_weight = GRAVITY * (180 * 1.07 + len(heavy) * (0.15 + 0.2))
+    assert GRAVITY * line.beams.lumped_mass[0].sum() == pytest.approx(contact_weight - GRAVITY * 180 * 1.35, rel=1e-9)
     assert tension + arms + end_pull(line, "contact") == pytest.approx(contact_weight, rel=1e-9)
     assert end_pull(line, "messenger") == pytest.approx(messenger_weight + tension, rel=1e-9)
 

@@ -1,6 +1,7 @@
 """Mass drop: closed form of a linear line, and slack droppers."""
 
 import numpy as np
+import pytest
 
 from helpers.lines import bare_wire, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
@@ -21,6 +22,7 @@ def test_mass_drop_of_a_light_mass_is_a_sum_of_decaying_modes() -> None:
     test = MassDropSetup(2.0, "contact", 33.0, 0.0, 0.05, 3.0, 1e-3, (("contact", 21.0), ("messenger", 45.0)))
     decay = simulate_mass_drop(LINE, 1.0, test)
     assert decay.last_slack is None
+    assert decay.time[[0, -1]] == pytest.approx([-0.049, 3.0])  # 50 steps with the mass, the last one at zero
     line = discretise(LINE, 1.0, (33.0, 21.0, 45.0))
     modes = compute_modes(line, 140)
     zeta, omega = damping_ratios(line, modes), 2 * np.pi * modes.frequency

@@ -1,6 +1,7 @@
 """Mass correction: frequencies of waves, and stability at any time step."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh, eigvalsh
@@ -9,6 +10,7 @@ from scipy.sparse import csc_array
 from helpers.lines import Array, bare_wire
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.fem import beam
+from pantocheck.model.fem.mass_correction import mass_correction
 from pantocheck.model.statics.assembly import assemble_matrices, correct_mass
 
 
@@ -36,6 +38,13 @@ def test_mass_correction_removes_the_frequency_error_of_waves_up_to_50_hz() -> N
     np.testing.assert_allclose(plain, -((exact * time_step) ** 2) / 12, rtol=0.05, atol=1e-6)
     assert np.abs(error[exact < 2 * np.pi * 20]).max() < 4e-5
     assert (np.abs(error) < np.abs(plain) / 5).all()
+
+
+def test_correction_of_short_elements_is_the_largest_without_negative_mass() -> None:
+    """The smallest eigenvalue of the corrected mass of an element is zero at 1 s, where every element is too short."""
+    beams = discretise(bare_wire(10.0), 1.0).beams
+    corrected = beam.mass(beams.length, beams.mass_per_length[0]) - mass_correction(beams, 0, 1.0)
+    assert [eigvalsh(element)[0] for element in corrected] == pytest.approx([0.0] * 10, abs=1e-15)
 
 
 @settings(max_examples=40)

@@ -15,6 +15,7 @@ def test_mesh_has_stations_at_connectors_and_requested_positions() -> None:
     assert np.diff(mesh.position).max() <= 1.0 + 1e-9
     for position in (*DROPPERS_2002, 33.3, 60.0, 120.0):
         assert mesh.position[mesh.station(position)] == pytest.approx(position, rel=0, abs=1e-9)
+    assert build_mesh(simple_line(), 10.0).position.size == 2 + 1 + 2 * 9  # anchors, arm, droppers
 
 
 def test_mesh_merges_equal_positions() -> None:

@@ -8,6 +8,7 @@ from pantocheck.model.fem import beam
 from pantocheck.model.fem.residual_flexibility import (
     combine_in_series,
     element_flexibility,
+    exact_stiffness,
     residual_flexibility,
     station_flexibility,
 )
@@ -57,6 +58,12 @@ def test_string_with_residual_flexibility_is_exact(s: float) -> None:
     coarse = hinged_flexibility(h, count, np.array([x / length]), TENSION, 0.0)[0]
     exact = x * (length - x) / (TENSION * length)
     assert coarse + residual_flexibility(elements[9], s) == pytest.approx(exact, rel=1e-6)
+
+
+def test_exact_stiffness_of_a_short_beam_keeps_its_digits() -> None:
+    """12 EI / h^3 + 6 T / 5 h at z = k h = 1e-3, where the closed form divides differences of z^4 / 12."""
+    stiffness = exact_stiffness(np.array([1.0]), np.array([1.0]), np.array([1e6]))
+    assert stiffness[0, 0, 0] == pytest.approx(12e6 + 1.2, rel=1e-12)
 
 
 def test_residual_flexibility_is_continuous_on_an_uneven_mesh() -> None:

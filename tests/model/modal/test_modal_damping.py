@@ -53,6 +53,7 @@ def test_band_includes_its_lower_and_not_its_upper_edge() -> None:
     ratios = np.array([0.02, 0.02, 0.03, 0.03])
     added = 4 * np.pi * frequency[1:5] * (ratios - rayleigh[1:5])
     np.testing.assert_allclose(terms.damping, added, rtol=1e-6)
+    assert build_modal_terms(plain).damping.size == 0
     expected = [rayleigh[0], *ratios, rayleigh[5]]
     np.testing.assert_allclose(apply_modal_bands(rayleigh, frequency, bands), expected, rtol=1e-12)
 
