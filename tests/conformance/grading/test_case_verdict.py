@@ -20,7 +20,7 @@ from pantocheck.conformance.documents.verification import find_gaps
 from pantocheck.conformance.execution.plan import Plan, PreparedPlan, prepare_plan
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.case_selection import VerdictChoice, choose_verdicts
-from pantocheck.conformance.grading.case_verdict import Participation, judge_case, read_participation
+from pantocheck.conformance.grading.case_verdict import Participation, judge_baseline, judge_case, read_participation
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.case_facts_format import BaselineComparison, RecordFacts, RecordState
@@ -76,6 +76,7 @@ def test_only_pass_ends_with_exit_code_0_and_the_worst_case_decides() -> None:
     assert Participation(("a", "b", "c")).judge_run(cases, "mine") == "info"
     assert judge_case(["pass"], record("unverified", demanded=False)) == "pass"
     assert judge_case(["pass"], record("contradicted", demanded=False)) == "error"
+    assert [judge_baseline([], values) for values in (0, 1)] == ["info", "pass"]
 
 
 def test_record_of_a_run_is_verified_and_its_loss_is_noticed(wave: Any, case_250: Case) -> None:

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from helpers.command_line import pantocheck
+from helpers.section_lines import section_tables
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.grading.case_grading import build_ungraded
 from pantocheck.conformance.grading.contact_loss_list import find_force_places, find_uplift_place
 from pantocheck.conformance.grading.derived_facts import list_derived_facts
 from pantocheck.conformance.grading.results_building import build_results, key_by_owner, select_finite, utc_now
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.case_section import derived_blocks
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
@@ -121,6 +123,10 @@ def test_values_of_twin_wires_and_their_table() -> None:
     twin = case.line.model_copy(update={"contact_wire": contact})
     [mass] = [fact.value for fact in list_derived_facts(replace(case, line=twin)) if fact.unit == "kg/m"]
     assert mass == pytest.approx(2 * 1.35 + 1.07, rel=1e-12)
+    tables = section_tables(spans=(7, 7, 7))
+    tables["section"][2]["contact_wire"] = {"tension_N": 25e3}
+    masses = list_derived_facts(replace(case, line=LineFile.model_validate(tables)))
+    assert [fact.name[28:] for fact in masses if fact.unit == "kg/m"] == ["", ", section 3"]  # as different wires
     [case] = select_cases(["en50318-2018/ac-simple/static"])
     assert [fact.unit for fact in list_derived_facts(case)] == ["m/s", "m/s", "kg/m", "Hz"]
     fact = {"name": "Uplift force of pantograph 1", "value": 163.456789, "unit": "N", "basis": "tuned"}

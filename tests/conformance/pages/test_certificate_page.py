@@ -83,6 +83,7 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     assert describe_criterion(Criterion.model_validate(row | {"uncertainty": 0.0}), known).error == "± 0"
     assert describe_criterion(Criterion.model_validate(row | {"trust": "computed"}), unknown).error == "± 0.12"
     assert describe_criterion(Criterion.model_validate(row | {"uncertainty": None}), unknown).error.startswith("± ")
+    case["criteria"][0]["verdict"] = "fail"
     marked = shown_certificate(passing)
     page_1 = marked[: marked.index('id="cases"')]
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
