@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, get_args
 
-from pydantic import ConfigDict, Field, WrapSerializer
+from pydantic import Field, WrapSerializer
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Chart
@@ -58,8 +58,6 @@ is the half-width of the 95 % interval of the value by the measurement."""
 
 class ModelComparison(RoundedModel):
     """Common part of the comparisons of a model with measured values."""
-
-    model_config = ConfigDict(populate_by_name=True)
 
     suite: Suite
     model: ComparedSource
@@ -278,8 +276,6 @@ class ComparedCase(RoundedModel):
 
 class RunComparison(RoundedModel):
     """Content of comparison.json."""
-
-    model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.comparison/1"], Field(alias="schema")] = "pantocheck.comparison/1"
     suite: Suite

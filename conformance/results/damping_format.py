@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 
@@ -187,8 +187,6 @@ class StatedDamping(RoundedModel):
 
 class DampingResults(RoundedModel):
     """Content of damping.json."""
-
-    model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.damping/1"], Field(alias="schema")] = "pantocheck.damping/1"
     modes_file: str

@@ -250,7 +250,5 @@ class IdentifiedLine(RoundedModel):
 class IdentificationFile(RoundedModel):
     """Content of identification.json."""
 
-    model_config = ConfigDict(populate_by_name=True)
-
     schema_: Annotated[Literal["pantocheck.identification/1"], Field(alias="schema")] = "pantocheck.identification/1"
     lines: tuple[IdentifiedLine, ...]

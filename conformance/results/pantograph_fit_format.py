@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.core.results_part import Suite
@@ -51,8 +51,6 @@ class CorrelatedPair(RoundedModel):
 
 class PantographFit(RoundedModel):
     """Content of the JSON report beside a fitted pantograph file."""
-
-    model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.pantograph-fit/1"], Field(alias="schema")] = "pantocheck.pantograph-fit/1"
     suite: Suite

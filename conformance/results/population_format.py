@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pantocheck.conformance.core.json_file import Rounded, RoundedModel
 from pantocheck.conformance.results.identified_modes import MeasuredLine
@@ -119,8 +119,6 @@ class OmittedRecord(RoundedModel):
 
 class PopulationFile(RoundedModel):
     """Content of population.json."""
-
-    model_config = ConfigDict(populate_by_name=True)
 
     schema_: Annotated[Literal["pantocheck.population/1"], Field(alias="schema")] = "pantocheck.population/1"
     records: tuple[PooledRecord, ...]
