@@ -1,13 +1,17 @@
 """Damping study of a case: one column of the table per damping model."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Literal
+
+import pytest
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, System
+from pantocheck.conformance.studies import damping_sensitivity
 from pantocheck.conformance.studies.damping_sensitivity import CASE_DAMPING, MODELS, add_damping_study
 
 
@@ -23,9 +27,13 @@ def damping_dependent(wave: type[Wave]) -> System:
     return Damped()
 
 
-def test_every_model_has_its_column(case_250: Case, wave: type[Wave]) -> None:
+def test_every_model_has_its_column(case_250: Case, wave: type[Wave], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The parts of the progress follow one another to its end."""
+    parts: list[tuple[float, float]] = []
+    monkeypatch.setattr(damping_sensitivity, "use_part", lambda *part: parts.append(part) or nullcontext())
     studied = add_damping_study(case_250)
     (result,) = run_cases([studied], damping_dependent(wave)).cases
+    assert [0.0, *(end for _, end in parts)] == [*(start for start, _ in parts), 1.0]
     (table,) = result.tables
     assert table.columns == ["Quantity", "Pantograph or line", CASE_DAMPING, *MODELS]
     rows = {(row[0], row[1]): row[2:] for row in table.rows}

@@ -143,11 +143,16 @@ def test_dropper_that_would_have_to_push_is_refused() -> None:
 
 
 def test_wires_that_cross_are_refused() -> None:
-    """An encumbrance of 0.2 m is less than the messenger's sag."""
+    """An encumbrance of 0.2 m is less than the messenger's sag; a dropper at a support may not have the length zero."""
     line = simple_line()
     low = tuple(replace(support, height=0.2) for support in line.messenger_supports)
-    with pytest.raises(NoInitialState, match="wires cross"):
-        discretise(replace(line, messenger_supports=low), 1.0)
+    short = Dropper(60.0, "messenger", "contact", stiffness=1e5, contact_wire_height=1.2)
+    for crossed in (
+        replace(line, messenger_supports=low),
+        replace(simple_line(carries_share=False), droppers=(short,)),
+    ):
+        with pytest.raises(NoInitialState, match="wires cross"):
+            discretise(crossed, 1.0)
 
 
 def test_messenger_without_supports_ends_at_the_datum() -> None:

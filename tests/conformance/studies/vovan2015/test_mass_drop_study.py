@@ -15,7 +15,9 @@ from pantocheck.conformance.drops.damping_model import THRESHOLDS
 from pantocheck.conformance.drops.population import Population
 from pantocheck.conformance.line.elements.damping import ModalDamping
 from pantocheck.conformance.pages.damping_page import describe_observability, draw_observability
+from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
+from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import StudyResult
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
 
@@ -47,12 +49,15 @@ def draw_frequencies(case: Case, monkeypatch: pytest.MonkeyPatch) -> Chart:
     monkeypatch.setattr(mass_drop_study, "identify_drops", lambda _: identified)
     monkeypatch.setattr(mass_drop_study, "identify_tests", lambda *_: Population((), (), ()))
     monkeypatch.setattr(mass_drop_study, "build_fit_report", lambda *_: StudyResult())
-    outcome = mass_drop_study.run_mass_drop_study(case)
-    return outcome.study.charts[0]
+    study = mass_drop_study.run_mass_drop_study(case).study
+    assert ("reference_over_identified_damping" in study.findings[LINE]) == bool(case.dampings)
+    return study.charts[0]
 
 
 def test_damping_ratios_of_each_model_are_drawn_in_percent(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    identified, *models = draw_frequencies(case, monkeypatch).series
+    chart = draw_frequencies(case, monkeypatch)
+    assert chart.marks[0].low == 1.0  # per cent, printed bound of all ratios
+    identified, *models = chart.series
     assert identified.label == "identified"
     assert [series.label for series in models] == list(RATIOS)
     for series, ratio in zip(models, RATIOS.values(), strict=True):
@@ -66,6 +71,12 @@ def test_damping_ratios_of_each_model_are_drawn_in_percent(case: Case, monkeypat
 def test_damping_ratios_of_the_case_are_drawn_without_models(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     series = draw_frequencies(replace(case, dampings={}), monkeypatch).series
     assert [drawn.label for drawn in series] == ["identified", "damping of the case"]
+
+
+def test_modes_are_drawn_at_the_number_of_their_group() -> None:
+    modes = [Mode(frequency_Hz=1.0, damping_ratio=0.01, damping_ratio_std=1e-4, sensor_shape=(), group=2)]
+    (series,) = mass_drop_study._draw_groups([*modes, modes[0].model_copy(update={"group": None})], []).series
+    assert (series.x, series.y) == ([2.0], [1.0])
 
 
 # Chart of the observability: the thresholds are those of the fit, and the caption explains them.

@@ -89,8 +89,9 @@ def test_every_band_has_the_modes_from_its_lower_edge_on(case: Case, monkeypatch
     monkeypatch.setattr(
         "pantocheck.conformance.studies.vovan2015.steady_arm_damper.identify_drops", lambda *_: next(results)
     )
-    findings = run_steady_arm_damper(case, case.file.study).study.findings[LINE]
-    assert_allclose(findings["damping_gain_pct"], 10.0 * np.arange(1, len(bands) + 1), rtol=1e-4)
+    study = run_steady_arm_damper(case, case.file.study).study
+    assert study.charts[0].marks[0].low == bands[-1][0]
+    assert_allclose(study.findings[LINE]["damping_gain_pct"], 10.0 * np.arange(1, len(bands) + 1), rtol=1e-4)
 
 
 def test_computed_damping_reproduces_the_findings_and_wrong_damping_does_not(verdicts_for: Grading, case: Case) -> None:
