@@ -138,11 +138,11 @@ def _band_values(case: Case, record: Record) -> ValuesByOwner:
 
 
 def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:
-    """Abscissa at which a curve first reaches a level, by linear interpolation; None if it stays below."""
+    """Abscissa at which a curve that begins below a level reaches it, interpolated; None if it never does."""
     i = int(np.argmax(y >= level))
     if y[i] < level:
         return None
-    return float(x[0] if i == 0 else x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
+    return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
 
 
 def _find_dropper(line: Catenary, study: DropperDamping, name: str) -> int:
