@@ -2,6 +2,7 @@
 
 from contextlib import nullcontext
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Literal
 
 import pytest
@@ -63,6 +64,9 @@ def test_warning_names_each_model_that_the_system_cannot_run(case_250: Case, wav
             return wave().run(case) if case.id == case_250.id else Skipped("there is no record of this case")
 
     (result,) = run_cases([add_damping_study(case_250)], OneModel()).cases
+    skipped = Skipped("no record")
+    system = SimpleNamespace(run=lambda case: skipped)
+    assert damping_sensitivity.run_damping_sensitivity(add_damping_study(case_250), system) is skipped
     assert [warning for warning in result.warnings if warning.startswith("damping '")] == [
         f"damping '{name}': there is no record of this case" for name in MODELS
     ]

@@ -16,7 +16,7 @@ from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, StudyResult
 from pantocheck.conformance.studies.damping_sensitivity import draw_band_bars
-from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, compare_force
+from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, _compare_runs, compare_force
 
 
 @dataclass(frozen=True)
@@ -115,6 +115,13 @@ def test_updated_damping_raises_the_force_above_20_hz_in_table_and_chart(case: C
     assert any("span 8" in chart.caption for chart in result.charts)
     pair = [chart for chart in delivered.study.charts if "span 8" in chart.caption]
     assert [("20 Hz" in chart.caption, chart.wide) for chart in pair] == [(True, False), (False, False)]
+    record, (start, end) = delivered.record, case.line.geometry.span(8)
+    inside = (record.position[-1] >= start) & (record.position[-1] <= end)
+    force = case.file.filter(record.force[-1], record.rate)[inside]
+    assert pair[0].series[1].y == pytest.approx(force, rel=1e-3)
+    assert _compare_runs(case, None, delivered) is None
+    same = _compare_runs(case, delivered, delivered)
+    assert set(same.study.findings[1].values()) == {0.0}
     assert all([series.label for series in chart.series] == ["initial", "updated"] for chart in pair)
     # The limits express the findings of the paper.
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from helpers.lines import simple_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.figure_data import Chart
@@ -20,6 +21,7 @@ from pantocheck.conformance.results.damping_format import DampingResults, Observ
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import StudyResult
 from pantocheck.conformance.studies.vovan2015 import mass_drop_study
+from pantocheck.model import Kind, Rayleigh
 
 RATIOS = {"initial": 0.03, "updated": 0.02, "updated-modal": 0.0125}
 
@@ -77,6 +79,13 @@ def test_modes_are_drawn_at_the_number_of_their_group() -> None:
     modes = [Mode(frequency_Hz=1.0, damping_ratio=0.01, damping_ratio_std=1e-4, sensor_shape=(), group=2)]
     (series,) = mass_drop_study._draw_groups([*modes, modes[0].model_copy(update={"group": None})], []).series
     assert (series.x, series.y) == ([2.0], [1.0])
+
+
+def test_fitted_coefficient_is_compared_with_the_simulated_one() -> None:
+    fitted = SimpleNamespace(kind="contact_wire", matrix="mass", value=0.12, low_95=0.1, high_95=0.14)
+    line = simple_line(damping=dict.fromkeys(Kind, Rayleigh(0.1, 0.0)))
+    (row,) = mass_drop_study._coefficient_table(SimpleNamespace(coefficients=[fitted]), line).rows
+    assert row[1:] == ["0.1", "0.12", "0.1 to 0.14", "+20.0 %"]
 
 
 # Chart of the observability: the thresholds are those of the fit, and the caption explains them.

@@ -69,7 +69,7 @@ def test_every_window_has_its_velocity_and_its_rms(case: Case) -> None:
             assert set(series.y) == {factor * velocity}
         assert f"{start:g} s to {end:g} s" in chart.caption
     study = run(case).study
-    assert study.tables[0].columns[:2] == ["Damping", "0 s to 1 s"]
+    assert study.tables[0].columns[:3] == ["Damping", "0 s to 1 s", "0 s to 1 s, 5 to 20 Hz"]
     shown = [[row[0], row[1], row[3]] for row in study.tables[0].rows]
     assert shown == [[name, f"{2 * factor:g} mm/s", f"{5 * factor:g} mm/s"] for name, factor in FACTORS.items()]
     agreement = study.tables[1]
