@@ -17,7 +17,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import CheckName
+from pantocheck.conformance.runs.check import COARSEST_STEP_M, CheckName
 from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
 
 Series = NDArray[np.float64]
@@ -114,6 +114,7 @@ def test_rounded_height_and_uplift(run: Run, decimals: int, expected: set[CheckN
         support_uplift=np.round(record.support_uplift, decimals),
     )
     assert set(list_kinds(case, rounded)) == expected
+    assert bool(expected) == (10.0**-decimals >= COARSEST_STEP_M)
     assert set(list_kinds(case, rounded).values()) <= {"unchecked"}
 
 
