@@ -18,7 +18,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, compare_motion
-from pantocheck.conformance.runs.record_checks import _compare, check_record, judge_record_state
+from pantocheck.conformance.runs.record_checks import MOTION, _compare, check_record, judge_record_state
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -122,6 +122,8 @@ def test_positions_that_contradict_speed_or_supports_are_found(case_250: Case, r
         moved = replace(record, position=start + speed * (record.position - start))
         assert ("motion", "contradiction") in kinds(case_250, moved)
     assert kinds(case_250, moved) == [("motion", "contradiction")]
+    exact = SimpleNamespace(time=np.linspace(0.0, 1.0, 11), position=np.linspace(0.0, 50.0, 11)[None], speed=50.0)
+    assert MOTION.run(case_250, SimpleNamespace(record=exact)) is None
     for shift, found in ((10.0, [("support passing", "contradiction")]), (3.0, [])):
         assert kinds(case_250, replace(record, position=record.position + shift)) == found
     assert kinds(case_250, replace(record, support_position=None, support_uplift=None)) == [
