@@ -95,7 +95,7 @@ class DerivedEvaluation(InputTable):
 class DerivedTrain(InputTable):
     """Train of the case: pantographs, start and evaluation."""
 
-    pantographs: Annotated[tuple[DerivedPantograph, ...], Field(strict=False)]
+    pantographs: tuple[DerivedPantograph, ...]
     """Pantographs in running order."""
     working_height_positions_m: Numbers
     """Positions of the mean uplift: the first span of the analysis section, without its end [m]."""

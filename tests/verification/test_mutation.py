@@ -79,12 +79,14 @@ def test_covering_tests_execute_the_line_and_the_one_of_its_name_comes_first(toy
     assert list(list_statement_lines(SOURCE, 6)) == [6]  # the body of a function is other statements
     file, named, near = "model/grading/grade.py", "tests/model/grading/test_grade.py", "tests/model/test_near.py"
     use = "tests/conformance/test_use.py"
-    record = {"lines": {file: {"8": [use, named, near], "6": [use]}}, "seconds": {named: 9.0, near: 2.0, use: 1.0}}
+    lines = {file: {"8": [use, named, near], "6": [use]}, "model/use.py": {"6": [named, near]}}
+    record = {"lines": lines, "seconds": {named: 9.0, near: 12.0, use: 1.0}}
     tests = CoveringTests(toy, [record])
     assert tests.select(file, 8) == [named, use, near]
     assert tests.select(file, 6) == [use]
     assert tests.select(file, 3) == [named, use, near]  # a constant: every test of the file
-    assert tests.select("model/use.py", 6) == []
+    assert tests.select("model/use.py", 6) == [near, named]  # the same folder
+    assert tests.select("model/grading/kernel.py", 3) == []
 
 
 def test_coverage_of_the_tests_is_recorded_by_line(toy: Path, tmp_path: Path) -> None:

@@ -167,7 +167,7 @@ class CoveringTests:
                     known.setdefault(int(line), set()).update(tests)
 
     def select(self, file: str, line: int) -> list[str]:
-        """Test files that execute a line: the one of its name, then the fastest.
+        """Test files that execute a line: the one of its name, those of the same folder, then the fastest.
 
         A line that runs at import belongs to every test of its file; those that mention its definition come first.
         """
@@ -177,9 +177,10 @@ class CoveringTests:
         found = found or set().union(*lines.values())
         mention = re.compile(rf"\b({'|'.join(names)})\b")
 
-        def rank(test: str) -> tuple[bool, bool, float]:
-            text = (self.root / test).read_text("utf-8")
-            return Path(test).name != f"test_{Path(file).name}", not mention.search(text), self.seconds[test]
+        def rank(test: str) -> tuple[bool, bool, bool, float]:
+            text, path = (self.root / test).read_text("utf-8"), Path(test)
+            near = path.parent == "tests" / Path(file).parent
+            return path.name != f"test_{Path(file).name}", not mention.search(text), not near, self.seconds[test]
 
         return sorted(found, key=rank)
 

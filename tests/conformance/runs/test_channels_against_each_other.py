@@ -17,8 +17,14 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import CheckName
+from pantocheck.conformance.runs.check import COARSEST_STEP_M, CheckName
 from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
+from pantocheck.conformance.runs.support_coincidence import (
+    _compare_datums,
+    _compare_supports,
+    _find_passages,
+    _Passages,
+)
 
 Series = NDArray[np.float64]
 Run = tuple[Case, Record]
@@ -114,7 +120,25 @@ def test_rounded_height_and_uplift(run: Run, decimals: int, expected: set[CheckN
         support_uplift=np.round(record.support_uplift, decimals),
     )
     assert set(list_kinds(case, rounded)) == expected
+    assert bool(expected) == (10.0**-decimals >= COARSEST_STEP_M)
     assert set(list_kinds(case, rounded).values()) <= {"unchecked"}
+
+
+def test_difference_of_the_datums_is_stated_in_millimetres(run: Run) -> None:
+    """9.949 mm with two digits."""
+    passages = {n: _Passages(np.ones(1), np.zeros(1), np.full(1, 9.949e-3 * n), 0.0) for n in (1, 2)}
+    assert "pantographs 1 and 2 differ by 9.9 mm from the uplift" in _compare_datums(run[0], passages).text
+    for heights, worst in ((np.array([0.0, 0.01]), 0), (np.array([0.01, 0.01, 0.0]), 120)):
+        passed = _Passages(60.0 * np.arange(heights.size), np.zeros(heights.size), heights, 0.0)
+        assert f"differ by 10 mm from the uplift there, most at {worst} m" in _compare_supports(1, passed).text
+
+
+def test_kink_is_the_rise_of_a_bent_wire_within_a_quarter_of_a_sample(run: Run) -> None:
+    """F v dt / 4 (T - m v^2): the wire of 22 kN and 1.35 kg/m under 100 N."""
+    case, record = run
+    steady = replace(record, force=np.full_like(record.force, 100.0))
+    kink = _find_passages(case, RecordSignals(steady, FILTER), 1).kink
+    assert kink == pytest.approx(25.0 * record.speed / record.rate / (22e3 - 1.35 * record.speed**2), rel=1e-9)
 
 
 def hold(record: Record, row: int) -> Record:

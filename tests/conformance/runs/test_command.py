@@ -166,7 +166,9 @@ def program(case_250: Case, wave: type[Wave], tmp_path: Path) -> Start:
 def test_delivered_record_is_read(program: Start, case_250: Case, wave: type[Wave]) -> None:
     system = program("well")
     assert (system.name, system.version, system.kind) == ("p", "1", "command")
+    begin = time.monotonic()
     outcome = system.run(case_250)
+    assert 0 < outcome.run.wall_s <= time.monotonic() - begin
     assert_allclose(outcome.record.force, wave().record(case_250).force, rtol=1e-11)  # twelve digits in the file
     assert outcome.static == {"wave_speed_m_s": 121.7}
     assert outcome.notes[0] == "as asked"

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, compare_motion
-from pantocheck.conformance.runs.record_checks import check_record, judge_record_state
+from pantocheck.conformance.runs.record_checks import MOTION, _compare, check_record, judge_record_state
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -121,6 +122,8 @@ def test_positions_that_contradict_speed_or_supports_are_found(case_250: Case, r
         moved = replace(record, position=start + speed * (record.position - start))
         assert ("motion", "contradiction") in kinds(case_250, moved)
     assert kinds(case_250, moved) == [("motion", "contradiction")]
+    exact = SimpleNamespace(time=np.linspace(0.0, 1.0, 11), position=np.linspace(0.0, 50.0, 11)[None], speed=50.0)
+    assert MOTION.run(case_250, SimpleNamespace(record=exact)) is None
     for shift, found in ((10.0, [("support passing", "contradiction")]), (3.0, [])):
         assert kinds(case_250, replace(record, position=record.position + shift)) == found
     assert kinds(case_250, replace(record, support_position=None, support_uplift=None)) == [
@@ -227,6 +230,24 @@ def test_value_on_a_threshold_is_accepted(
     monkeypatch.setattr(force_dynamics, "CLEAR", result.unexplained)
     found = check(two_pantograph_case, train_record)
     assert "explains only" in found.text, "the share that remains is not below the threshold"
+
+
+def test_causal_filter_delays_by_less_than_its_period_by_three_quarters() -> None:
+    """Force 8 samples of 1/64 s late, 0.125 s: three quarters of the period of 6 Hz, and less than that of 5.9 Hz."""
+    motion = np.random.default_rng(2).normal(size=600)
+    fit = ResponseFit(1.0, 1.0, 1.0, motion[8:], motion[:-8])
+    kinds = [force_dynamics._diagnose(1, fit, 1 / 64, cutoff).kind for cutoff in (5.9, 6.0)]
+    assert kinds == ["doubt", "contradiction"]
+
+
+def test_tolerance_of_the_mean_force_has_the_change_of_momentum(case_250: Case) -> None:
+    """By hand: 3 % of 120 N, 2 * 50 N/m * 0.25 m, and 22.2 kg * 1.98 m/s in 1.01 s from z = t^2 - t: 72 N."""
+    time = np.linspace(0.0, 1.0, 101)
+    pantograph = SimpleNamespace(
+        delivered=np.full(101, 300.0), height=time**2 - time, force=SimpleNamespace(rate=100.0)
+    )
+    finding = _compare(1, pantograph, case_250.pantographs[0], case_250.lift_forces[0], 0.0)
+    assert finding.text.endswith("120 N allows a difference of 72 N")
 
 
 @pytest.mark.parametrize(("rate", "made"), [(50.0, True), (49.0, False)])

@@ -202,5 +202,6 @@ def test_likeness_of_exact_parts() -> None:
     assert likeness.remainder < 0.01
     opposite = find_likeness(-signal[700:1700], signal)
     assert opposite.remainder > 0.8
+    assert find_likeness(np.array([0.0, 1.0]), np.array([5.0, 5.0, 7.0, 5.0])).lag == 1.0
     assert find_likeness(signal, signal[:-1]) is None
     assert find_likeness(np.ones(100), signal) is None
