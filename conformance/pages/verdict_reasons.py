@@ -1,7 +1,7 @@
 """Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.decision import describe_decision, parse_decision
@@ -63,7 +63,8 @@ def build_headline(results: Results) -> str:
         near = f", {close} of {counted} close to a limit" if close else ""
         rest = f"; {count_noun(unjudged, 'case')} not judged" if unjudged else ""
         total = count_noun(judged, "case")
-        sentences = [f"All {counted} counted criteria in {total} lie inside their limits{near}{rest}."]
+        names = name_limits(pairs)
+        sentences = [f"All {counted} counted criteria in {total} lie inside {names}{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         for verdict, (one, many) in CLAUSES.items():
@@ -80,6 +81,23 @@ def build_headline(results: Results) -> str:
         values = count_noun(number, "value lies", "values lie")
         sentences.append(f"{values} on the other side of a limit under another documented reading.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
+
+
+def name_limits(pairs: Iterable[CaseCriterion]) -> str:
+    """Whose limits the passed criteria meet: edition, source and trust; `their limits` for more than two sources."""
+    passed = [(case, row) for case, row in pairs if row.verdict == "pass" and not row.is_drift]
+    names = dict.fromkeys(_name_limit(case, row) for case, row in passed)
+    return " and ".join(names) if 0 < len(names) <= 2 else "their limits"
+
+
+def _name_limit(case: CaseResult, row: Criterion) -> str:
+    if row.trust == "own":
+        return "limits of the user"
+    if row.trust == "computed":
+        return "the limits of the converged solution"
+    authors = row.source.partition(":")[0].split(", ")
+    printed = f" as printed by {authors[0].removesuffix(' et al.')} et al." if len(authors) > 2 else ""
+    return f"the limits of {case.edition or case.profile or 'the case'}{printed} ({row.trust} source)"
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
@@ -130,6 +148,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
             for pair in _criteria(results)
             if pair[1].depends_on_reading
         ],
+        "Limits of the user": [_own_limit(pair) for pair in _criteria(results) if pair[1].trust == "own"],
         # Between two equal limits a margin is 0 at best and says nothing about closeness.
         "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],
     }
@@ -226,6 +245,18 @@ def _close_value(pair: CaseCriterion) -> str:
         return _value(pair)
     width = f"{mark_half_width(uncertainty, format_value(uncertainty, 2), missing, '± ')} {unit}".rstrip()
     return f"{_value(pair).removesuffix('.')}, uncertainty {width}."
+
+
+def _own_limit(pair: CaseCriterion) -> str:
+    """Limits of the user; between two, the tolerance in the unit and in per cent of the middle."""
+    case, row = pair
+    _, limits = format_beside_limits(row.value, row.lower, row.upper)
+    text = f"{_subject(case, row)}: {limits} {row.unit}".rstrip()
+    if row.lower is None or row.upper is None:
+        return f"{text}."
+    width, middle = (row.upper - row.lower) / 2, abs(row.upper + row.lower) / 2
+    share = f", {format_value(100 * width / middle, 2)} %" if middle else ""
+    return f"{text}, ± {format_value(width, 2)} {row.unit}".rstrip() + f"{share}."
 
 
 def _reason(pair: CaseCriterion) -> str:

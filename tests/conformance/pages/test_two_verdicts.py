@@ -57,7 +57,7 @@ def failing(passing: dict[str, Any]) -> Results:
 
 def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     shown = build_headline(Results.model_validate(decide(failing, "criteria")))
-    assert "All 16 counted criteria in 1 case lie inside their limits." in shown
+    assert "All 16 counted criteria in 1 case lie inside the limits of" in shown
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL (for information)." in shown
     decided = build_headline(Results.model_validate(decide(failing, *BOTH)))
     assert "0 of 1 case passes, 1 fails (1 of 17 counted criteria outside their limits)." in decided
