@@ -59,32 +59,24 @@ def parse_decision(text: str, where: str = "option --decision") -> DecisionRule:
 
 def format_decision(rule: DecisionRule) -> str:
     """Text of a decision rule, as `parse_decision` reads it."""
-    match rule:
-        case SimpleAcceptance():
-            return "simple"
-        case GuardedAcceptance():
-            return "guarded"
-        case SharedRisk(risk):
-            return f"shared-risk:{f'{risk:.4f}'.rstrip('0')}"
+    if isinstance(rule, SharedRisk):
+        return f"shared-risk:{f'{rule.largest_risk:.4f}'.rstrip('0')}"
+    return "simple" if rule == SIMPLE else "guarded"
 
 
 def describe_decision(rule: DecisionRule) -> str:
     """Decision rule in a sentence for a page."""
+    close = "a value inside its limits passes, and is counted as close if its 95 % interval reaches over a limit"
     match rule:
         case SimpleAcceptance():
-            return (
-                "simple acceptance: a value inside its limits passes, and is counted as close if its 95 % interval "
-                "reaches over a limit"
-            )
+            return f"simple acceptance: {close}"
         case GuardedAcceptance():
             return (
                 "guarded acceptance: a value passes if its 95 % interval lies inside the limits; else it is undecided"
             )
         case SharedRisk(risk):
-            return (
-                f"shared risk: a value passes if the probability that it lies outside the limits is at most {risk:g}; "
-                "else it is undecided"
-            )
+            chance = f"the probability that it lies outside the limits is at most {risk:g}"
+            return f"shared risk: a value passes if {chance}; else it is undecided"
 
 
 def judge_by_rule(

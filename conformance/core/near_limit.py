@@ -107,8 +107,7 @@ def near_limit_remarks(
     lower, upper = limits
     if value is None or lower == upper:
         return []
-    distance = min(abs(value - limit) for limit in limits if limit is not None)
-    expanded = errors.find_expanded(value)
+    distance, expanded = min(abs(value - limit) for limit in limits if limit is not None), errors.find_expanded(value)
     if not distance < expanded:
         return []
     parts = {"limit": errors.limit_uncertainty or 0.0} | {str(name): width for name, width in errors.components.items()}

@@ -11,6 +11,7 @@ from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.dossier.dossier_reading import Dossier
 from pantocheck.conformance.grading.criterion_grading import build_criterion
+from pantocheck.conformance.grading.rule_grading import LARGEST_TOLERANCE
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.results.comparison_format import ResponseComparison, StaticComparison
@@ -83,15 +84,11 @@ def grade_again(row: Criterion, changes: Mapping[str, object], lowest_trust: Tru
     return build_criterion(requirement, row.value, None, lowest_trust, errors, doubt=_doubt_share(row))
 
 
-LARGEST_SHARE_PCT = 50.0
-"""Largest tolerance of a user, relative to the measured value [%]: a wider one tests nothing."""
-
-
 def _doubt_share(row: Criterion) -> str | None:
     """Reason why a pass by a tolerance in per cent does not count; None: it counts."""
-    if row.unit != "%" or row.upper is None or row.upper <= LARGEST_SHARE_PCT:
+    if row.unit != "%" or row.upper is None or row.upper <= 100 * LARGEST_TOLERANCE:
         return None
-    return f"the own tolerance of {row.upper:.4g} % is more than {LARGEST_SHARE_PCT:g} % of the measured value"
+    return f"the own tolerance of {row.upper:.4g} % is more than {100 * LARGEST_TOLERANCE:g} % of the measured value"
 
 
 class StepInterrupted(Exception):

@@ -1,6 +1,6 @@
 """Probability that all counted values lie inside their limits, from the joint samples of the criteria."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,7 @@ def find_case_conformity(criteria: Iterable[Criterion], starts: tuple[int, int] 
         criteria: Criteria of the case.
         starts: Number of starts that were run, and of those with all counted values inside their limits.
     """
-    inside = _find_conforming_draws(criteria)
-    if inside is None:
+    if (inside := _find_conforming_draws(criteria)) is None:
         return None
     return CaseConformity(probability=float(inside.mean()), starts=starts[0], passing_starts=starts[1])
 
@@ -40,13 +39,9 @@ def _find_conforming_draws(criteria: Iterable[Criterion]) -> NDArray[np.bool_] |
     sizes = {len(row.draws) for row in counted if row.draws}
     if not sizes:
         return None
-    rows = [_list_inside(row, max(sizes)) for row in counted]
-    return np.asarray(np.all(rows, axis=0))
-
-
-def _list_inside(row: Criterion, size: int) -> list[bool]:
-    draws: Sequence[float] = row.draws or [row.value or 0.0] * size
-    return [judge(draw, row.lower, row.upper) == "pass" for draw in draws]
+    draws = [(row, row.draws or [row.value or 0.0] * max(sizes)) for row in counted]
+    inside = [[judge(draw, row.lower, row.upper) == "pass" for draw in values] for row, values in draws]
+    return np.asarray(np.all(inside, axis=0))
 
 
 def count_passing_starts(evaluation: CaseEvaluation, criteria: Iterable[Criterion]) -> tuple[int, int]:

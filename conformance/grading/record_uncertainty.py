@@ -125,9 +125,8 @@ def draw_lengths(lengths: LengthsByOwner, digest: str) -> dict[int, dict[str, Re
     random = np.random.default_rng(int(digest[16:32], 16))
     deviations: dict[int, dict[str, RealArray]] = {}
     for (owner, name), uncertainty in found.items():
-        flat = random.uniform(-1.0, 1.0, DRAWS)
-        deviation = drawn[owner, name] if (owner, name) in drawn else uncertainty.half_width * flat
-        deviations.setdefault(owner, {})[name] = deviation
+        flat = uncertainty.half_width * random.uniform(-1.0, 1.0, DRAWS)
+        deviations.setdefault(owner, {})[name] = drawn.get((owner, name), flat)
     return deviations
 
 

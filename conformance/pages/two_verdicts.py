@@ -141,7 +141,8 @@ def verdict_sentences(results: Results) -> list[str]:
     """Sentence for the headline on the verdicts; none if there is one only."""
     names = _list_names(results)
     parts = []
-    if results.system.kind != "builtin" and "verification" not in names and _is_run_of_cases(results):
+    is_run = any(case.profile is None and case.record is not None for case in results.cases)
+    if results.system.kind != "builtin" and "verification" not in names and is_run:
         parts.append("Verification up to 50 Hz: not asked")
     elif len(names) == 1:
         return []
@@ -149,11 +150,6 @@ def verdict_sentences(results: Results) -> list[str]:
         note = "" if name == "baseline" or name in results.requested else " (for information)"
         parts.append(f"{SHORT_TITLES[name]}: {name_verdict(_run_verdict(results, name))}{note}")
     return [f"{'; '.join(parts)}."]
-
-
-def _is_run_of_cases(results: Results) -> bool:
-    """Whether a train runs on the line of a case: other records and studies have no verification."""
-    return any(case.profile is None and case.record is not None for case in results.cases)
 
 
 def describe_comparison(comparison: BaselineComparison) -> str:

@@ -91,10 +91,8 @@ def name_limits(pairs: Iterable[CaseCriterion]) -> str:
 
 
 def _name_limit(case: CaseResult, row: Criterion) -> str:
-    if row.trust == "own":
-        return "limits of the user"
-    if row.trust == "computed":
-        return "the limits of the converged solution"
+    if row.trust in ("own", "computed"):
+        return "limits of the user" if row.trust == "own" else "the limits of the converged solution"
     authors = row.source.partition(":")[0].split(", ")
     printed = f" as printed by {authors[0].removesuffix(' et al.')} et al." if len(authors) > 2 else ""
     return f"the limits of {case.edition or case.profile or 'the case'}{printed} ({row.trust} source)"

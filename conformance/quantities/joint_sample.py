@@ -53,6 +53,7 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
     member = random.integers(0, len(parts.members) + 1, DRAWS)
     mesh = random.standard_normal(DRAWS) / QUANTILE_95
     bound = random.uniform(-1.0, 1.0, DRAWS)
+    scatter = (parts.deviations, parts.bounds, *parts.members)
     sample: dict[int, dict[str, tuple[float, ...]]] = {}
     for owner, quantities in parts.values.items():
         for name, value in quantities.items():
@@ -61,7 +62,6 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
             draws = _widen_members(value, [part.get(owner, {}).get(name) for part in parts.members])[member]
             for factor, changes in ((1.0, parts.deviations), (mesh, parts.mesh_changes), (bound, parts.bounds)):
                 draws = draws + factor * changes.get(owner, {}).get(name, 0.0)
-            scatter = [parts.deviations, parts.bounds, *parts.members]
             if np.ptp(draws) > 0 and any(name in part.get(owner, {}) for part in scatter):
                 sample.setdefault(owner, {})[name] = tuple(float(f"{draw:.{DRAW_DIGITS}g}") for draw in draws)
     return sample

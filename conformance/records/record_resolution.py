@@ -96,7 +96,8 @@ def resolution_component(signals: ChannelSignals) -> Component:
     if not any(steps):
         return Component("no steps found in the numbers of the record", _fill(signals.evaluation.values, 0.0))
     rate = min(pantograph.rate for pantograph in signals.pantographs.values())
-    shifted = [_change_samples(signals, partial(move_samples, partial(_point_one_way, sign))) for sign in (-1.0, 1.0)]
+    one_way = [partial(np.full_like, fill_value=sign) for sign in (-1.0, 1.0)]
+    shifted = [_change_samples(signals, partial(move_samples, direction)) for direction in one_way]
     windows = [0, *(round(seconds * rate) for seconds in MEAN_TIMES_S)]
     directions = [partial(_point_outwards, sign, window) for sign in (-1.0, 1.0) for window in windows]
     spread = [_change_samples(signals, partial(move_samples, direction)) for direction in directions]
@@ -117,11 +118,6 @@ def find_step(series: RealArray) -> float:
     step = float(distinct.min())
     multiples = (values - values[0]) / step
     return step if np.abs(multiples - np.round(multiples)).max() < SAME_MULTIPLE else 0.0
-
-
-def _point_one_way(sign: float, series: RealArray) -> RealArray:
-    """The same sign for every sample."""
-    return np.full(series.shape, sign)
 
 
 def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:
