@@ -148,7 +148,9 @@ def verdict_sentences(results: Results) -> list[str]:
         return []
     for name in names:
         note = "" if name == "baseline" or name in results.requested else " (for information)"
-        parts.append(f"{SHORT_TITLES[name]}: {name_verdict(_run_verdict(results, name))}{note}")
+        absent = name == "verification" and results.verification_verdict is None
+        verdict = "not available" if absent else name_verdict(_run_verdict(results, name))
+        parts.append(f"{SHORT_TITLES[name]}: {verdict}{note}")
     return [f"{'; '.join(parts)}."]
 
 
@@ -191,16 +193,8 @@ def verification_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
 
 # A badge for a README as SVG.
 LABEL = "EN 50318 style"
-COLOURS = {
-    "pass": "#1b5e3a",
-    "fail": "#8c1d18",
-    "info": "#24496e",
-    "skip": "#625000",
-    "unconfirmed": "#7a3b00",
-    "undecided": "#7a3b00",
-    CLOSE: "#8a5a00",
-    "error": "#5a1a66",
-}
+COLOURS = {"pass": "#1b5e3a", CLOSE: "#8a5a00", "info": "#24496e", "skip": "#625000", "fail": "#8c1d18"}
+COLOURS |= {"unconfirmed": "#7a3b00", "undecided": "#7a3b00", "error": "#5a1a66"}
 LETTER, MARGIN = 6.6, 8
 """Width of a letter and margin beside the text [px]; every font is fitted to these widths."""
 

@@ -13,7 +13,7 @@ from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
 from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
-from pantocheck.conformance.results.results_format import CaseConformity, CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MARGINS_SHOWN = 3
 """Number of the smallest margins in the reasons."""
@@ -67,6 +67,9 @@ def build_headline(results: Results) -> str:
         sentences = [f"All {counted} counted criteria in {total} lie inside {names}{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
+        if alone := sum(map(_lacks_verification, cases)):
+            verdicts["unconfirmed"] -= alone
+            parts.append(f"{count_noun(alone, 'passes', 'pass')} the criteria without a verification up to 50 Hz")
         for verdict, (one, many) in CLAUSES.items():
             if number := verdicts[verdict]:
                 outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if pair[1].is_drift])
@@ -96,6 +99,12 @@ def _name_limit(case: CaseResult, row: Criterion) -> str:
     authors = row.source.partition(":")[0].split(", ")
     printed = f" as printed by {authors[0].removesuffix(' et al.')} et al." if len(authors) > 2 else ""
     return f"the limits of {case.edition or case.profile or 'the case'}{printed} ({row.trust} source)"
+
+
+def _lacks_verification(case: CaseResult) -> bool:
+    """Whether a case is unconfirmed because it has no verification."""
+    alone = case.verdict == "unconfirmed" and case.verification is None and case.profile is None
+    return alone and case.record is not None and case.record.state == "consistent"
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
@@ -160,16 +169,12 @@ def state_decision(results: Results) -> str:
     rule = describe_decision(parse_decision(results.decision, "results, key decision"))
     parts = [f"Decision rule: {rule}."]
     if results.conformity is not None:
-        shares = [f"{case.id} {_describe_share(case.conformity)}" for case in results.cases if case.conformity]
+        pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
+        starts = [f", {of.passing_starts} of {of.starts} starts pass" if of.starts else "" for _, of in pairs]
+        shares = [f"{n} {format_probability(of.probability)}{s}" for (n, of), s in zip(pairs, starts, strict=True)]
         chance = format_probability(results.conformity)
         parts.append(f"Probability that all counted values lie inside their limits: {chance} ({'; '.join(shares)}).")
     return " ".join(parts)
-
-
-def _describe_share(conformity: CaseConformity) -> str:
-    """Probability of a case, and the share of its starts that pass."""
-    starts = f", {conformity.passing_starts} of {conformity.starts} starts pass" if conformity.starts else ""
-    return f"{format_probability(conformity.probability)}{starts}"
 
 
 def state_incomplete(results: Results) -> str | None:
