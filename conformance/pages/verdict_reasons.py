@@ -67,7 +67,7 @@ def build_headline(results: Results) -> str:
         sentences = [f"All {counted} counted criteria in {total} lie inside {names}{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
-        if alone := sum(map(_lacks_verification, cases)):
+        if "verification" in results.requested and (alone := sum(map(_lacks_verification, cases))):
             verdicts["unconfirmed"] -= alone
             parts.append(f"{count_noun(alone, 'passes', 'pass')} the criteria without a verification up to 50 Hz")
         for verdict, (one, many) in CLAUSES.items():
