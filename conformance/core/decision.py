@@ -102,8 +102,9 @@ def judge_by_rule(
     match rule:
         case SimpleAcceptance():
             return "pass", None
-        case _ if errors.unknown:
-            return "undecided", f"its uncertainty is not complete: {', '.join(errors.unknown)} not known"
+        case _ if errors.unknown or errors.limit_uncertainty is None:
+            names = ", ".join(errors.unknown or ["that of the limit"])
+            return "undecided", f"its uncertainty is not complete: {names} not known"
         case GuardedAcceptance():
             inside = _contains(limits, value, errors.find_expanded(value))
             return ("pass", None) if inside else ("undecided", "its 95 % interval reaches over a limit")

@@ -36,7 +36,6 @@ from pantocheck.model.statics.wave_factors import amplification_coefficient, dop
 WIDEST_RATIO = 3.0
 """Largest ratio between the interval of a joint sample and the root of the sum of squares of its components."""
 
-
 ROUNDING_OF_DRAWS = 1e-5
 """Largest effect of the rounding of the draws on a width, relative to the value."""
 
@@ -210,13 +209,11 @@ def list_unknown_components(
     case: CaseResult, row: Criterion, names: Collection[ComponentName]
 ) -> tuple[ComponentName, ...]:
     """Components of a criterion that are not known: of the whole case, or one of the record that the quantity lacks."""
-    unknown = [name for name in names if case.uncertainty_basis.get(name, "").startswith(UNKNOWN_BASIS)]
+    basis = case.uncertainty_basis
+    unknown = [name for name in names if basis.get(name, "").startswith(UNKNOWN_BASIS)]
     reported = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity)
     lacking = [name for name in BOUNDED_COMPONENTS if name in names and reported is not None and name not in reported]
-    return (
-        *unknown,
-        *(name for name in lacking if not case.uncertainty_basis.get(name, ABSENT_BASIS).startswith(ABSENT_BASIS)),
-    )
+    return (*unknown, *(name for name in lacking if not basis.get(name, ABSENT_BASIS).startswith(ABSENT_BASIS)))
 
 
 def _check_statistics(quantities: Mapping[str, float]) -> Iterator[str]:

@@ -106,7 +106,9 @@ class Participation:
         ]
         has_baseline = any(case.baseline is not None for case in cases)
         verdict = judge_parts([overall, *(by_name[name] or "unconfirmed" for name in self.requested)])
-        verdict = "info" if overall == "info" else verdict
+        shown = [case for case in cases if case.id not in self.information]
+        doubted = any(row.doubt is not None for case in shown for row in case.criteria)
+        verdict = worst_verdict([verdict, "info"]) if overall == "info" or doubted else verdict
         procedure = results.procedure
         if procedure is not None:
             procedure = decide_procedure(procedure, cases, system in self.accepted_unconfirmed)
@@ -115,7 +117,7 @@ class Participation:
             update={
                 "cases": cases,
                 "decision": format_decision(self.decision),
-                "conformity": find_conformity([case for case in cases if case.id not in self.information]),
+                "conformity": find_conformity(shown),
                 "verdict": verdict,
                 "procedure": procedure,
                 "criteria_verdict": by_name["criteria"],

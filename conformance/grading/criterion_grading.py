@@ -55,7 +55,7 @@ def grade_limit(
     limit: Limit,
     values: GradedValues,
     lowest_trust: Trust,
-    limit_uncertainty: float = 0.0,
+    limit_uncertainty: float | None = 0.0,
     rule: DecisionRule = SIMPLE,
     doubt: str | None = None,
 ) -> Criterion:
@@ -67,7 +67,7 @@ def grade_requirement(
     requirement: Requirement,
     values: GradedValues,
     lowest_trust: Trust | Computed,
-    limit_uncertainty: float = 0.0,
+    limit_uncertainty: float | None = 0.0,
     rule: DecisionRule = SIMPLE,
     doubt: str | None = None,
 ) -> Criterion:
@@ -77,7 +77,7 @@ def grade_requirement(
         requirement: Limits of one quantity.
         values: Quantities of the run.
         lowest_trust: Lowest trust of the limits that count.
-        limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record.
+        limit_uncertainty: Uncertainty of the limit itself, if it comes from a measured record; None: not known.
         rule: Decision rule.
         doubt: Reason why a pass does not count; None: it counts.
     """

@@ -106,11 +106,12 @@ class RuleGrading:
             note=rule.note,
         )
 
-    def _limit_uncertainty(self, limit: Limit) -> float:
+    def _limit_uncertainty(self, limit: Limit) -> float | None:
         if self.measured is None:
             return 0.0
+        known = self.measured.uncertainty.list_components(limit.owner, limit.quantity)
         combined = self.measured.uncertainty.combine(limit.owner, limit.quantity)
-        return combined if isinstance(combined, float) else 0.0
+        return combined if known and isinstance(combined, float) else None
 
     def _source(self, rule: Rule, compared: float | None) -> str:
         source = source_text(rule.source)

@@ -69,6 +69,8 @@ def test_unknown_component_is_no_zero(rule: DecisionRule) -> None:
         "its uncertainty is not complete: length not known",
     )
     assert judge_by_rule(30.0, LIMITS, errors, SIMPLE)[0] == "pass"
+    unstated = ValueErrors(components={"start": 0.1}, limit_uncertainty=None)
+    assert judge_by_rule(30.0, LIMITS, unstated, rule)[0] == "undecided"
 
 
 @pytest.mark.parametrize("rule", [SIMPLE, GUARDED, SHARED])

@@ -224,6 +224,15 @@ def test_case_without_a_limit_or_verdict_that_counts_is_informative() -> None:
     assert (shown.verdict, shown.criteria_verdict, shown.verification_verdict) == ("pass", "pass", "pass")
 
 
+def test_widened_limit_of_one_case_leaves_the_run_without_a_pass() -> None:
+    """The pass of another case does not hide a limit of the library that the user widened."""
+    row = CASE.criteria[0].model_copy(update={"verdict": "info", "doubt": "the limit of the library is widened"})
+    widened = case_result("b", "info", None).model_copy(update={"criteria": [row]})
+    assert decide(Participation(), case_result("a", "pass", None), widened).verdict == "info"
+    assert decide(Participation(information=("b",)), case_result("a", "pass", None), widened).verdict == "pass"
+    assert decide(Participation(), case_result("a", "fail", None), widened).verdict == "fail"
+
+
 def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     drifted = case_result("a", "fail", "pass", drift="fail")
     assert decide(Participation(requested=("verification",)), drifted).verdict == "fail"
