@@ -26,6 +26,7 @@ import scipy  # loads scipy.special when it is used: its import takes longer tha
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.quantities.bands import Band
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals
@@ -55,9 +56,6 @@ FEWEST_DEGREES = 3.0
 
 SAME_VALUE = 0.01
 """Difference of equal values over the standard deviation [-]; the spans differ by one sample in length."""
-
-NORMAL_QUANTILE = 1.96
-"""Half-width of a 95 % interval in standard deviations."""
 
 GUMBEL_HALF_WIDTH = 2.429
 """Half-width that contains 95 % of a Gumbel variate about its mean, in units of its scale."""
@@ -288,7 +286,7 @@ def _extreme_interval(extremes: RealArray) -> Interval95:
         scale = float(extreme_scale(maxima[None, :], n)[0])
         others = np.log(extreme_scale(np.broadcast_to(maxima, (n, n))[one_less].reshape(n, n - 1), n))
         freedom = max(1 / (2 * (n - 1) * float(np.var(others))), FEWEST_DEGREES)
-        widening = _student_quantile(freedom) / NORMAL_QUANTILE
+        widening = _student_quantile(freedom) / QUANTILE_95
         variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2 / shown
     return Interval95(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
 

@@ -27,6 +27,9 @@ SAME_MULTIPLE = 0.05
 MEAN_TIMES_S = (0.2, 0.05)
 """Times of the moving means that separate the bands from 5 and from 20 Hz [s]."""
 
+CANDIDATES, ROUNDED_SHARE = 5, 0.8
+"""Number of the smallest differences that may be the step, and share of its multiples: clipped samples are none."""
+
 SAME_RATE = 0.999
 """Share of a rate from which a record has the same rate."""
 
@@ -106,18 +109,17 @@ def resolution_component(signals: ChannelSignals) -> Component:
 
 
 def find_step(series: RealArray) -> float:
-    """Step of the numbers of a channel: the smallest difference of two values, if all differences are multiples of it.
+    """Step of the numbers of a channel: a small difference of two values, if nearly all samples are multiples of it.
 
     A channel without such a step, and a constant one, have the step 0.
     """
-    values = np.unique(series[np.isfinite(series)])
-    differences = np.diff(values)
-    distinct = differences[differences > SAME_NUMBER]
-    if not distinct.size:
-        return 0.0
-    step = float(distinct.min())
-    multiples = (values - values[0]) / step
-    return step if np.abs(multiples - np.round(multiples)).max() < SAME_MULTIPLE else 0.0
+    known = series[np.isfinite(series)]
+    differences = np.diff(values := np.unique(known))
+    for step in np.sort(differences[differences > SAME_NUMBER])[:CANDIDATES]:
+        multiples = (known - values[values.size // 2]) / step
+        if np.mean(np.abs(multiples - np.round(multiples)) < SAME_MULTIPLE) > ROUNDED_SHARE:
+            return float(step)
+    return 0.0
 
 
 def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:

@@ -27,6 +27,8 @@ def signals(case: Case, record: Record) -> RecordSignals:
 def test_step_of_rounded_numbers_is_found(step: float, size: int) -> None:
     values = np.random.default_rng(1).normal(120, 30, size)
     assert find_step(np.round(values / step) * step) == pytest.approx(step, rel=1e-9)
+    clipped = np.clip(np.round(values / step) * step, None, 150.03)  # no multiple, and 1 of 6 samples
+    assert find_step(clipped) == pytest.approx(step, rel=1e-9)
     assert find_step(values) == 0.0  # numbers of a computer have no common step
     assert find_step(np.full(9, 3.0)) == 0.0
 
