@@ -6,7 +6,7 @@ fewer samples or digits therefore does not pass where the whole record fails.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Protocol
 
 import numpy as np
@@ -113,6 +113,12 @@ def find_step(series: RealArray) -> float:
 
     A channel without such a step, and a constant one, have the step 0.
     """
+    return _find_step(series.tobytes())
+
+
+@lru_cache(maxsize=256)
+def _find_step(samples: bytes) -> float:
+    series = np.frombuffer(samples)
     known = series[np.isfinite(series)]
     differences = np.diff(values := np.unique(known))
     for step in np.sort(differences[differences > SAME_NUMBER])[:CANDIDATES]:
