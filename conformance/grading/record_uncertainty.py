@@ -16,8 +16,9 @@ from pantocheck.conformance.quantities.uncertainty import BOUNDED_COMPONENTS, Co
 from pantocheck.conformance.records.length_uncertainty import (
     FEWEST_SPANS,
     FEWEST_SPANS_95,
-    Interval95,
+    ExtremeInterval,
     LengthUncertainty,
+    SpanInterval,
     SubRecordRange,
     draw_deviations,
     length_uncertainties,
@@ -120,7 +121,7 @@ def draw_lengths(lengths: LengthsByOwner, digest: str) -> dict[int, dict[str, Re
         digest: SHA-256 in hexadecimal, the seed of the random numbers.
     """
     found = {(owner, name): x for owner, part in lengths.items() for name, x in part.items()}
-    intervals = {key: x for key, x in found.items() if isinstance(x, Interval95)}
+    intervals = {key: x for key, x in found.items() if isinstance(x, SpanInterval)}
     drawn = draw_deviations(intervals, DRAWS, digest)
     random = np.random.default_rng(int(digest[16:32], 16))
     deviations: dict[int, dict[str, RealArray]] = {}
@@ -144,6 +145,9 @@ def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: flo
     if len(ranges) == len(found):
         return f"{of_halves}; fewer than {FEWEST_SPANS_95} spans are too few for a 95 % interval"
     interval = f"95 % interval from the fluctuations along the record, spans of {span_m:g} m"
+    extremes = [name for name, uncertainty in found if isinstance(uncertainty, ExtremeInterval)]
+    if extremes:
+        interval += f"; interval without a stated share for {', '.join(dict.fromkeys(extremes))}"
     return f"{interval}; {of_halves}, for {', '.join(dict.fromkeys(ranges))}" if ranges else interval
 
 

@@ -4,14 +4,16 @@ The force differs from span to span, so that another record of the same length w
 
 Influence of a span: n - 1 times the change of a statistic if the span is left out (jackknife). The mean of the
 influences has the variance of the statistic. Neighbouring spans are correlated. The variance is therefore taken from
-the slowest fluctuations along the record: the coefficients of the influences in the cosines of 1/2, 1, 3/2 and 2
-periods (Lazarus, Lewis, Stock and Watson 2018, doi:10.1080/07350015.2018.1506926). Four coefficients give a Student
-variate with four degrees of freedom.
+the slowest fluctuations along the record: the coefficients of the influences in the cosines of 1/2, 1, ... 3 periods
+(Lazarus, Lewis, Stock and Watson 2018, doi:10.1080/07350015.2018.1506926). Six coefficients give a Student variate with
+six degrees of freedom. Skewed influences widen the interval: its error of coverage grows with the square of the
+skewness of the mean (Hall 1992, doi:10.1007/978-1-4612-4384-7, section 3.5).
 
 Extremes: the extreme of a record scatters about its expected value, the return level of the record. Its scatter follows
 from the extremes of the spans by a generalised extreme value distribution (Hosking, Wallis and Wood 1985,
-doi:10.1080/00401706.1985.10488049).
+doi:10.1080/00401706.1985.10488049). Their interval has no stated share: it depends on the tail of the distribution.
 
+The settings were chosen on records of the process of verification/tables/coverage.py with other seeds.
 docs/tables/coverage.csv shows how often the intervals contain the true value.
 """
 
@@ -39,17 +41,23 @@ from pantocheck.conformance.quantities.unavailable import ChannelMissing, Quanti
 FEWEST_SPANS = 5
 """Smallest number of spans that show how a statistic varies along a record."""
 
-FEWEST_SPANS_95 = 40
+FEWEST_SPANS_95 = 60
 """Smallest number of spans for a 95 % interval; fewer do not show a correlation of neighbouring spans."""
 
 MOST_BLOCKS = 500
 """Largest number of parts of a record; the parts of a longer record have more than one span."""
 
-COSINES = 4
+COSINES = 6
 """Number of cosines, the degrees of freedom. Fewer give wide intervals, more leave out the slow fluctuations."""
 
-LARGEST_CORRELATION = 0.8
-"""Largest assumed correlation of neighbouring spans [-]; 40 spans do not show a larger one."""
+LARGEST_CORRELATION = 0.85
+"""Largest assumed correlation of neighbouring spans [-]; 60 spans do not show a larger one."""
+
+CORRELATION_ERRORS = 2.0
+"""Standard errors between the estimated and the assumed correlation."""
+
+SKEWNESS_WIDENING, LARGEST_WIDENING = 0.4, 0.2
+"""Relative widening per square of the skewness of the mean influence, and its largest value."""
 
 FEWEST_DEGREES = 3.0
 """Smallest number of degrees of freedom of the scale of an extreme; jackknife estimates of it scatter."""
@@ -62,8 +70,8 @@ GUMBEL_HALF_WIDTH = 2.429
 
 
 @dataclass(frozen=True)
-class Interval95:
-    """95 % interval."""
+class SpanInterval:
+    """Interval from the fluctuations along the record."""
 
     contributions: RealArray
     """Contribution of each cosine to the deviation, (cosines,), on the scale of the interval."""
@@ -79,6 +87,14 @@ class Interval95:
         return float(self.change(np.asarray(_student_quantile(COSINES) * deviation)))
 
 
+class Interval95(SpanInterval):
+    """Interval of a statistic, which contains the true value in 95 % of the records."""
+
+
+class ExtremeInterval(SpanInterval):
+    """Interval of an extreme about its return level, without a stated share."""
+
+
 @dataclass(frozen=True)
 class SubRecordRange:
     """Range of what was run: the values of all stretches of half the record. No share of true values is stated."""
@@ -87,7 +103,7 @@ class SubRecordRange:
     """Largest distance from the value of the record."""
 
 
-LengthUncertainty = Interval95 | SubRecordRange
+LengthUncertainty = Interval95 | ExtremeInterval | SubRecordRange
 """Uncertainty of a value from the length of the record."""
 
 
@@ -233,7 +249,8 @@ def _statistic_interval(others: RealArray, value: float, never_negative: bool) -
     """
     change = partial(_relative_change, value) if never_negative else np.asarray
     others = np.log(others) if never_negative else others
-    return Interval95(cosine_contributions((others.size - 1) * (others.mean() - others)), 0.0, change)
+    influence = (others.size - 1) * (others.mean() - others)
+    return Interval95((1 + _skewness_widening(influence)) * cosine_contributions(influence), 0.0, change)
 
 
 def _relative_change(value: float, deviation: RealArray) -> RealArray:
@@ -245,8 +262,8 @@ def cosine_contributions(influence: RealArray) -> RealArray:
 
     The spectrum of the influences decreases with frequency if neighbouring spans are correlated. The coefficients are
     therefore multiplied by the ratio of the spectra at zero and at their frequency for an autoregression of first
-    order. Its coefficient is the upper end of a one-sided 95 % interval, after correction of the bias (Kendall 1954,
-    doi:10.1093/biomet/41.3-4.403).
+    order. Its coefficient is the estimate with the correction of the bias (Kendall 1954,
+    doi:10.1093/biomet/41.3-4.403) and `CORRELATION_ERRORS` standard errors.
     """
     n = influence.size
     frequency, cosines = _list_cosines(n)
@@ -267,10 +284,20 @@ def _upper_correlation(influence: RealArray) -> float:
     n, variance = influence.size, float(influence @ influence)
     rho = float(influence[1:] @ influence[:-1]) / variance if variance else 0.0
     unbiased = min(max(rho + (1 + 4 * rho) / n, 0.0), LARGEST_CORRELATION)
-    return min(unbiased + 1.645 * math.sqrt((1 - unbiased**2) / n), LARGEST_CORRELATION)
+    return min(unbiased + CORRELATION_ERRORS * math.sqrt((1 - unbiased**2) / n), LARGEST_CORRELATION)
 
 
-def _extreme_interval(extremes: RealArray) -> Interval95:
+def _skewness_widening(influence: RealArray) -> float:
+    """Relative widening of an interval by the skewness of the influences, for as many independent spans."""
+    rho, scale = _upper_correlation(influence), float(np.std(influence))
+    if scale == 0:
+        return 0.0
+    skewness = float(np.mean((influence - influence.mean()) ** 3)) / scale**3
+    independent = influence.size * (1 - rho) / (1 + rho)
+    return min(SKEWNESS_WIDENING * skewness**2 / independent, LARGEST_WIDENING)
+
+
+def _extreme_interval(extremes: RealArray) -> ExtremeInterval:
     """Interval of the sum of the largest values of independent extremes, from those of the spans, (extremes, spans).
 
     The extreme of independent spans scatters like a Gumbel variate. Its scale is estimated; a Student factor with the
@@ -288,7 +315,7 @@ def _extreme_interval(extremes: RealArray) -> Interval95:
         freedom = max(1 / (2 * (n - 1) * float(np.var(others))), FEWEST_DEGREES)
         widening = _student_quantile(freedom) / QUANTILE_95
         variance += (GUMBEL_HALF_WIDTH * scale * widening / _student_quantile(COSINES)) ** 2 / shown
-    return Interval95(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
+    return ExtremeInterval(contributions, float(np.sqrt(max(variance, 0.0))), np.asarray)
 
 
 def extreme_scale(maxima: RealArray, spans: int) -> RealArray:
@@ -323,7 +350,7 @@ def _student_quantile(freedom: float) -> float:
 Key = TypeVar("Key", bound=Hashable)
 
 
-def draw_deviations(intervals: Mapping[Key, Interval95], count: int, digest: str) -> dict[Key, RealArray]:
+def draw_deviations(intervals: Mapping[Key, SpanInterval], count: int, digest: str) -> dict[Key, RealArray]:
     """Draw joint deviations of quantities.
 
     The deviations are those of a multivariate Student distribution. Its marginal distributions have the stated
