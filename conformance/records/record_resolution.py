@@ -14,6 +14,7 @@ from scipy.ndimage import uniform_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value, ValuesByOwner
+from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.uncertainty import Component
@@ -29,6 +30,14 @@ MEAN_TIMES_S = (0.2, 0.05)
 
 CANDIDATES, ROUNDED_SHARE = 5, 0.8
 """Number of the smallest differences that may be the step, and share of its multiples: clipped samples are none."""
+
+CUBIC, STRAIGHT = (9 / 16, -1 / 16), (1 / 2, 0.0)
+"""Weights of the two nearer and of the two farther neighbours at equal distances, for values halfway between them."""
+
+EXTREMES = frozenset(quantity.name for quantity in PANTOGRAPH_QUANTITIES if quantity.extreme) | frozenset(
+    quantity.name for quantity in LINE_QUANTITIES
+)
+"""Quantities that are the value of one sample."""
 
 SAME_RATE = 0.999
 """Share of a rate from which a record has the same rate."""
@@ -57,11 +66,14 @@ class ChannelSignals(Protocol):
 
 
 def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> Component:
-    """Uncertainty from the sampling rate: the largest change when every second sample is replaced by its neighbours.
+    """Uncertainty from the sampling rate: changes when samples are left out, and when all lie half an interval later.
 
     The error of every usual method falls at least in proportion to the interval of the samples. It is then at most the
     change when this interval is doubled. The samples that are left out are interpolated by cubic polynomials, so that
     every quantity of the record can be computed. The section also gains or loses a sample at each end.
+
+    The extreme of a curve lies between two samples. Left-out samples on straight lines bound its distance from the
+    nearer sample up to 0.41 intervals, and samples half an interval later bound the rest.
 
     Args:
         signals: Signals of the record.
@@ -70,15 +82,24 @@ def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> C
     rate = min(pantograph.rate for pantograph in signals.pantographs.values())
     if full_rate_Hz is not None and rate >= SAME_RATE * full_rate_Hz:
         return Component("sampled at the rate of the case", _fill(signals.evaluation.values, 0.0))
-    thinned = [_change_samples(signals, partial(replace_samples, first)) for first in (0, 1)]
+    thinned = [_change_samples(signals, partial(replace_samples, first, CUBIC)) for first in (0, 1)]
+    straight = [_change_samples(signals, partial(replace_samples, first, STRAIGHT)) for first in (0, 1)]
+    later = [_change_samples(signals, interpolate_halfway)]
     first = next(iter(signals.pantographs.values()))
     start, end = first.section
     step = float(np.median(np.diff(first.position)))
     sections = [(start - step, end), (start + step, end), (start, end - step), (start, end + step)]
     moved = [signals.evaluate_section(section) for section in sections]
+    values, groups = signals.evaluation.values, [thinned, moved, later]
+    extremes = {
+        owner: {name: value for name, value in quantities.items() if name in EXTREMES}
+        for owner, quantities in values.items()
+    }
+    widths, wider = _find_changes(values, groups), _find_changes(extremes, [*groups, straight])
     return Component(
-        f"every second of {rate:.6g} samples per second left out, and ends of the section moved by a sample",
-        _find_changes(signals.evaluation.values, [thinned, moved]),
+        f"every second of {rate:.6g} samples per second left out, samples half an interval later, and ends of the "
+        "section moved by a sample",
+        {owner: {**quantities, **wider.get(owner, {})} for owner, quantities in widths.items()},
     )
 
 
@@ -136,22 +157,28 @@ def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:
     return np.asarray(sign * np.sign(series - mean))
 
 
-def replace_samples(first: int, series: RealArray) -> RealArray:
-    """Replace every second sample by the cubic polynomial through its four neighbours.
+def replace_samples(first: int, weights: tuple[float, float], series: RealArray) -> RealArray:
+    """Replace every second sample by its four neighbours.
 
     A sample beside a missing one stays.
 
     Args:
         first: First sample that is replaced, 0 or 1.
+        weights: Weight of each of the two nearer and of the two farther neighbours.
         series: Samples, (n,).
     """
     padded = np.pad(series, 3, mode="reflect") if series.size > 3 else np.pad(series, 3, mode="edge")
-    near = padded[2:-4] + padded[4:-2]
-    far = padded[:-6] + padded[6:]
-    between = (9 * near - far) / 16
+    between = weights[0] * (padded[2:-4] + padded[4:-2]) + weights[1] * (padded[:-6] + padded[6:])
     changed = np.where(np.isfinite(between), between, series)
     changed[1 - first :: 2] = series[1 - first :: 2]
     return changed
+
+
+def interpolate_halfway(series: RealArray) -> RealArray:
+    """Values half an interval after each sample, by cubic polynomials; a sample beside a missing one stays."""
+    padded = np.pad(series, (1, 2), mode="edge")
+    between = CUBIC[0] * (padded[1:-2] + padded[2:-1]) + CUBIC[1] * (padded[:-3] + padded[3:])
+    return np.where(np.isfinite(between), between, series)
 
 
 def move_samples(direction: Callable[[RealArray], RealArray], series: RealArray) -> RealArray:

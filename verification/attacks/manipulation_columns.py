@@ -273,3 +273,28 @@ def change_rate(dossier: Dossier, chance: random.Random) -> str | None:
     factor = chance.choice((0.5, 0.9, 0.996, 1.004, 1.1, 2.0))
     dossier.columns["time_s"] = factor * dossier.columns["time_s"]
     return f"time axis {factor:g} times as long"
+
+
+def thin_samples(dossier: Dossier, chance: random.Random) -> str:
+    """Keep every nth sample, from any of the first n."""
+    n = chance.choice((2, 3, 4, 5, 10, 20))
+    first = chance.randrange(n)
+    dossier.columns = {name: column[first::n] for name, column in dossier.columns.items()}
+    return f"keep every sample of {n}"
+
+
+def round_numbers(dossier: Dossier, chance: random.Random) -> str | None:
+    """Round a kind of channel to steps, to the nearest or downwards."""
+    stem, step = chance.choice(
+        (
+            *(("force", step) for step in (0.1, 0.5, 1.0, 2.0, 5.0, 10.0)),
+            *(("contact_height", step) for step in (1e-3, 5e-3)),
+            *(("uplift", step) for step in (1e-4, 1e-3, 2e-3, 5e-3)),
+        )
+    )
+    turn = chance.choice((np.round, np.floor))
+    names = dossier.names(stem)
+    if not names:
+        return None
+    dossier.columns |= {name: turn(dossier.columns[name] / step) * step for name in names}
+    return f"round {stem} to {step:g}{' downwards' if turn is np.floor else ''}"

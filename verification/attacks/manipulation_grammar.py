@@ -17,12 +17,14 @@ from verification.attacks.manipulation_columns import (
     reorder_columns,
     reorder_supports,
     rescale,
+    round_numbers,
     shift_clock,
     shift_positions,
     shift_supports,
     shift_time,
     shift_track,
     smooth,
+    thin_samples,
 )
 from verification.attacks.manipulation_dossier import Dossier, Manipulation
 from verification.attacks.manipulation_trains import (
@@ -158,5 +160,7 @@ MANIPULATIONS: tuple[tuple[str, Manipulation], ...] = (
     ("channels", smooth_one),
     ("channels", smooth_together),
     ("channels", copy_pantograph),
+    ("thin", thin_samples),
+    ("thin", round_numbers),
 )
 """Group and function of every manipulation; a trial draws from them by position."""

@@ -57,6 +57,10 @@ COMPARED = frozenset(
 """Quantities that the cases of the campaign limit."""
 
 
+OUTSIDE = 1e-4
+"""Relative distance of a value outside its limit, whose record is then thinned and rounded."""
+
+
 @dataclass(frozen=True)
 class Base:
     """Subject that does not pass."""
@@ -211,6 +215,14 @@ def build_bases(runs: Runs) -> tuple[list[tuple[str, Dossier]], list[Base]]:
         upper = {"quantity": quantity, "upper": sum(both) / 2, "trust": "secondary", "source": "campaign"}
         dossier.case["limit"] = [{**upper, "pantograph": owner} for owner in (1, 2)]
         add(f"{quantity} of the worse pantograph too large, no other limit", dossier)
+    for owner, quantities in values.items():
+        for quantity in sorted(COMPARED & quantities.keys()):
+            value = quantities[quantity]
+            if isinstance(value, float) and value:
+                name = f"{quantity} of {f'pantograph {owner}' if owner else 'the line'} outside by 0.01 %"
+                for bound in ("upper", "lower"):
+                    limit = value - OUTSIDE * abs(value) if bound == "upper" else value + OUTSIDE * abs(value)
+                    add(f"{name} ({bound})", tightened(quantity, owner, **{bound: limit}), frozenset({"thin"}))
     for stem in ("contact_height", "uplift"):
         dossier = twin.copy()
         dossier.columns = {name: column for name, column in twin.columns.items() if not name.startswith(stem)}

@@ -9,7 +9,10 @@ from helpers.graded_wave import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_resolution import (
+    CUBIC,
+    STRAIGHT,
     find_step,
+    interpolate_halfway,
     replace_samples,
     resolution_component,
     sampling_component,
@@ -37,10 +40,23 @@ def test_samples_of_a_cubic_are_replaced_by_themselves() -> None:
     """The polynomial through four samples at -3, -1, 1 and 3 is exact at 0 for a cubic, away from the ends."""
     series = np.arange(20.0) ** 3
     for first in (0, 1):
-        changed = replace_samples(first, series)
+        changed = replace_samples(first, CUBIC, series)
         assert changed[3:-3] == pytest.approx(series[3:-3], rel=1e-12)
         kept = np.arange(20) % 2 != first
         assert (changed[kept] == series[kept]).all()
+        straight = replace_samples(first, STRAIGHT, np.arange(20.0))
+        assert straight[1:-1] == pytest.approx(np.arange(20.0)[1:-1])
+    assert interpolate_halfway(series)[2:-3] == pytest.approx((np.arange(20.0) + 0.5)[2:-3] ** 3, rel=1e-12)
+
+
+@pytest.mark.parametrize("place", np.linspace(0.0, 0.5, 11))
+def test_extreme_between_two_samples_is_bounded(place: float) -> None:
+    """Parabola whose largest value 0 lies between two samples: the changes together exceed its distance from them."""
+    series = -((np.arange(-20.0, 21.0) - place) ** 2)
+    largest = series.max()
+    straight = max(abs(replace_samples(first, STRAIGHT, series).max() - largest) for first in (0, 1))
+    later = abs(interpolate_halfway(series).max() - largest)
+    assert straight + later >= 0.99 * place**2
 
 
 def test_record_at_the_rate_of_the_case_loses_nothing(case_250: Case) -> None:
