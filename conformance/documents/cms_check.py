@@ -88,7 +88,8 @@ def describe_signatures(report: SignatureReport) -> list[str]:
     lines = []
     for number, facts in enumerate(report.signatures, 1):
         role = f" as {facts.role}" if facts.role else ""
-        lines.append(f"signature {number}: signed by {facts.signer}{role} ({_describe_trust(facts)}).")
+        signed = "signed by" if facts.trusted else "claims to be signed by"
+        lines.append(f"signature {number}: {signed} {facts.signer}{role} ({_describe_trust(facts)}).")
         lines.append(f"  Signing certificate issued by {facts.issuer}. {_describe_time(facts)}")
     return [*lines, "Revocation of certificates was not checked: verification uses no network."]
 

@@ -160,6 +160,7 @@ def parse_signatures(content: bytes, where: str) -> list[Any]:
     Raises:
         InputError: The file is not a detached CMS signature, is damaged, or has too many signatures.
     """
+    import pyhanko.sign.ades.cades_asn1  # noqa: F401  teaches asn1crypto the role of a signer
     from asn1crypto import cms, pem
 
     hint = "Give a detached CMS signature, as 'pantocheck sign' writes it."

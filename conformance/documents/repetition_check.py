@@ -76,6 +76,11 @@ def check_record_quantities(results: Results, path: Path, catalogue: Catalogue =
     ]
 
 
+def find_record_result(results: Results, path: Path) -> CaseResult:
+    """Result that belongs to a record; arguments and errors as for `check_record_quantities`."""
+    return _find_result(results, open_record(path).case, path)
+
+
 def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
     """Compare quantities, the parts of their uncertainty that follow from the record, and its state."""
     stated = _list_values(result)
@@ -219,6 +224,11 @@ def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[Docume
         if (entry := entries[case.id]) is not None
     }
     return [*_judge(results, reruns, tolerance), *_name_skipped([name for name in entries if entries[name] is None])]
+
+
+def list_known_cases(results: Results, catalogue: Catalogue) -> set[str]:
+    """Ids of the cases of results that are at hand."""
+    return {case.id for case in results.cases if catalogue.find_id(case.id) is not None}
 
 
 def _rerun(

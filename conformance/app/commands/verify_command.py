@@ -13,7 +13,7 @@ from pantocheck.conformance.app.commands.cases_option import CasesOption
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
-from pantocheck.conformance.app.notebook.verified_report import verify_report
+from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.documents.authenticity_check import CheckOutcome
 from pantocheck.conformance.documents.verification import Verification
@@ -41,55 +41,72 @@ def verify_command(
     rerun: Annotated[
         bool, typer.Option("--rerun", help="Run the built-in simulator again and compare every number.")
     ] = False,
+    numbers_only: Annotated[
+        bool, typer.Option("--numbers-only", help="Exit code 0 for consistent numbers, whoever made the document.")
+    ] = False,
     any_verdict: Annotated[
-        bool, typer.Option("--any-verdict", help="Exit code 0 for a consistent document of any verdict.")
+        bool, typer.Option("--any-verdict", help="Exit code 0 for a document of any verdict.")
     ] = False,
 ) -> CommandOutput:
     """Verify a document: verdicts, pages, cases, signatures.
 
     The results in the document are graded again, the pages are made again and compared, and the cases are compared
-    with the installed library. Exit code 0: no contradiction, compared in full, and the verdict is `pass`. Exit code 1:
-    another verdict, a contradiction, or a document of another version that cannot be compared in full. Exit code 2: the
-    verdict is `error`, or the file is no such document.
+    with the installed library. Exit code 0: the verdict is `pass`, nothing contradicts it, and one of these shows that
+    the document is genuine. --trust-roots: every signature leads to one of these authorities. --record, for each case:
+    its quantities follow from the record. --rerun: a new run of the built-in simulator gives the same numbers.
 
-    A consistent document need not be authentic: invented results can be consistent. A signature shows who made it: with
-    --trust-roots, every signature must lead to one of these authorities. Without, signers are named, but not trusted.
-
-    Invented numbers can be consistent, too. --record computes the quantities of a record again, and --rerun runs the
-    built-in simulator again.
+    Exit code 1: another verdict, a contradiction, a document of another version, or one of unknown origin. Anyone can
+    invent numbers without a contradiction. --numbers-only accepts them. Exit code 2: the verdict is `error`, or the
+    file is no such document.
 
     Examples:
 
-    pantocheck verify report/certificate.pdf
+    pantocheck verify report/certificate.pdf --rerun
 
-    pantocheck verify report/certificate.pdf --rerun --trust-roots authority.pem
+    pantocheck verify report/certificate.pdf --trust-roots authority.pem
 
     pantocheck verify report/results.json --record run.csv
     """
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
     verification = report.verification
     facts = {name: getattr(verification, name) for name in ("state", "verdict", "cases", "criteria")}
-    exit_code = 1 if not verification.consistent else 0 if any_verdict else EXIT_CODES[verification.verdict]
+    accepted = verification.consistent and (numbers_only or report.origin in ("authentic", "repeated"))
+    exit_code = 1 if not accepted else 0 if any_verdict else EXIT_CODES[verification.verdict]
     return CommandOutput(
-        escape_text(_conclude(verification, "authentic" if report.authentic else "consistent")),
-        {**facts, "checks": [asdict(check) for check in verification.checks]},
+        escape_text(_conclude(report, numbers_only)),
+        {**facts, "origin": report.origin, "checks": [asdict(check) for check in verification.checks]},
         [*_list_checks(verification)],
         exit_code=exit_code,
     )
 
 
-def _conclude(verification: Verification, word: str) -> str:
+def _conclude(report: VerifiedReport, numbers_only: bool) -> str:
     """State of the document in one sentence."""
+    verification = report.verification
     size = f"{count_noun(verification.cases, 'case')}, {count_noun(verification.criteria, 'criterion', 'criteria')}"
     verdict = verification.verdict
     match verification.state:
         case "consistent":
-            return f"{word}: the verdict '{verdict}' follows from the embedded numbers ({size})."
+            stated = f"the verdict '{verdict}' follows from the embedded numbers ({size})."
+            return f"{_name_origin(report, numbers_only)}{stated}"
         case "incomplete":
             return f"consistent in part: the verdict '{verdict}' follows ({size}), but not all was compared."
         case "contradicted":
             count = count_noun(len(verification.discrepancies), "contradiction")
             return f"not consistent: {count} ({size}; stated verdict '{verdict}')."
+
+
+def _name_origin(report: VerifiedReport, numbers_only: bool) -> str:
+    """Beginning of the sentence on a consistent document."""
+    match report.origin:
+        case "authentic":
+            return "authentic: "
+        case "untrusted" if not numbers_only:
+            return f"NOT TRUSTED: the document claims to be signed by {', '.join(report.signers)}; "
+        case "unsigned" if not numbers_only:
+            return "UNSIGNED: the numbers are consistent, anyone can have written this document; "
+        case _:
+            return "consistent: "
 
 
 def _list_checks(verification: Verification) -> Iterator[RenderableType]:

@@ -3,17 +3,27 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_rows
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
+from pantocheck.conformance.documents.cms_check import SignatureReport
 from pantocheck.conformance.documents.library_check import check_outside_cases
-from pantocheck.conformance.documents.repetition_check import check_record_quantities, check_rerun
+from pantocheck.conformance.documents.repetition_check import (
+    check_record_quantities,
+    check_rerun,
+    find_record_result,
+    list_known_cases,
+)
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import DocumentState, Verification, check_origin, verify_document
+
+Origin = Literal["authentic", "repeated", "untrusted", "unsigned"]
+"""What shows that a report is genuine: its signatures, or its numbers computed again; signatures of unknown authorities
+and none show nothing."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +32,15 @@ class VerifiedReport:
 
     verification: Verification
     """Results inside the report, and the checks."""
-    authentic: bool
-    """Whether the report is consistent, and every signature leads to a trust root."""
+    origin: Origin
+    """What shows that the report is genuine, if it is consistent."""
+    signers: tuple[str, ...]
+    """Names that the signatures state, in the order of signing."""
+
+    @property
+    def authentic(self) -> bool:
+        """Whether the report is consistent, and every signature leads to a trust root."""
+        return self.verification.consistent and self.origin == "authentic"
 
     def __repr__(self) -> str:
         """State, verdict and number of checks in one line."""
@@ -81,9 +98,21 @@ def verify_report(
     verification = verify_document(path)
     signatures = check_signatures(path, roots)
     results, catalogue = verification.results, open_catalogue(cases)
-    checks = check_outside_cases(results, catalogue)
-    checks += [check for record in records for check in check_record_quantities(results, Path(record), catalogue)]
+    checks, repeated = check_outside_cases(results, catalogue), set[str]()
+    for record in map(Path, records):
+        checks += check_record_quantities(results, record, catalogue)
+        repeated.add(find_record_result(results, record).id)
     if rerun:
         checks += check_rerun(results, catalogue)
+        repeated |= list_known_cases(results, catalogue)
     verification = verification.add_checks([*checks, *check_origin(signatures)])
-    return VerifiedReport(verification, signatures.authentic and verification.consistent)
+    origin = _find_origin(signatures, all(case.id in repeated for case in results.cases if case.quantities))
+    return VerifiedReport(verification, origin, tuple(facts.signer for facts in signatures.signatures))
+
+
+def _find_origin(signatures: SignatureReport, all_repeated: bool) -> Origin:
+    if signatures.authentic:
+        return "authentic"
+    if all_repeated:
+        return "repeated"
+    return "untrusted" if signatures.signatures else "unsigned"
