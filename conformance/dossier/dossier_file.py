@@ -31,14 +31,18 @@ EntryNames = Annotated[tuple[EntryName, ...], Field(strict=False, max_length=100
 Range = Annotated[tuple[float, float], Field(strict=False)]
 
 
+StaticLimit = Annotated[float, Field(gt=0, le=1e4)]
+"""Tolerance of a value at rest, as the limit of a comparison."""
+
+
 class StaticTolerance(InputTable):
     """Tolerances of the user for the line at rest. Elasticity and height are needed; one of the two elasticities."""
 
-    elasticity_mm_N: Positive | None = None
+    elasticity_mm_N: StaticLimit | None = None
     """Largest difference between model and measurement [mm/N]."""
-    elasticity_pct: Positive | None = None
+    elasticity_pct: StaticLimit | None = None
     """Largest difference between model and measurement, relative to the measured elasticity [%]."""
-    height_mm: Positive | None = None
+    height_mm: StaticLimit | None = None
     """Largest difference of the contact wire height [mm]."""
     trust: Trust = NO_TRUST
     """Trust in these tolerances."""

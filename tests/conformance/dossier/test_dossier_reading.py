@@ -30,6 +30,7 @@ OTHER = {"name": "example line", "file": "line.toml"}
         ({"validity.pantographs": ["other"]}, "validity.pantographs[1]", "there is no pantograph"),
         ({"validity.speed_km_h": [200.0, 160.0]}, "validity.speed_km_h", "is above the second"),
         ({"line.0.tolerance.source": None}, "line[1].tolerance.source", "missing, although the trust"),
+        ({"line.0.tolerance.elasticity_pct": 1e6}, "line[1].tolerance.elasticity_pct", "10000"),
         ({"pantograph.0.limit.0.source": None}, "pantograph[1].limit[1].source", "missing, although the trust"),
         ({"line_test.tolerance.0": {"quantity": "mean_force_N", "upper": 1.0}}, "line_test.tolerance", "no tolerance"),
         ({"required": ["line_tests"]}, "required", "line_tests"),
