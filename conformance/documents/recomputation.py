@@ -17,6 +17,7 @@ from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
+from pantocheck.conformance.documents.state_check import check_state
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
@@ -80,6 +81,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -
     yield from _check_conformity(case)
     yield from (f"{case.id}, {text}" for text in _check_readings(case))
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
+    yield from (f"{case.id}: {text}" for text in check_state(case))
     verdict = judge_case([judge_criteria(graded)], record)
     if stated != verdict and not ungraded:
         yield f"{case.id}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"

@@ -39,7 +39,7 @@ from pantocheck.conformance.records.record_resolution import resolution_componen
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.runs.check import CheckName, Finding
-from pantocheck.conformance.runs.record_checks import check_record, judge_record_state
+from pantocheck.conformance.runs.record_checks import check_record, judge_record_state, list_check_rows
 from pantocheck.conformance.runs.record_folder import find_other_case, find_record_mismatch
 from pantocheck.conformance.runs.system import Delivered
 
@@ -175,8 +175,9 @@ class CaseEvaluation:
             return RecordFacts(state="unconfirmed", reason=reason, **digests, **start)
         if self.signals is None:
             return None
-        state, reason = judge_record_state(self.findings)
-        return RecordFacts(state=state, reason=reason, **digests, **start)
+        rows = list_check_rows(self.findings)
+        state, reason = judge_record_state(rows)
+        return RecordFacts(state=state, reason=reason, checks=rows, **digests, **start)
 
     def grade_limits(self, lowest_trust: Trust, rule: DecisionRule = SIMPLE) -> list[Criterion]:
         """Grade the delivery by every limit of the case."""

@@ -119,6 +119,16 @@ StartState = Literal["as in the case", "differs", "not stated"]
 """Start of a record against that of its case; `not stated` is never treated better than `as in the case`."""
 
 
+class CheckRow(ResultsPart):
+    """Outcome of a consistency check of a record."""
+
+    check: str
+    outcome: Literal["confirmed", "unchecked", "doubt", "contradiction", "not reached"]
+    """`confirmed` if the check holds or does not apply; `not reached` behind a contradiction."""
+    text: str = ""
+    """Text of the finding; empty if the check has none."""
+
+
 class RecordFacts(ResultsPart):
     """Record of a case. Digests are SHA-256 in hexadecimal, null if unknown.
 
@@ -136,6 +146,8 @@ class RecordFacts(ResultsPart):
     measured_digest: str | None = None
     start: StartState | None = None
     start_text: str | None = None
+    checks: tuple[CheckRow, ...] = ()
+    """All consistency checks in their order; empty for a record without samples, and for a profile."""
 
 
 class ReadingFacts(ResultsPart):

@@ -3,7 +3,7 @@
 The checks of positions, roll-off and mean force stand here; the others have a file each.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from pantocheck.conformance.quantities.pantograph_signals import PantographSigna
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.case_facts_format import CheckRow
 from pantocheck.conformance.runs.check import (
     TINY,
     Check,
@@ -213,6 +214,19 @@ def check_record(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]
     return findings
 
 
+def list_check_rows(findings: Mapping[CheckName, Finding]) -> tuple[CheckRow, ...]:
+    """Row of every check, from `check_record`."""
+    rows, reached = [], True
+    for check in RECORD_CHECKS:
+        finding = findings.get(check.name)
+        if finding is not None:
+            rows.append(CheckRow(check=check.name, outcome=finding.kind, text=finding.text))
+            reached = finding.kind != "contradiction"
+        else:
+            rows.append(CheckRow(check=check.name, outcome="confirmed" if reached else "not reached"))
+    return tuple(rows)
+
+
 # State of a record: consistent, unconfirmed or contradicted.
 STATES: dict[str, Literal["unconfirmed", "contradicted"]] = {
     "contradiction": "contradicted",
@@ -227,21 +241,21 @@ Otherwise a record could avoid a check by leaving out its channels.
 
 
 def judge_record_state(
-    findings: Mapping[CheckName, Finding],
+    rows: Iterable[CheckRow],
 ) -> tuple[Literal["consistent", "unconfirmed", "contradicted"], str]:
     """State of a record and its reason.
 
     Args:
-        findings: Findings of `check_record`; a check without a finding has confirmed the record or does not apply to
-            it.
+        rows: Outcomes of all checks.
 
     Returns:
         state: `contradicted` if a check refutes the record; `unconfirmed` if a check doubts it or could not be made;
             `consistent` otherwise.
         reason: One line: the texts of the findings that decide; the confirming checks if there are none.
     """
+    findings = [row for row in rows if row.outcome in STATES]
     for state in ("contradicted", "unconfirmed"):
-        texts = [finding.text for finding in findings.values() if STATES[finding.kind] == state]
+        texts = [row.text for row in findings if STATES[row.outcome] == state]
         if texts:
             return state, "; ".join(texts)
     return "consistent", "every consistency check that applies confirms the record"

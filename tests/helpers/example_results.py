@@ -16,6 +16,7 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
 
 SOURCE = "Wang et al., An extended Habedank's equation-based EMTP model, IEEE Trans. Power Delivery, Table III"
 SPEED = 250 / 3.6
@@ -23,7 +24,11 @@ RATE = 1000.0
 SPANS_M = (240.0, 360.0)
 SUPPORTS_M = [240.0, 300.0, 360.0]
 
-VERIFIED = {"state": "consistent", "reason": "every consistency check that applies confirms the record"}
+VERIFIED = {
+    "state": "consistent",
+    "reason": "every consistency check that applies confirms the record",
+    "checks": [{"check": check.name, "outcome": "confirmed", "text": ""} for check in RECORD_CHECKS],
+}
 
 Signal = NDArray[np.float64]
 

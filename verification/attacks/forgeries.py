@@ -54,7 +54,6 @@ OUTSIDE = {
     "uncertainty divided by ten": "",
     "name of the system": "",
     "version of the system": "",
-    "digest of the suite": "the output names the other digest",
     "software of the pages": "the output names the other versions",
     "definition of skipped quantities": "",
     "time step and element length": "",

@@ -18,7 +18,13 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, compare_motion
-from pantocheck.conformance.runs.record_checks import MOTION, _compare, check_record, judge_record_state
+from pantocheck.conformance.runs.record_checks import (
+    MOTION,
+    _compare,
+    check_record,
+    judge_record_state,
+    list_check_rows,
+)
 from pantocheck.conformance.runs.system import Delivered
 
 
@@ -144,13 +150,18 @@ def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, 
 # State of a record by the findings of its checks.
 def test_state_follows_from_the_worst_finding() -> None:
     """Beside a contradiction, a missing channel is not the reason: the record cannot be graded even with it."""
-    assert judge_record_state({}) == ("consistent", "every consistency check that applies confirms the record")
+    rows = list_check_rows({})
+    assert {row.outcome for row in rows} == {"confirmed"}
+    assert judge_record_state(rows) == ("consistent", "every consistency check that applies confirms the record")
     findings: dict[CheckName, Finding] = {"support passing": Finding("unchecked", "no uplift")}
-    assert judge_record_state(findings | {"dynamics": Finding("doubt", "late force")}) == (
+    assert judge_record_state(list_check_rows(findings | {"dynamics": Finding("doubt", "late force")})) == (
         "unconfirmed",
         "no uplift; late force",
     )
-    assert judge_record_state(findings | {"dynamics": Finding("contradiction", "gain")}) == ("contradicted", "gain")
+    rows = list_check_rows(findings | {"dynamics": Finding("contradiction", "gain")})
+    assert judge_record_state(rows) == ("contradicted", "gain")
+    outcomes = {row.check: row.outcome for row in rows}
+    assert (outcomes["roll-off"], outcomes["implied force"]) == ("confirmed", "not reached")
 
 
 # Dynamics check: thresholds on both sides, the stated cause, and either pantograph alone.

@@ -17,7 +17,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.record_checks import check_record, judge_record_state
+from pantocheck.conformance.runs.record_checks import check_record, judge_record_state, list_check_rows
 from pantocheck.model import History, Passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays
@@ -67,7 +67,7 @@ def records() -> dict[str, tuple[Case, Record]]:
 
 
 def state(case: Case, record: Record) -> tuple[str, str]:
-    return judge_record_state(check_record(case, RecordSignals(record, case.file.filter)))
+    return judge_record_state(list_check_rows(check_record(case, RecordSignals(record, case.file.filter))))
 
 
 def shift(record: Record, number: int, distance: float) -> Record:
