@@ -1,0 +1,128 @@
+"""Stored studies of the inputs of a case: resolving power, and conditions of its values.
+
+Resolving power is the largest error of an input that the verdicts let pass. Conditions are the changes of the values by
+inputs that are not traced, or that publications leave open. Drivers in `verification/tables` write both.
+"""
+
+import datetime
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import Field
+
+from pantocheck.conformance.cases.limits import QuantityName
+from pantocheck.conformance.core.sourced_table import InputTable, NonNegative
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.library_folder import library_folder
+
+FOLDERS = {"resolving-power": "resolving power", "conditions": "conditions"}
+"""Folders of the files in the library; the path below them is the id of the case."""
+
+Text = Annotated[str, Field(min_length=1, max_length=1000)]
+
+
+class InputStudyFile(InputTable):
+    """Head of a stored study."""
+
+    case: Annotated[str, Field(max_length=200)]
+    """Id of the case."""
+    case_digest: Annotated[str, Field(max_length=100)]
+    """Digest of the inputs of the case."""
+    limits_digest: Annotated[str, Field(max_length=100)]
+    """Digest of the limits of the case."""
+    date: datetime.date
+    """Day of the computation."""
+    command: Text
+    """Command that writes the file."""
+
+
+class ErrorBound(InputTable):
+    """First change of a verdict when the error of an input grows from zero."""
+
+    passed: NonNegative
+    """Largest error below which every tried error passes."""
+    noticed: NonNegative | None = None
+    """Smallest tried error that does not pass; none: every error up to `passed` passes."""
+    by: str = ""
+    """Quantities or check that notice it."""
+
+
+class InputBounds(InputTable):
+    """Errors of one input that pass, upwards and downwards."""
+
+    name: Text
+    group: Text
+    unit: Text
+    """Unit of the errors; %: relative to the value of the case."""
+    not_applicable: str | None = None
+    """Reason why the case does not support an error of this input."""
+    up: ErrorBound | None = None
+    """Larger values, by both verdicts."""
+    down: ErrorBound | None = None
+    """Smaller values, by both verdicts."""
+    up_criteria: ErrorBound | None = None
+    """Larger values, by the EN 50318 criteria alone; none: no limit counts."""
+    down_criteria: ErrorBound | None = None
+    """Smaller values, by the EN 50318 criteria alone; none: no limit counts."""
+
+
+class ResolvingPowerFile(InputStudyFile):
+    """Content of a file of the resolving power of a case."""
+
+    schema_: Annotated[Literal["pantocheck.resolving-power/1"], Field(alias="schema")]
+    rule: Literal["simple"]
+    """Decision rule of the criteria."""
+    processor_s: NonNegative
+    """Processor time of the computation [s]."""
+    input: Annotated[tuple[InputBounds, ...], Field(strict=False, max_length=200)] = ()
+
+
+class ValueChange(InputTable):
+    """Change of a quantity by a changed input."""
+
+    quantity: QuantityName
+    pantograph: Annotated[int, Field(ge=0, le=20)]
+    """Number of the pantograph, from 1; 0 for the line."""
+    change_pct: float
+    """Change relative to the value with the inputs of the case [%]."""
+
+
+class Condition(InputTable):
+    """Changed input, and its effect."""
+
+    name: Text
+    not_applicable: str | None = None
+    """Reason why the case does not support this change."""
+    change: Annotated[tuple[ValueChange, ...], Field(strict=False, max_length=100)] = ()
+
+
+class ConditionsFile(InputStudyFile):
+    """Content of a file of the conditions of a case."""
+
+    schema_: Annotated[Literal["pantocheck.conditions/1"], Field(alias="schema")]
+    condition: Annotated[tuple[Condition, ...], Field(strict=False, max_length=200)] = ()
+
+
+F = TypeVar("F", ResolvingPowerFile, ConditionsFile)
+
+
+def find_resolving_power(case_id: str) -> ResolvingPowerFile | None:
+    """Resolving power of a library case; None if it was not computed."""
+    return _read_folder("resolving-power", ResolvingPowerFile).get(case_id)
+
+
+def find_conditions(case_id: str) -> ConditionsFile | None:
+    """Conditions of the values of a library case; None if they were not computed."""
+    return _read_folder("conditions", ConditionsFile).get(case_id)
+
+
+@cache
+def _read_folder(folder: str, model: type[F]) -> dict[str, F]:
+    files = (read_study(path, model) for path in sorted((library_folder() / folder).rglob("*.toml")))
+    return {file.case: file for file in files}
+
+
+def read_study(path: Path, model: type[F]) -> F:
+    """Read the file of a study; InputError if it is invalid."""
+    return read_model(path, model, "input study")

@@ -1,0 +1,122 @@
+"""Conditions of the values of the library cases: their changes by inputs that are not traced or left open.
+
+python -m verification.tables.input_conditions [CASE ...] [--out reference_cases/conditions]
+
+The uplift force of a case
+with a mean force is tuned anew for every change.
+"""
+
+import argparse
+import datetime
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_studies import Condition, ValueChange
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.files import write_atomically
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.grading.case_identity import limits_digest
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.runs.case_run import PassageRun
+from pantocheck.model.description.failures import SimulationError
+from verification.tables.input_variations import (
+    NotApplicable,
+    apply_choice,
+    list_changes,
+    load_varied,
+    read_variations,
+    simulate_varied,
+)
+from verification.tables.resolving_power import CASES
+
+OUT = Path("reference_cases/conditions")
+COMMAND = "python -m verification.tables.input_conditions"
+QUANTITIES = (
+    "std_force_N",
+    "rms_0_5_N",
+    "rms_5_20_N",
+    "rms_20_50_N",
+    "max_force_N",
+    "min_force_N",
+    "max_uplift_at_support_mm",
+)
+"""Quantities of the tables; the mean force is tuned in most cases."""
+Values = dict[tuple[int, str], float]
+"""Values by pantograph, 0 for the line, and quantity."""
+
+
+def evaluate(case: Case, passage: PassageRun) -> Values:
+    """Quantities of a passage."""
+    found = RecordSignals(passage.record, case.file.filter, case.line.geometry.supports).evaluation.values
+    return {(owner, name): float(found[owner][name]) for owner in found for name in QUANTITIES if name in found[owner]}
+
+
+def measure_conditions(case: Case) -> Iterator[Condition]:
+    """Effects of all tabled errors and choices on a case, those that it does not support included."""
+    own = evaluate(case, simulate_varied(case))
+    for item in read_variations().input:
+        for error in item.conditions:
+            name = f"{item.name} {error:+g} {item.unit}"
+            try:
+                varied = load_varied(case, list_changes(case, item, error))
+            except (NotApplicable, InputError) as problem:
+                yield Condition(name=name, not_applicable=" ".join(str(problem).split()))
+                continue
+            yield compare(name, own, evaluate(varied, simulate_varied(varied)))
+    for choice in read_variations().choice:
+        try:
+            yield compare(choice.name, own, evaluate(case, apply_choice(case, choice)))
+        except (NotApplicable, SimulationError) as problem:
+            yield Condition(name=choice.name, not_applicable=" ".join(str(problem).split()))
+
+
+def compare(name: str, own: Values, changed: Values) -> Condition:
+    """Change of every value relative to that with the inputs of the case."""
+    changes = {key: round(100 * (changed[key] - value) / abs(value), 2) for key, value in own.items()}
+    rows = (ValueChange(quantity=name, pantograph=owner, change_pct=pct) for (owner, name), pct in changes.items())
+    return Condition(name=name, change=tuple(rows))
+
+
+def write_file(case: Case, conditions: Sequence[Condition]) -> str:
+    """Content of the file of a case."""
+    lines = [
+        f"# Written by {COMMAND}; do not edit.",
+        'schema = "pantocheck.conditions/1"',
+        f'case = "{case.id}"',
+        f'case_digest = "{case.digest}"',
+        f'limits_digest = "{limits_digest(case.limits)}"',
+        f"date = {datetime.datetime.now(tz=datetime.UTC).date()}",
+        f'command = "{COMMAND} {case.id}"',
+    ]
+    for condition in conditions:
+        lines += ["", "[[condition]]", f"name = {json.dumps(condition.name)}"]
+        if condition.not_applicable is not None:
+            lines.append(f"not_applicable = {json.dumps(condition.not_applicable)}")
+        else:
+            rows = (row.model_dump().items() for row in condition.change)
+            tables = (", ".join(f"{key} = {json.dumps(value)}" for key, value in row) for row in rows)
+            lines += ["change = [", *(f"  {{ {table} }}," for table in tables), "]"]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Compute and store."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
+    options.add_argument("--out", type=Path, default=OUT, help="folder to write to")
+    chosen = options.parse_args()
+    known = {case.id: case for case in select_cases(chosen.cases)}
+    for name in chosen.cases:
+        conditions = []
+        for condition in measure_conditions(known[name]):
+            print(name, condition, flush=True)
+            conditions.append(condition)
+        path = chosen.out / f"{name}.toml"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, write_file(known[name], conditions).encode())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,185 @@
+"""Resolving power of the library cases: the largest error of each input that still passes.
+
+python -m verification.tables.resolving_power [CASE ...] [--out reference_cases/resolving-power] [--longest 3600]
+
+The error grows from zero in doubling steps until a verdict changes, and the first change is bisected. Larger errors may
+pass again. An input is stored as soon as it is finished; a second call continues. The uplift force of a case with a
+mean force is tuned anew for every error.
+"""
+
+import argparse
+import datetime
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.input_studies import ErrorBound, InputBounds, ResolvingPowerFile, read_study
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.files import write_atomically
+from pantocheck.conformance.core.trust import decides_verdict
+from pantocheck.conformance.grading.case_identity import limits_digest
+from verification.tables.input_variations import (
+    TRUST,
+    CaseInput,
+    Grade,
+    NotApplicable,
+    grade_error,
+    grade_record,
+    read_variations,
+    simulate_varied,
+)
+
+CASES = (
+    "en50318-2002/250",
+    "en50318-2002/300",
+    "en50318-2018/ac-simple/320",
+    "en50318-2018/ac-simple/275",
+    "en50318-2018/ac-simple/320-twin",
+    "en50318-2018/ac-simple/275-twin",
+    "en50318-2018/ac-stitched/320",
+    "en50318-2018/ac-stitched/275",
+)
+"""Cases with counted limits or a converged solution, the cheapest first."""
+OUT = Path("reference_cases/resolving-power")
+COMMAND = "python -m verification.tables.resolving_power"
+PRECISION = 0.1
+"""Width of the bracket of a change, relative to its larger end; for small errors, to the first error."""
+DOWN_PCT = 90.0
+"""Largest relative error downwards, for inputs that cannot be zero."""
+
+
+def find_first_change(
+    grade: Callable[[float], Grade], passes: Callable[[Grade], bool], first: float, largest: float
+) -> ErrorBound:
+    """First change of a verdict when the error grows from zero.
+
+    Args:
+        grade: Grade of an error.
+        passes: Whether a grade lets a record pass.
+        first: First error of the outward search.
+        largest: Largest error of the search.
+
+    Returns:
+        Bracket of the change.
+    """
+    passed, error = 0.0, min(first, largest)
+    try:
+        while passes(grade(error)):
+            passed = error
+            if error >= largest:
+                return ErrorBound(passed=passed)
+            error = min(2 * error, largest)
+    except NotApplicable:
+        if not passed:
+            raise
+        return ErrorBound(passed=passed)
+    while error - passed > PRECISION * max(error, first):
+        middle = (passed + error) / 2
+        passed, error = (middle, error) if passes(grade(middle)) else (passed, middle)
+    return ErrorBound(passed=passed, noticed=error, by=grade(error).reason)
+
+
+def measure_input(case: Case, item: CaseInput) -> InputBounds:
+    """Errors of an input that pass, both ways, by both verdicts and by the criteria alone."""
+    kept: dict[float, Grade] = {}
+
+    def grade(sign: float, error: float) -> Grade:
+        if sign * error not in kept:
+            kept[sign * error] = grade_error(case, item, sign * error)
+        return kept[sign * error]
+
+    down = item.largest_down or (DOWN_PCT if item.shift is None else item.largest)
+    bounds: dict[str, ErrorBound] = {}
+    reasons = []
+    for name, sign, largest in (("up", 1.0, item.largest), ("down", -1.0, down)):
+        search = partial(find_first_change, partial(grade, sign), first=item.first, largest=largest)
+        try:
+            bounds[name] = search(lambda found: found.passes)
+            if any(decides_verdict(limit.trust, TRUST) for limit in case.limits):
+                bounds[f"{name}_criteria"] = name_criteria(search(lambda found: found.passes_criteria))
+        except NotApplicable as problem:
+            reasons.append(str(problem))
+    reason = {} if bounds else {"not_applicable": reasons[0]}
+    return InputBounds(name=item.name, group=item.group, unit=item.unit, **reason, **bounds)
+
+
+def name_criteria(bound: ErrorBound) -> ErrorBound:
+    """Bound by the criteria alone: without the quantities that only the verification limits."""
+    names = [name for name in bound.by.split(", ") if not name.endswith("(verification)")]
+    return bound.model_copy(update={"by": ", ".join(names)})
+
+
+def complete_file(case: Case, path: Path, longest: float, items: Sequence[CaseInput]) -> None:
+    """Measure the inputs that a file does not have yet; every finished input is stored.
+
+    Args:
+        case: Case.
+        path: File of its resolving power; a file of another version of the case is replaced.
+        longest: Longest processor time of the case [s].
+        items: Inputs.
+
+    Raises:
+        ValueError: The case does not pass with its own inputs.
+    """
+    done: list[InputBounds] = []
+    begin = time.process_time()
+    if path.is_file():
+        file = read_study(path, ResolvingPowerFile)
+        if (file.case_digest, file.limits_digest) == (case.digest, limits_digest(case.limits)):
+            done, begin = list(file.input), begin - file.processor_s
+    if not done and not (own := grade_record(case, simulate_varied(case))).passes:
+        raise ValueError(f"{case.id} does not pass with its own inputs: {own.reason}")
+    for item in items:
+        if item.name in {bounds.name for bounds in done} or time.process_time() - begin > longest:
+            continue
+        done.append(measure_input(case, item))
+        print(f"{time.process_time() - begin:.0f} s  {case.id}  {done[-1]}", flush=True)
+        order = [each.name for each in items]
+        done.sort(key=lambda bounds: order.index(bounds.name))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, write_file(case, done, time.process_time() - begin).encode())
+
+
+def write_file(case: Case, done: Sequence[InputBounds], processor_s: float) -> str:
+    """Content of the file of a case."""
+    head = (
+        f"# Written by {COMMAND}; do not edit.",
+        'schema = "pantocheck.resolving-power/1"',
+        f'case = "{case.id}"',
+        f'case_digest = "{case.digest}"',
+        f'limits_digest = "{limits_digest(case.limits)}"',
+        f"date = {datetime.datetime.now(tz=datetime.UTC).date()}",
+        f'command = "{COMMAND} {case.id}"',
+        'rule = "simple"',
+        f"processor_s = {processor_s:.0f}.0",
+    )
+    return "\n".join([*head, *(line for bounds in done for line in _write_input(bounds))]) + "\n"
+
+
+def _write_input(bounds: InputBounds) -> Iterator[str]:
+    yield from ("", "[[input]]")
+    for key, value in bounds.model_dump(exclude_none=True).items():
+        if isinstance(value, dict):
+            parts = (f"{name} = {json.dumps(part)}" for name, part in value.items() if part != "")
+            yield f"{key} = {{ {', '.join(parts)} }}"
+        else:
+            yield f"{key} = {json.dumps(value)}"
+
+
+def main() -> None:
+    """Measure and store."""
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
+    options.add_argument("--out", type=Path, default=OUT, help="folder to write to")
+    options.add_argument("--longest", type=float, default=3600.0, help="longest processor time of a case [s]")
+    chosen = options.parse_args()
+    known = {case.id: case for case in select_cases(chosen.cases)}
+    for name in chosen.cases:
+        complete_file(known[name], chosen.out / f"{name}.toml", chosen.longest, read_variations().input)
+
+
+if __name__ == "__main__":
+    main()
