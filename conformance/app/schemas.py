@@ -15,6 +15,7 @@ from pydantic_core import core_schema
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile
 from pantocheck.conformance.cases.case_file import CaseFile
 from pantocheck.conformance.cases.converged_file import ConvergedFile
+from pantocheck.conformance.cases.input_studies import ConditionsFile, ResolvingPowerFile
 from pantocheck.conformance.cases.limits import LimitsFile
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
@@ -66,8 +67,10 @@ READ_FORMATS: dict[str, type[BaseModel]] = {
     **USER_FORMATS,
     "converged": ConvergedFile,
     "model-uncertainty": ModelUncertaintyFile,
+    "resolving-power": ResolvingPowerFile,
+    "conditions": ConditionsFile,
 }
-"""TOML files that users write, and the converged values and model uncertainties of the library."""
+"""TOML files that users write, and those of computed values of the library."""
 
 WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
     "results": Results,

@@ -29,8 +29,6 @@ class InputStudyFile(InputTable):
     """Id of the case."""
     case_digest: Annotated[str, Field(max_length=100)]
     """Digest of the inputs of the case."""
-    limits_digest: Annotated[str, Field(max_length=100)]
-    """Digest of the limits of the case."""
     date: datetime.date
     """Day of the computation."""
     command: Text
@@ -71,6 +69,8 @@ class ResolvingPowerFile(InputStudyFile):
     """Content of a file of the resolving power of a case."""
 
     schema_: Annotated[Literal["pantocheck.resolving-power/1"], Field(alias="schema")]
+    limits_digest: Annotated[str, Field(max_length=100)]
+    """Digest of the limits of the case."""
     rule: Literal["simple"]
     """Decision rule of the criteria."""
     processor_s: NonNegative

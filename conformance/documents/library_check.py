@@ -27,6 +27,7 @@ from pantocheck.conformance.grading.case_verification import (
     verification_digest,
 )
 from pantocheck.conformance.grading.criterion_grading import criterion_name
+from pantocheck.conformance.grading.input_sensitivity import list_possible_sentences
 from pantocheck.conformance.grading.validity_warnings import validity_warnings, warn_of_unvalidated_band
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
@@ -110,6 +111,10 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     others = [fact.name for fact in expected.derived if fact not in result.derived]
     if others:
         yield f"derived values differ from those of the library: {', '.join(others)}"
+    if result.conditions not in ([], expected.conditions):
+        yield "the conditions of the values differ from those of the library"
+    if not set(result.input_studies) <= list_possible_sentences(case):
+        yield "the sentences on errors of the inputs differ from those of the library"
     if not set(case.notes) <= set(result.notes):
         yield "a note of the library case is missing"
     if result.changes:

@@ -17,6 +17,7 @@ from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.case_verification import verify_evaluation, verify_ungraded
 from pantocheck.conformance.grading.contact_loss_list import build_contact_losses, find_force_places, find_uplift_place
 from pantocheck.conformance.grading.derived_facts import list_derived_facts, list_input_values, list_law_forces
+from pantocheck.conformance.grading.input_sensitivity import describe_studies, list_conditions
 from pantocheck.conformance.grading.reading_grades import evaluate_readings, mark_readings
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.grading.validity_warnings import extended_band_warnings, validity_warnings
@@ -139,6 +140,8 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "title": file.title,
             "notes": [*case.notes, *delivered.notes, *notes],
             "model_uncertainty": list(delivered.model_uncertainty),
+            "conditions": list_conditions(case),
+            "input_studies": describe_studies(case),
             "inputs": _list_inputs(case),
             "derived": list_derived_facts(case, delivered.uplift_forces),
             "line_shape": delivered.line_shape,

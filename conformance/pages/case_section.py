@@ -10,6 +10,7 @@ from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
+from pantocheck.conformance.pages.condition_sections import build_condition_section, condition_blocks, mark_values
 from pantocheck.conformance.pages.criteria_table import criteria_blocks, reference_note
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
@@ -62,6 +63,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     changes = [f"{text}."] if (text := describe_changes(case)) else []
     warnings = (*changes, *(f"Limits file: {change}." for change in case.limit_changes), *case.warnings)
     blocks += doc.warn(warnings)
+    blocks += condition_blocks(case)
     blocks += reference_note(case)
     if criteria := list_criteria(case, "criteria"):
         table = criteria_blocks(criteria, anchor, f"{anchor}-source", case)
@@ -74,7 +76,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     blocks += (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
     blocks += [doc.Section(table.caption, (_study_table(case, table),)) for table in _select_tables(case)]
     blocks += _list_details(shown)
-    return doc.Section(case.title, tuple(blocks), anchor=anchor, ruled=True)
+    return doc.Section(case.title, mark_values(case, blocks), anchor=anchor, ruled=True)
 
 
 def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
@@ -87,6 +89,7 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
         yield doc.Section("All quantities", (quantities,), folded=True)
     if case.uncertainty_basis:
         yield doc.Section("Uncertainty by component", uncertainty_blocks(case), folded=True)
+    yield from build_condition_section(case)
     if skipped := list_skipped(case):
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)
     if notes := _list_notes(shown):

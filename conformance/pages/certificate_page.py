@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_section import ShownCase, build_case_section, list_shown_cases
+from pantocheck.conformance.pages.condition_sections import condition_blocks, mark_values
 from pantocheck.conformance.pages.criteria_table import (
     MARGIN_KEY,
     NO_BASIS,
@@ -220,6 +221,7 @@ def _build_case_summary(case: CaseResult) -> doc.Section:
     if record := describe_record(case):
         blocks.append(doc.Paragraph(record))
     blocks += doc.warn(case.warnings)
+    blocks += condition_blocks(case)
     if criteria := list_criteria(case, "criteria"):
         blocks += [
             _build_summary_table(criteria, case.uncertainty_basis),
@@ -234,7 +236,7 @@ def _build_case_summary(case: CaseResult) -> doc.Section:
         blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
         if drifts := list_criteria(case, "baseline"):
             blocks.append(_build_summary_table(drifts, case.uncertainty_basis))
-    return doc.Section(f"{name_verdict(case.verdict)}: {case.title}", tuple(blocks))
+    return doc.Section(f"{name_verdict(case.verdict)}: {case.title}", mark_values(case, blocks))
 
 
 def _build_summary_table(criteria: Sequence[Criterion], basis: Basis = NO_BASIS) -> doc.Table:

@@ -34,6 +34,16 @@ class DerivedFact(ResultsPart):
     """Inputs or formula from which the value follows."""
 
 
+class ConditionFacts(ResultsPart):
+    """Input that is not traced or left open, and the changes of the values by another one."""
+
+    name: str
+    not_applicable: str | None = None
+    """Reason why the case does not support this change."""
+    changes: dict[Owner, dict[str, FiniteNumber]] = {}
+    """Changes by owner and quantity, relative to the value with the inputs of the case [%]."""
+
+
 class StoredRange(ResultsPart):
     """Number of the values of a long list, and their range."""
 

@@ -28,6 +28,7 @@ from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.case_facts_format import (
     BaselineComparison,
+    ConditionFacts,
     ContactLossFacts,
     DerivedFact,
     EventFacts,
@@ -149,6 +150,11 @@ UncertaintyComponents = dict[Owner, dict[str, dict[ComponentName, Number]]]
 """Half-widths by owner, name of the quantity and component."""
 
 
+def is_empty(value: object) -> bool:
+    """Whether a list has no item: its key is missing in the file then."""
+    return value == []
+
+
 class CaseResult(ResultsPart):
     """Result of one case. Keys of `quantities`, `skipped` and `traces` are the pantographs; `0` is the line.
 
@@ -196,7 +202,7 @@ class CaseResult(ResultsPart):
     conformity: CaseConformity | None = None
     """Probability that all counted values lie inside their limits; null: no value has a joint sample."""
     quantities: Quantities
-    readings: Annotated[list[ReadingFacts], Field(exclude_if=lambda readings: not readings)] = []
+    readings: Annotated[list[ReadingFacts], Field(exclude_if=is_empty)] = []
     """Values under the other documented readings of the case; missing: it documents none, or there is no record."""
     skipped: dict[Owner, dict[str, str]]
     spread: Annotated[dict[Owner, dict[str, float]], Field(default_factory=dict)]
@@ -215,6 +221,10 @@ class CaseResult(ResultsPart):
     """Place of each extreme, as in `quantities`."""
     model_uncertainty: list[str] = []
     """Effects that the equations of the system leave out, with sizes; not part of `uncertainty`."""
+    conditions: Annotated[list[ConditionFacts], Field(exclude_if=is_empty)] = []
+    """Changes of the values by inputs that are not traced or left open; missing: not computed for this case."""
+    input_studies: Annotated[list[str], Field(exclude_if=is_empty)] = []
+    """Sentences on errors of single inputs that the verdicts notice; missing: not computed for this case."""
     record: RecordFacts | None = None
     """Null without a record: line at rest, mass drop, or a study of several runs."""
     run: RunFacts

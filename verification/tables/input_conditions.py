@@ -17,7 +17,6 @@ from pantocheck.conformance.cases.input_studies import Condition, ValueChange
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import PassageRun
 from pantocheck.model.description.failures import SimulationError
@@ -86,7 +85,6 @@ def write_file(case: Case, conditions: Sequence[Condition]) -> str:
         'schema = "pantocheck.conditions/1"',
         f'case = "{case.id}"',
         f'case_digest = "{case.digest}"',
-        f'limits_digest = "{limits_digest(case.limits)}"',
         f"date = {datetime.datetime.now(tz=datetime.UTC).date()}",
         f'command = "{COMMAND} {case.id}"',
     ]

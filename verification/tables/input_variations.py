@@ -122,7 +122,7 @@ def list_changes(case: Case, item: CaseInput, error: float) -> tuple[InputChange
         raise NotApplicable("the value of the case is zero")
     varied = [(key, _vary(value, item, error)) for key, value in stated]
     if item.least is not None and any(isinstance(value, float) and value < item.least for _, value in varied):
-        raise NotApplicable(f"the value would be less than {item.least:g} {item.unit}")
+        raise NotApplicable(f"the value cannot be below {item.least:g} {item.unit}")
     return tuple(build_change(key, value) for key, value in varied)
 
 
