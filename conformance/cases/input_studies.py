@@ -43,7 +43,7 @@ class ErrorBound(InputTable):
     noticed: NonNegative | None = None
     """Smallest tried error that does not pass; none: every error up to `passed` passes."""
     by: str = ""
-    """Quantities or check that notice it."""
+    """Quantities or check that notice it; without `noticed`, the reason why no larger error can be tried."""
 
 
 class InputBounds(InputTable):

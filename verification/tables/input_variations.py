@@ -194,16 +194,16 @@ def grade_error(case: Case, item: CaseInput, error: float) -> Grade:
         error: Error of the input [unit of the input].
 
     Returns:
-        Verdicts; `error` if the simulation is not possible.
+        Verdicts.
 
     Raises:
-        NotApplicable: The case does not have the input.
+        NotApplicable: The case does not have the input, or no simulation with this error is possible.
     """
     changes = list_changes(case, item, error)
     try:
         passage = simulate_varied(load_varied(case, changes))
     except (InputError, SimulationError) as problem:
-        return Grade("error", "error", f"no simulation: {problem}")
+        raise NotApplicable(f"no simulation: {' '.join(str(problem).split())}") from problem
     return grade_record(case, passage)
 
 

@@ -63,7 +63,7 @@ def find_first_change(
         largest: Largest error of the search.
 
     Returns:
-        Bracket of the change.
+        Bracket of the change; without a change, `by` is the reason why no larger error can be tried.
     """
     passed, error = 0.0, min(first, largest)
     try:
@@ -72,10 +72,10 @@ def find_first_change(
             if error >= largest:
                 return ErrorBound(passed=passed)
             error = min(2 * error, largest)
-    except NotApplicable:
+    except NotApplicable as problem:
         if not passed:
             raise
-        return ErrorBound(passed=passed)
+        return ErrorBound(passed=passed, by=str(problem))
     while error - passed > PRECISION * max(error, first):
         middle = (passed + error) / 2
         passed, error = (middle, error) if passes(grade(middle)) else (passed, middle)
@@ -163,7 +163,8 @@ def _write_input(bounds: InputBounds) -> Iterator[str]:
     yield from ("", "[[input]]")
     for key, value in bounds.model_dump(exclude_none=True).items():
         if isinstance(value, dict):
-            parts = (f"{name} = {json.dumps(part)}" for name, part in value.items() if part != "")
+            rounded = {name: float(f"{part:.6g}") if isinstance(part, float) else part for name, part in value.items()}
+            parts = (f"{name} = {json.dumps(part)}" for name, part in rounded.items() if part != "")
             yield f"{key} = {{ {', '.join(parts)} }}"
         else:
             yield f"{key} = {json.dumps(value)}"
