@@ -9,6 +9,7 @@ from site_pages.contributing_page import build_contributing_page
 from site_pages.converged_pages import build_converged_page
 from site_pages.format_pages import build_format_page
 from site_pages.guide_tables import build_guide_counts
+from site_pages.input_tables import build_condition_table, build_power_table
 from site_pages.interface_pages import build_interface_page
 from site_pages.page_list import build_page_list
 from site_pages.picture_folder import keep_pictures
@@ -32,7 +33,13 @@ PAGES = {
 }
 """Builder of each page by its name."""
 
-TABLES = {"guide-counts": build_guide_counts, "limit-trust": build_trust_table, "record-checks": build_check_table}
+TABLES = {
+    "conditions": build_condition_table,
+    "guide-counts": build_guide_counts,
+    "limit-trust": build_trust_table,
+    "record-checks": build_check_table,
+    "resolving-power": build_power_table,
+}
 """Builder of each table that a written page includes."""
 
 TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))

@@ -32,6 +32,8 @@ def test_kinds_of_the_library_are_recognised() -> None:
         "mass-drop-line/line.toml": "line", "vovan2015/damping/updated.toml": "damping",
         "profiles/line-test.toml": "profile", "en50318-2002/known-passing-code/250.toml": "summary",
         "converged/en50318-2002/250.toml": "converged", "model_uncertainty.toml": "model-uncertainty",
+        "resolving-power/en50318-2002/250.toml": "resolving-power",
+        "conditions/en50318-2002/250.toml": "conditions",
     }.items():  # fmt: skip
         assert recognise_toml(read_toml(library_folder() / name, "file"), name) == kind
 

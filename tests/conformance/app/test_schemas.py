@@ -14,11 +14,11 @@ from pantocheck.conformance.app.schemas import FORMAT_NAMES, USER_FORMATS, build
 from pantocheck.conformance.line.library_folder import library_folder
 
 FOLDER = library_folder() / "schema"
-COMPUTED = library_folder() / "converged"
+COMPUTED = {library_folder() / name for name in ("converged", "resolving-power", "conditions")}
 LIBRARY = [
     path
     for path in library_folder().rglob("*.toml")
-    if path.name not in ("sources.toml", "model_uncertainty.toml") and COMPUTED not in path.parents
+    if path.name not in ("sources.toml", "model_uncertainty.toml") and COMPUTED.isdisjoint(path.parents)
 ]
 
 
