@@ -19,7 +19,7 @@ from pantocheck.conformance.line.library_folder import library_folder
 FOLDERS = {"resolving-power": "resolving power", "conditions": "conditions"}
 """Folders of the files in the library; the path below them is the id of the case."""
 
-Text = Annotated[str, Field(min_length=1, max_length=1000)]
+StudyText = Annotated[str, Field(min_length=1, max_length=1000)]
 
 
 class InputStudyFile(InputTable):
@@ -31,7 +31,7 @@ class InputStudyFile(InputTable):
     """Digest of the inputs of the case."""
     date: datetime.date
     """Day of the computation."""
-    command: Text
+    command: StudyText
     """Command that writes the file."""
 
 
@@ -49,9 +49,9 @@ class ErrorBound(InputTable):
 class InputBounds(InputTable):
     """Errors of one input that pass, upwards and downwards."""
 
-    name: Text
-    group: Text
-    unit: Text
+    name: StudyText
+    group: StudyText
+    unit: StudyText
     """Unit of the errors; %: relative to the value of the case."""
     not_applicable: str | None = None
     """Reason why the case does not support an error of this input."""
@@ -88,10 +88,10 @@ class ValueChange(InputTable):
     """Change relative to the value with the inputs of the case [%]."""
 
 
-class Condition(InputTable):
+class ValueCondition(InputTable):
     """Changed input, and its effect."""
 
-    name: Text
+    name: StudyText
     not_applicable: str | None = None
     """Reason why the case does not support this change."""
     change: Annotated[tuple[ValueChange, ...], Field(strict=False, max_length=100)] = ()
@@ -101,7 +101,7 @@ class ConditionsFile(InputStudyFile):
     """Content of a file of the conditions of a case."""
 
     schema_: Annotated[Literal["pantocheck.conditions/1"], Field(alias="schema")]
-    condition: Annotated[tuple[Condition, ...], Field(strict=False, max_length=200)] = ()
+    condition: Annotated[tuple[ValueCondition, ...], Field(strict=False, max_length=200)] = ()
 
 
 F = TypeVar("F", ResolvingPowerFile, ConditionsFile)

@@ -85,7 +85,7 @@ def _list_noticed(rows: Sequence[InputBounds], up: str, down: str) -> Iterator[s
     for row in rows:
         bounds: list[tuple[str, ErrorBound | None]] = [("−", getattr(row, down)), ("+", getattr(row, up))]
         noticed = [
-            f"{sign}{round_up(bound.noticed)} {row.unit}"
+            f"{sign}{format_ceiling(bound.noticed)} {row.unit}"
             for sign, bound in bounds
             if bound is not None and bound.noticed is not None
         ]
@@ -93,7 +93,7 @@ def _list_noticed(rows: Sequence[InputBounds], up: str, down: str) -> Iterator[s
             yield f"{row.name} wrong by {' or '.join(noticed)}"
 
 
-def round_up(error: float) -> str:
+def format_ceiling(error: float) -> str:
     """Error with two significant digits, not below it: a smaller one is not known to be noticed."""
     digit = 10.0 ** (math.floor(math.log10(error)) - 1)
     return f"{math.ceil(round(error / digit, 9)) * digit:.6g}"

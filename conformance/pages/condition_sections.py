@@ -19,7 +19,7 @@ from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
 CONDITIONED = "rms_20_50_N"
 """Quantity that depends on the contact spring more than on any other input."""
-MARK = "‡"
+BAND_MARK = "‡"
 """Mark of its values."""
 CONTACT = "contact stiffness"
 """Begin of the names of the conditions with another contact spring."""
@@ -41,7 +41,9 @@ def describe_condition(case: CaseResult) -> str:
     texts = dict.fromkeys(f"{_stiffness(group)}, {_describe_source(group)}" for group in springs)
     effects = [_describe_effect(case, name.name) for name in case.conditions if name.name.startswith(CONTACT)]
     effect = f" They change by {'; '.join(filter(None, effects))}." if any(effects) else ""
-    return f"{MARK} Values from 20 to 50 Hz are conditional on a contact spring of {' and of '.join(texts)}.{effect}"
+    return (
+        f"{BAND_MARK} Values from 20 to 50 Hz are conditional on a contact spring of {' and of '.join(texts)}.{effect}"
+    )
 
 
 def _stiffness(group: InputGroup) -> str:
@@ -123,5 +125,5 @@ def _mark_cell(cell: doc.RichText) -> doc.RichText:
     """First cell of a row; marked if it names the quantity."""
     parts = cell if isinstance(cell, tuple) else (cell,)
     if doc.Code(CONDITIONED) in parts or parts[0] == quantity_label(CONDITIONED):
-        return (parts[0], *parts[1:2], f" {MARK}", *parts[2:])
+        return (parts[0], *parts[1:2], f" {BAND_MARK}", *parts[2:])
     return cell

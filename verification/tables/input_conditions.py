@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.input_studies import Condition, ValueChange
+from pantocheck.conformance.cases.input_studies import ValueChange, ValueCondition
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
@@ -52,7 +52,7 @@ def evaluate(case: Case, passage: PassageRun) -> Values:
     return {(owner, name): float(found[owner][name]) for owner in found for name in QUANTITIES if name in found[owner]}
 
 
-def measure_conditions(case: Case) -> Iterator[Condition]:
+def measure_conditions(case: Case) -> Iterator[ValueCondition]:
     """Effects of all tabled errors and choices on a case, those that it does not support included."""
     own = evaluate(case, simulate_varied(case))
     for item in read_variations().input:
@@ -61,24 +61,24 @@ def measure_conditions(case: Case) -> Iterator[Condition]:
             try:
                 varied = load_varied(case, list_changes(case, item, error))
             except (NotApplicable, InputError) as problem:
-                yield Condition(name=name, not_applicable=" ".join(str(problem).split()))
+                yield ValueCondition(name=name, not_applicable=" ".join(str(problem).split()))
                 continue
             yield compare(name, own, evaluate(varied, simulate_varied(varied)))
     for choice in read_variations().choice:
         try:
             yield compare(choice.name, own, evaluate(case, apply_choice(case, choice)))
         except (NotApplicable, SimulationError) as problem:
-            yield Condition(name=choice.name, not_applicable=" ".join(str(problem).split()))
+            yield ValueCondition(name=choice.name, not_applicable=" ".join(str(problem).split()))
 
 
-def compare(name: str, own: Values, changed: Values) -> Condition:
+def compare(name: str, own: Values, changed: Values) -> ValueCondition:
     """Change of every value relative to that with the inputs of the case."""
     changes = {key: round(100 * (changed[key] - value) / abs(value), 2) for key, value in own.items()}
     rows = (ValueChange(quantity=name, pantograph=owner, change_pct=pct) for (owner, name), pct in changes.items())
-    return Condition(name=name, change=tuple(rows))
+    return ValueCondition(name=name, change=tuple(rows))
 
 
-def write_file(case: Case, conditions: Sequence[Condition]) -> str:
+def write_file(case: Case, conditions: Sequence[ValueCondition]) -> str:
     """Content of the file of a case."""
     lines = [
         f"# Written by {COMMAND}; do not edit.",

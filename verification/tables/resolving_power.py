@@ -1,6 +1,6 @@
 """Resolving power of the library cases: the largest error of each input that still passes.
 
-python -m verification.tables.resolving_power [CASE ...] [--out reference_cases/resolving-power] [--longest 3600]
+python -m verification.tables.resolving_power [CASE ...] [--inputs NAME ...] [--longest 3600]
 
 The error grows from zero in doubling steps until a verdict changes, and the first change is bisected. Larger errors may
 pass again. An input is stored as soon as it is finished; a second call continues. The uplift force of a case with a
@@ -137,7 +137,7 @@ def complete_file(case: Case, path: Path, longest: float, items: Sequence[CaseIn
             continue
         done.append(measure_input(case, item))
         print(f"{time.process_time() - begin:.0f} s  {case.id}  {done[-1]}", flush=True)
-        order = [each.name for each in items]
+        order = [each.name for each in read_variations().input]
         done.sort(key=lambda bounds: order.index(bounds.name))
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, write_file(case, done, time.process_time() - begin).encode())
@@ -175,11 +175,13 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
     options.add_argument("--out", type=Path, default=OUT, help="folder to write to")
+    options.add_argument("--inputs", nargs="*", metavar="NAME", help="inputs to measure; default: all")
     options.add_argument("--longest", type=float, default=3600.0, help="longest processor time of a case [s]")
     chosen = options.parse_args()
     known = {case.id: case for case in select_cases(chosen.cases)}
     for name in chosen.cases:
-        complete_file(known[name], chosen.out / f"{name}.toml", chosen.longest, read_variations().input)
+        items = [item for item in read_variations().input if item.name in (chosen.inputs or [item.name])]
+        complete_file(known[name], chosen.out / f"{name}.toml", chosen.longest, items)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from pantocheck.conformance.grading.input_sensitivity import (
     describe_power,
     describe_studies,
     list_conditions,
-    round_up,
+    format_ceiling,
 )
 
 HEAD = {"name": "mass of the head", "group": "pantograph", "unit": "%"}
@@ -53,7 +53,7 @@ def test_input_that_one_direction_reveals_is_not_called_missed() -> None:
     ("error", "text"), [(2.25, "2.3"), (2.2, "2.2"), (0.1875, "0.19"), (112.0, "120"), (18.0, "18")]
 )
 def test_noticed_error_is_never_rounded_down(error: float, text: str) -> None:
-    assert round_up(error) == text
+    assert format_ceiling(error) == text
     assert float(text) >= error
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from helpers.shown_page import certify, summarise
 from pantocheck.conformance.pages.condition_sections import (
-    MARK,
+    BAND_MARK,
     build_condition_section,
     describe_condition,
     mark_values,
@@ -72,14 +72,14 @@ def list_rows(block: Any) -> list[tuple[str, Any]]:
 
 def test_every_row_of_the_band_has_the_mark_and_no_other(conditioned: dict[str, Any]) -> None:
     cells = [cell for block in certify(conditioned).blocks for cell in list_rows(block) if isinstance(cell, tuple)]
-    marked = [cell for cell in cells if f" {MARK}" in cell]
+    marked = [cell for cell in cells if f" {BAND_MARK}" in cell]
     band = [cell for cell in cells if Code("rms_20_50_N") in cell]
     assert len(band) >= 3  # criteria or bands, all quantities, uncertainty
     assert marked == band
     summary = summarise(conditioned)
     rows = [line for line in summary.splitlines() if line.startswith("| RMS, 20–50 Hz")]
-    assert all(f"RMS, 20–50 Hz {MARK} |" in row for row in rows)
-    assert summary.count(f"{MARK} Values from 20 to 50 Hz") == 1
+    assert all(f"RMS, 20–50 Hz {BAND_MARK} |" in row for row in rows)
+    assert summary.count(f"{BAND_MARK} Values from 20 to 50 Hz") == 1
     assert "Resolving power: 5 %." in summary
 
 
