@@ -15,8 +15,8 @@ from pantocheck.conformance.grading.input_sensitivity import (
     NAMED_INPUTS,
     describe_power,
     describe_studies,
-    list_conditions,
     format_ceiling,
+    list_conditions,
 )
 
 HEAD = {"name": "mass of the head", "group": "pantograph", "unit": "%"}
