@@ -22,6 +22,7 @@ from pantocheck.conformance.app.commands.console import (
 )
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
+from pantocheck.conformance.pages.condition_sections import BAND_MARK, describe_condition
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_results
@@ -87,7 +88,8 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
     changes = [describe_changes(case)]
     changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
     warnings = (f"warning: {warning}" for warning in case.warnings if warning not in footnotes)
-    for line in filter(None, [case.reason, record, *changes, *warnings]):
+    condition = describe_condition(case).removeprefix(f"{BAND_MARK} ").replace("\N{MINUS SIGN}", "-")
+    for line in filter(None, [case.reason, record, *changes, *warnings, condition]):
         yield indent_text(line)
     criteria = [item for item in case.criteria if case.baseline is None or not item.is_drift]
     missing = list_unknown(case.uncertainty_basis)
