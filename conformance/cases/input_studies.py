@@ -1,7 +1,8 @@
 """Stored studies of the inputs of a case: resolving power, and conditions of its values.
 
 Resolving power is the largest error of an input that the verdicts let pass. Conditions are the changes of the values by
-inputs that are not traced, or that publications leave open. Drivers in `verification/tables` write both.
+inputs that are not traced, or that publications leave open. Drivers in `verification/tables` write both, into
+`resolving-power/` and `conditions/` of the library; the path below is the id of the case.
 """
 
 import datetime
@@ -15,9 +16,6 @@ from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.core.sourced_table import InputTable, NonNegative
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.library_folder import library_folder
-
-FOLDERS = {"resolving-power": "resolving power", "conditions": "conditions"}
-"""Folders of the files in the library; the path below them is the id of the case."""
 
 StudyText = Annotated[str, Field(min_length=1, max_length=1000)]
 
@@ -109,18 +107,18 @@ F = TypeVar("F", ResolvingPowerFile, ConditionsFile)
 
 def find_resolving_power(case_id: str) -> ResolvingPowerFile | None:
     """Resolving power of a library case; None if it was not computed."""
-    return _read_folder("resolving-power", ResolvingPowerFile).get(case_id)
+    return _find_study("resolving-power", ResolvingPowerFile, case_id)
 
 
 def find_conditions(case_id: str) -> ConditionsFile | None:
     """Conditions of the values of a library case; None if they were not computed."""
-    return _read_folder("conditions", ConditionsFile).get(case_id)
+    return _find_study("conditions", ConditionsFile, case_id)
 
 
 @cache
-def _read_folder(folder: str, model: type[F]) -> dict[str, F]:
-    files = (read_study(path, model) for path in sorted((library_folder() / folder).rglob("*.toml")))
-    return {file.case: file for file in files}
+def _find_study(folder: str, model: type[F], case_id: str) -> F | None:
+    path = library_folder() / folder / f"{case_id}.toml"
+    return read_study(path, model) if path.is_file() else None
 
 
 def read_study(path: Path, model: type[F]) -> F:

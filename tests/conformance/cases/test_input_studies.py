@@ -21,6 +21,9 @@ def test_stored_files_belong_to_the_present_cases() -> None:
     assert {"en50318-2002/250", "en50318-2002/300"} <= {file.case for file in powers}
     for file in (*powers, *conditions):
         assert file.case_digest == cases[file.case].digest, file.command
+    for name, folder in (("resolving-power", find_resolving_power), ("conditions", find_conditions)):
+        paths = [path.relative_to(library_folder() / name) for path in (library_folder() / name).rglob("*.toml")]
+        assert all(folder(str(path.with_suffix(""))).case == str(path.with_suffix("")) for path in paths)
     for file in powers:
         assert file.limits_digest == limits_digest(cases[file.case].limits), file.command
 
