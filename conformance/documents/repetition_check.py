@@ -9,8 +9,10 @@ from pathlib import Path
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import LIBRARY, Catalogue
 from pantocheck.conformance.cases.library import load_entry
+from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.core.table_sidecar import record_digest
@@ -22,10 +24,13 @@ from pantocheck.conformance.documents.authenticity_check import (
     judge_details,
 )
 from pantocheck.conformance.documents.document_reading import list_suite_differences
+from pantocheck.conformance.documents.recomputation import ROUNDING_OF_DRAWS
 from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
@@ -51,6 +56,8 @@ class RecomputedRecord:
     quantities: dict[str, dict[str, Number]]
     components: UncertaintyComponents
     state: RecordState | None
+    graded: CaseResult | None = None
+    """Case, graded again; None: an assessment by a profile."""
 
 
 def check_record_quantities(results: Results, path: Path, catalogue: Catalogue = LIBRARY) -> list[DocumentCheck]:
@@ -70,7 +77,7 @@ def check_record_quantities(results: Results, path: Path, catalogue: Catalogue =
     files = (sidecar, sidecar.parent / opened.file) if isinstance(opened, RecordSidecar) else (sidecar,)
     computed = _compute(result, results, sidecar, catalogue)
     return [
-        *_compare(result, computed, path.name),
+        *_compare(results, result, computed, path.name),
         *_name_others(result, computed),
         _check_digest(result, record_digest(*files), path),
     ]
@@ -81,8 +88,11 @@ def find_record_result(results: Results, path: Path) -> CaseResult:
     return _find_result(results, open_record(path).case, path)
 
 
-def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
-    """Compare quantities, the parts of their uncertainty that follow from the record, and its state."""
+def _compare(results: Results, result: CaseResult, computed: RecomputedRecord, name: str) -> Iterator[DocumentCheck]:
+    """Compare quantities, the parts of their uncertainty that follow from the record, and its state.
+
+    The joint samples of a folder of records follow from the record alone; those of other systems need further runs.
+    """
     stated = _list_values(result)
     pairs = (
         (_select(stated, computed.quantities), _select(computed.quantities, stated)),
@@ -90,6 +100,9 @@ def _compare(result: CaseResult, computed: RecomputedRecord, name: str) -> Itera
     )
     numbers, widths = (compare_numbers(*pair, RECORD_TOLERANCE) for pair in pairs)
     differences = [*numbers.differences, *(f"uncertainty, {text}" for text in widths.differences)]
+    if results.system.kind == "record" and computed.graded is not None:
+        samples = compare_numbers(_select_samples(result), _select_samples(computed.graded), ROUNDING_OF_DRAWS)
+        differences += samples.differences
     if computed.state is not None and result.record is not None and result.record.state != computed.state:
         differences.append(f"state of the record '{result.record.state}' stated, '{computed.state}' computed")
     largest = max(numbers.largest, widths.largest)
@@ -164,10 +177,41 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
         hint = "Give the folder of the case by --cases, or install the distribution that offers it."
         raise InputError(f"record '{sidecar.name}'", f"{result.id} is not in the installed library", hint)
     system = RecordFolder(results.system.name, results.system.version, ((result.id, sidecar),))
-    case = load_entry(entry)
-    graded = grade_case(case, system.run(case), results.trust)
+    case = _add_own_limits(load_entry(entry), result)
+    graded = grade_case(
+        case, system.run(case), results.trust, parse_decision(results.decision, "results, key decision")
+    )
     state = None if graded.record is None else graded.record.state
-    return RecomputedRecord(_list_values(graded), graded.uncertainty_components, state)
+    return RecomputedRecord(_list_values(graded), graded.uncertainty_components, state, graded)
+
+
+def _add_own_limits(case: Case, stated: CaseResult) -> Case:
+    """Case with the limits of the user that a result states, so that its criteria are graded again."""
+    own = [row for row in stated.criteria if row.trust == "own" and row.quantity in QUANTITIES]
+    return case.with_limits(
+        tuple(
+            Limit.model_construct(
+                quantity=row.quantity,
+                pantograph=row.pantograph or None,
+                item=row.item,
+                lower=row.lower,
+                upper=row.upper,
+                trust="own",
+                source=row.source,
+            )
+            for row in own
+        )
+    )
+
+
+def _select_samples(result: CaseResult) -> NumberTree:
+    """Joint samples of the criteria, and the number of starts with all counted values inside their limits."""
+    verified = () if result.verification is None else result.verification.criteria
+    rows = {criterion_name(row): row.draws for row in result.criteria if not row.is_drift}
+    rows |= {f"verification, {criterion_name(row)}": row.draws for row in verified}
+    of = result.conformity
+    starts = {} if of is None else {"starts": of.starts, "starts that pass": of.passing_starts}
+    return {"joint sample": rows, "conformity": starts}
 
 
 def _list_values(result: CaseResult) -> dict[str, dict[str, Number]]:
@@ -235,9 +279,17 @@ def _rerun(
     case: Case, stated: CaseResult, results: Results, simulator: ReferenceSimulator, tolerance: float
 ) -> NumberComparison:
     with_study = add_damping_study(case) if stated.tables else case
-    result = run_case(with_study, simulator, results.trust)
+    rule = parse_decision(results.decision, "results, key decision")
+    result = run_case(_add_own_limits(with_study, stated), simulator, results.trust, rule)
     keys = (*NUMBER_PARTS, *(() if tolerance else TEXT_PARTS))
-    return compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance)
+    numbers = compare_numbers(_select_parts(stated, keys), _select_parts(result, keys), tolerance)
+    rounding = ROUNDING_OF_DRAWS if tolerance else 0.0
+    samples = compare_numbers(_select_samples(stated), _select_samples(result), rounding)
+    return NumberComparison(
+        numbers.count + samples.count,
+        max(numbers.largest, samples.largest),
+        (*samples.differences, *numbers.differences),
+    )
 
 
 def _select_parts(result: CaseResult, keys: Sequence[str]) -> NumberTree:

@@ -15,7 +15,7 @@ from pantocheck.conformance.documents.repetition_check import check_record_quant
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record_writing import write_record
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_format import Results, SystemIdentity
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 
@@ -100,6 +100,42 @@ def test_rerun_finds_a_change_of_one_bit(static_results: Results) -> None:
     [changed] = check_rerun(change_quantity(static_results, "elasticity_mm_N", 1 + 1e-12))
     assert changed.outcome == "contradicted"
     assert "quantities, 0, elasticity_mm_N" in changed.details[0]
+
+
+@pytest.mark.parametrize("place", ["draw", "passing_starts"])
+def test_rerun_contradicts_a_forged_probability(
+    wave_results: Results, place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A draw moved inside the limits, or a start said to pass, raises the probability of conformity."""
+    run = wave_results.cases[0]
+    monkeypatch.setattr(repetition_check, "run_case", lambda *_: run)
+    builtin = ReferenceSimulator()
+    system = SystemIdentity(name=builtin.name, version=builtin.version, kind=builtin.kind)
+    stated = wave_results.model_copy(update={"system": system, "cases": [run]})
+    [genuine], [forged] = check_rerun(stated), check_rerun(forge_probability(stated, place))
+    assert (genuine.outcome, forged.outcome) == ("proved", "contradicted")
+    name = "joint sample, mean_force_N of pantograph 1, value 1" if place == "draw" else "conformity, starts that pass"
+    assert name in " ".join(forged.details)
+
+
+@pytest.mark.parametrize("place", ["draw", "passing_starts"])
+def test_forged_probability_contradicts_the_record(case_250: Case, record_file: Path, place: str) -> None:
+    results = run_cases([case_250], open_record_folder(record_file.parent))
+    quantities, _ = check_record_quantities(forge_probability(results, place), record_file)
+    assert quantities.outcome == "contradicted"
+    assert all(text.startswith(("joint sample", "conformity")) for text in quantities.details)
+
+
+def forge_probability(results: Results, place: str) -> Results:
+    """Results with another first draw of the mean force, or with one more start that passes."""
+    content = results.to_dict()
+    case = content["cases"][0]
+    if place == "draw":
+        case["criteria"][0]["draws"][0] += 0.5
+    else:
+        case["conformity"]["starts"] += 1
+        case["conformity"]["passing_starts"] += 1
+    return Results.model_validate(content)
 
 
 @pytest.mark.parametrize("key", ["machine", "numba"])
