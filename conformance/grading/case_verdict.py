@@ -69,6 +69,15 @@ class Participation:
             if case not in self.information
         )
 
+    def judge_cases(self, cases: Sequence[CaseResult], system: str) -> Verdict:
+        """Verdict of a run from the verdicts of its cases.
+
+        An accepted record does not replace a requested verification that a case lacks.
+        """
+        lacking = [case for case in cases if case.verdict == "unconfirmed" and self._lacks_verification(case)]
+        bounds: list[Verdict] = ["unconfirmed" for case in lacking if case.id not in self.information]
+        return judge_parts([self.judge_run([(case.id, case.verdict) for case in cases], system), *bounds])
+
     def judge_one_verdict(self, name: VerdictName, cases: Sequence[CaseResult], system: str) -> Verdict | None:
         """One of the two verdicts of a run; None if no case takes part in it."""
         verdicts = [(case.id, verdict) for case in cases if (verdict := self._case_verdict(name, case)) is not None]
@@ -85,9 +94,7 @@ class Participation:
         drift += [] if case.baseline is None else [case.baseline.verdict]
         errors = [verdict for verdict in (case.criteria_verdict, case.verdict) if verdict == "error"]
         requested = worst_verdict(verdict for verdict in (*verdicts, *errors) if verdict is not None)
-        lacking = "verification" in self.requested and case.verification is None
-        lacking = lacking and case.record is not None and case.profile is None
-        requested = "unconfirmed" if requested == "pass" and lacking else requested
+        requested = "unconfirmed" if requested == "pass" and self._lacks_verification(case) else requested
         verdict = worst_verdict([requested, *drift])
         return case.model_copy(update={"verdict": verdict})
 
@@ -100,7 +107,7 @@ class Participation:
         """
         cases, system = [self.decide_case(case) for case in results.cases], results.system.name
         by_name = {name: self.judge_one_verdict(name, cases, system) for name in get_args(VerdictName)}
-        overall = self.judge_run([(case.id, case.verdict) for case in cases], system)
+        overall = self.judge_cases(cases, system)
         compared: list[tuple[str, Verdict]] = [
             (case.id, "skip" if case.baseline is None else case.baseline.verdict) for case in cases
         ]
@@ -111,7 +118,8 @@ class Participation:
         verdict = worst_verdict([verdict, "info"]) if overall == "info" or doubted else verdict
         procedure = results.procedure
         if procedure is not None:
-            procedure = decide_procedure(procedure, cases, system in self.accepted_unconfirmed)
+            lacking = [case.id for case in cases if self._lacks_verification(case)]
+            procedure = decide_procedure(procedure, cases, system in self.accepted_unconfirmed, lacking)
             verdict = judge_procedure(procedure.steps)
         return results.model_copy(
             update={
@@ -129,6 +137,11 @@ class Participation:
                 "verification_only": list(self.verification_only),
             }
         )
+
+    def _lacks_verification(self, case: CaseResult) -> bool:
+        """Whether the run of a train lacks the requested verification."""
+        lacking = "verification" in self.requested and case.verification is None
+        return lacking and case.record is not None and case.profile is None
 
     def _case_verdict(self, name: VerdictName, case: CaseResult) -> Verdict | None:
         """Verdict of a case; None if the case does not take part in it."""

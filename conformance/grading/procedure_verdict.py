@@ -1,7 +1,7 @@
 """Verdict of the EN 50318 procedure: of its steps, from their criteria, cases and claims, and of the whole."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import product
 
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
@@ -22,20 +22,25 @@ def judge_procedure(steps: Iterable[ProcedureStep]) -> Verdict:
     return worst_verdict(step.verdict for step in steps if step.required)
 
 
-def decide_procedure(procedure: Procedure, cases: Sequence[CaseResult], accepted: bool) -> Procedure:
+def decide_procedure(
+    procedure: Procedure, cases: Sequence[CaseResult], accepted: bool, lacking: Collection[str] = ()
+) -> Procedure:
     """Procedure with the verdicts of its steps and claims.
 
     Args:
         procedure: Procedure whose verdicts are not decided, or are checked.
         cases: Results of all cases, with their verdicts.
         accepted: Whether the user accepts unconfirmed records of the system.
+        lacking: Ids of the cases that lack a requested verification, which no acceptance replaces.
 
     Returns:
         The same procedure with its verdicts, margins and uncertainties.
     """
     by_id = {case.id: case for case in cases}
     references = {name for step in procedure.steps if step.step == "reference_models" for name in step.cases}
-    verdicts = {case.id: _judge_case(case, case.id in references, accepted) for case in cases}
+    verdicts = {
+        case.id: _judge_case(case, case.id in references, accepted and case.id not in lacking) for case in cases
+    }
     evidence = [item.model_copy(update={"passed": verdicts.get(item.id) == "pass"}) for item in procedure.evidence]
     steps: list[ProcedureStep] = []
     claims: list[ValidityClaim] = []

@@ -43,7 +43,9 @@ def build_headline(results: Results) -> str:
         return build_procedure_headline(results, results.procedure)
     cases = [case for case in results.cases if case.id not in results.information]
     verdicts: Counter[str] = Counter(case.verdict for case in cases)
-    accepted = verdicts["unconfirmed"] if results.system.name in results.accepted_unconfirmed else 0
+    accepts, requested = results.system.name in results.accepted_unconfirmed, "verification" in results.requested
+    alone = sum(_lacks_verification(case, accepts) for case in cases) if requested else 0
+    accepted = verdicts["unconfirmed"] - alone if accepts else 0
     passed, verdicts["unconfirmed"] = verdicts["pass"] + accepted, verdicts["unconfirmed"] - accepted
     pairs = [(case, row) for case in cases for row in select_criteria(results, case)]
     grades = Counter(row.verdict for _, row in pairs if not row.is_drift)
@@ -67,7 +69,7 @@ def build_headline(results: Results) -> str:
         sentences = [f"All {counted} counted criteria in {total} lie inside {names}{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
-        if "verification" in results.requested and (alone := sum(map(_lacks_verification, cases))):
+        if alone:
             verdicts["unconfirmed"] -= alone
             parts.append(f"{count_noun(alone, 'passes', 'pass')} the criteria without a verification up to 50 Hz")
         for verdict, (one, many) in CLAUSES.items():
@@ -101,10 +103,10 @@ def _name_limit(case: CaseResult, row: Criterion) -> str:
     return f"the limits of {case.edition or case.profile or 'the case'}{printed} ({row.trust} source)"
 
 
-def _lacks_verification(case: CaseResult) -> bool:
-    """Whether a case is unconfirmed because it has no verification."""
+def _lacks_verification(case: CaseResult, accepted: bool) -> bool:
+    """Whether a case is unconfirmed because it has no verification, with a consistent or accepted record."""
     alone = case.verdict == "unconfirmed" and case.verification is None and case.profile is None
-    return alone and case.record is not None and case.record.state == "consistent"
+    return alone and case.record is not None and (accepted or case.record.state == "consistent")
 
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:

@@ -86,8 +86,8 @@ class PlanSession:
         trust, participation = self.prepared.plan.trust, self.prepared.participation
         results = build_results(finished, identity, trust, session["started"], participation)
         compared = self.prepared.compare(results)
-        executed = ((case.id, case.verdict) for case in compared.cases if self._file(case.id).is_file())
-        verdict = participation.judge_run(executed, identity.name)
+        executed = [case for case in compared.cases if self._file(case.id).is_file()]
+        verdict = participation.judge_cases(executed, identity.name)
         return compared, verdict
 
     def _start_system(self) -> System:

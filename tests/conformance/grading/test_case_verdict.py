@@ -24,6 +24,7 @@ from pantocheck.conformance.grading.case_verdict import Participation, judge_bas
 from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.results.case_facts_format import BaselineComparison, RecordFacts, RecordState
+from pantocheck.conformance.results.procedure_format import Procedure, ProcedureStep
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 from pantocheck.conformance.results.results_reading import read_results
 
@@ -242,6 +243,25 @@ def test_drift_and_accepted_records_count_for_both_verdicts() -> None:
     case = case_result("a", "unconfirmed", "unconfirmed")
     assert decide(Participation(requested=both), case).verdict == "unconfirmed"
     assert decide(Participation(requested=both, accepted_unconfirmed=(name,)), case).verdict == "pass"
+
+
+@pytest.mark.parametrize("state", ["consistent", "unconfirmed"])
+def test_accepted_system_still_needs_the_verification_of_every_case(state: RecordState) -> None:
+    """The verification of another case does not stand for a missing one."""
+    both, name = ("criteria", "verification"), RESULTS.system.name
+    accepting = Participation(requested=both, accepted_unconfirmed=(name,))
+    verified = case_result("a", "unconfirmed", "unconfirmed")
+    lacking = case_result("b", "unconfirmed" if state == "unconfirmed" else "pass", None)
+    lacking = lacking.model_copy(update={"record": record(state)})
+    decided = decide(accepting, verified, lacking)
+    assert (decided.verdict, decided.verification_verdict) == ("unconfirmed", "pass")
+    assert build_headline(decided).startswith("1 of 2 cases passes, 1 passes the criteria without a verification")
+    step = ProcedureStep(step="line_test", required=True, state="done", cases=["a", "b"])
+    dossier = decided.model_copy(update={"procedure": Procedure(title="Test", digest="sha256:0", steps=[step])})
+    assert accepting.decide_run(dossier).verdict == "unconfirmed"
+    shown = Participation((lacking.id,), (name,), both)
+    assert decide(shown, verified, lacking).verdict == "pass"
+    assert decide(Participation(accepted_unconfirmed=(name,)), verified, lacking).verdict == "pass"
 
 
 @given(VERDICTS, st.none() | VERDICTS, VERDICTS, REQUESTS, st.booleans())
