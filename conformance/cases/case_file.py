@@ -110,7 +110,7 @@ class Reading(SourcedTable):
     id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=40)]
     """Name of the reading in tables."""
     filter: Filter | None = None
-    """Filter and bands in place of those of the case, in full: a key that is not given has its default."""
+    """Filter and bands in place of those of the case; a key that is not given is that of the case."""
     evaluated_m: Annotated[tuple[NonNegative, Positive] | None, Field(strict=False)] = None
     """Start and end of the analysis section, in place of that of the case [m]."""
 
@@ -189,6 +189,21 @@ class CaseFile(SourcedTable):
     """Further documented readings of the evaluation; a value that changes side between them is marked."""
     discretisation: Discretisation = Discretisation()
     limit: Annotated[tuple[Limit, ...], Field(strict=False, max_length=10_000)] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete_readings(cls, content: Any) -> Any:
+        """Add the keys of the filter of the case to the filters of its readings."""
+        tables = content.get("reading") if isinstance(content, dict) else None
+        own = content.get("filter") if tables else None
+        if not isinstance(tables, list | tuple) or not isinstance(own, dict):
+            return content
+        filters = [reading.get("filter") if isinstance(reading, dict) else None for reading in tables]
+        completed = [
+            {**reading, "filter": {**own, **other}} if isinstance(other, dict) else reading
+            for reading, other in zip(tables, filters, strict=True)
+        ]
+        return {**content, "reading": completed}
 
     @cross_check
     def _check_study(self) -> Problems:

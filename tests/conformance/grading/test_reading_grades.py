@@ -74,6 +74,16 @@ def test_value_that_changes_side_is_marked(results: Results) -> None:
     assert Results.model_validate(json.loads(results.to_json())) == results
 
 
+def test_filter_of_a_reading_keeps_the_other_keys_of_the_case(edited_case: EditedCase) -> None:
+    """An odd order is valid because the case has a causal filter."""
+    own = {"order": 4, "cutoff_Hz": 25.0, "phase": "causal"}
+    read = {**READING, "filter": {"order": 5}}
+    case = load_case(edited_case("250.toml", {"id": "own/250", "filter": own, "reading": [read, SECTION]}))
+    changed, kept = (case.with_reading(reading).file.filter for reading in case.file.reading)
+    assert (changed.order, changed.cutoff_Hz, changed.phase) == (5, 25.0, "causal")
+    assert kept == case.file.filter
+
+
 def test_page_one_and_summary_name_the_reading(results: Results) -> None:
     texts = [render_html(build_certificate(results)), render_markdown(build_summary(results))]
     number = sum(row.depends_on_reading for row in results.cases[0].criteria)
