@@ -213,8 +213,20 @@ def load_case(path: Path, changes: Sequence[InputChange] = (), origin: CaseOrigi
         return case.without_limits()
     if path.resolve() in {other.resolve() for other in library.values()}:
         return case
-    published = load_case(library[case.id]).limits if case.id in library else ()
-    return replace(case, limits=own_limits(case.limits, published))
+    return replace(case, limits=own_limits(case.limits, list_library_limits(case.id)))
+
+
+@cache
+def find_library_case(case_id: str) -> Case | None:
+    """Case of the library with this id, read once; None if there is none."""
+    path = list_library(library_folder()).get(case_id)
+    return None if path is None else load_case(path)
+
+
+def list_library_limits(case_id: str) -> tuple[Limit, ...]:
+    """Limits of the library case with this id; none if there is no such case."""
+    case = find_library_case(case_id)
+    return () if case is None else case.limits
 
 
 def read_limits(path: Path) -> tuple[LimitOverride, ...]:

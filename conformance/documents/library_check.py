@@ -3,10 +3,9 @@
 from collections.abc import Iterable, Iterator
 
 from pantocheck.conformance.cases.case import Case, CaseOrigin
-from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.catalogue import CaseEntry, Catalogue
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.cases.library import load_case, load_entry, source_text
+from pantocheck.conformance.cases.library import find_library_case, load_entry, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.core.criterion import Criterion, LimitTarget
@@ -29,7 +28,6 @@ from pantocheck.conformance.grading.case_verification import (
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.input_sensitivity import list_possible_sentences
 from pantocheck.conformance.grading.validity_warnings import validity_warnings, warn_of_unvalidated_band
-from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -78,9 +76,9 @@ def check_library(results: Results) -> list[DocumentCheck]:
 
 def _compare_case(result: CaseResult) -> Iterator[str]:
     """Contradictions of a result with the library case of its id."""
-    known = list_profiles() if result.profile is not None else list_library(library_folder())
-    name = result.profile or result.id
-    if name not in known:
+    case = find_library_case(result.id)
+    is_known = case is not None if result.profile is None else result.profile in list_profiles()
+    if not is_known:
         if result.library in ("identical", "modified"):
             yield f"stated as '{result.library}': the installed library has no case or profile of this name"
     elif result.library == "own":
@@ -89,8 +87,8 @@ def _compare_case(result: CaseResult) -> Iterator[str]:
         return
     elif result.profile is not None:
         yield from compare_profile(load_profile(result.profile), result)
-    else:
-        yield from compare_with_case(load_case(known[name]), result)
+    elif case is not None:
+        yield from compare_with_case(case, result)
 
 
 def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
@@ -140,19 +138,18 @@ def _compare_warnings(case: Case, result: CaseResult) -> Iterator[str]:
 
 def _describe_others(result: CaseResult) -> Iterator[str]:
     """Cases whose inputs or limits are not those of the library, as the results state them."""
-    known = list_library(library_folder())
+    case = find_library_case(result.id)
     if result.profile is not None:
         if result.library != "identical":
             yield f"profile {result.profile}: its rules are not those of the library"
-    elif result.library == "modified" and result.id in known:
-        case = load_case(known[result.id])
+    elif result.library == "modified" and case is not None:
         inputs = "other inputs" if result.input_digest != case.digest else "the inputs of the library"
         yield f"modified copy of the library case, with {inputs}"
         yield from (f"limit {text}" for text in list_own_limits(case, result))
     elif result.library == "own":
         yield "an own case" if result.origin is None else f"an own case, {result.origin.text}"
-    elif result.id in known and result.limits_digest != result.stated_limits_digest:
-        yield from (f"limit of a limits file: {text}" for text in list_own_limits(load_case(known[result.id]), result))
+    elif case is not None and result.limits_digest != result.stated_limits_digest:
+        yield from (f"limit of a limits file: {text}" for text in list_own_limits(case, result))
 
 
 def _name(value: object) -> str:

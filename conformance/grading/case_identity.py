@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from pantocheck.conformance.cases.case import Case, json_digest
-from pantocheck.conformance.cases.case_source import list_library
-from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.library import find_library_case, list_library_limits
 from pantocheck.conformance.cases.limits import Limit, own_limits
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.core.criterion import Requirement
 from pantocheck.conformance.core.trust import LEVELS
-from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
@@ -26,10 +24,9 @@ def compare_with_library(case: Case) -> LibraryIdentity:
     The comparison covers inputs, limits and their sources, as the case file states them. It excludes the names of
     files, the user's own limits and the damping study, because they are options of the run.
     """
-    known = list_library(library_folder())
-    if case.id not in known:
+    if (known := find_library_case(case.id)) is None:
         return "own"
-    return "identical" if _content_digest(case) == _content_digest(load_case(known[case.id])) else "modified"
+    return "identical" if _content_digest(case) == _content_digest(known) else "modified"
 
 
 def compare_profile_with_library(profile: Profile) -> LibraryIdentity:
@@ -77,8 +74,7 @@ def profile_limits_digest(profile: Profile, limits: Sequence[Limit] = ()) -> str
 def list_limit_changes(case: Case) -> list[str]:
     """Sentences on the limits of the case file that the user's limits weaken, remove or give another trust."""
     limits = {limit.target: limit for limit in case.limits}
-    known = list_library(library_folder())
-    stated_limits = own_limits(case.file.limit, load_case(known[case.id]).limits if case.id in known else ())
+    stated_limits = own_limits(case.file.limit, list_library_limits(case.id))
     changes = (describe_limit_change(stated, limits.get(stated.target)) for stated in stated_limits)
     return [change for change in changes if change is not None]
 
@@ -109,10 +105,7 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
 
 def doubt_limit(case_id: str, limit: Limit | Requirement) -> str | None:
     """Reason why a pass by a limit of the user does not count: it widens one of the library. None: it counts."""
-    known = list_library(library_folder())
-    if limit.trust != "own" or case_id not in known:
-        return None
-    stated = load_case(known[case_id]).limits
+    stated = list_library_limits(case_id) if limit.trust == "own" else ()
     widened = next((old for old in stated if old.target == limit.target and _is_wider(old, limit)), None)
     if widened is None:
         return None

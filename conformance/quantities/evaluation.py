@@ -1,12 +1,12 @@
 """Evaluation of signals: available quantities, and the reasons why other quantities are not available."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import ForceSignals, PantographSignals
+from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
 from pantocheck.conformance.quantities.stated_quantities import list_stated
 from pantocheck.conformance.quantities.statistics import WHOLE_RECORD
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
@@ -76,11 +76,3 @@ def evaluate_signals(pantographs: Mapping[int, ForceSignals], line: LineSignals)
         except QuantityUnavailable as reason:
             skipped[LINE][line_quantity.name] = str(reason)
     return Evaluation(values, skipped)
-
-
-def evaluate_section(
-    pantographs: Mapping[int, PantographSignals], line: LineSignals, section: tuple[float, float]
-) -> Evaluation:
-    """Evaluate all quantities over another section [m, m]; the force is not filtered again."""
-    moved = {number: replace(signals, section=section) for number, signals in pantographs.items()}
-    return evaluate_signals(moved, replace(line, section=section))

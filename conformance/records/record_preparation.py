@@ -77,9 +77,16 @@ class PreparedRecord:
         return replace(self, pantographs=dict(pantographs), line=line).evaluation
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
-        moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-        return self.evaluate_channels(moved, replace(self.line, section=section))
+        """Evaluate the quantities over another section [m, m], once; the force is not filtered again."""
+        if section not in self._sections:
+            moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+            self._sections[section] = self.evaluate_channels(moved, replace(self.line, section=section))
+        return self._sections[section]
+
+    @cached_property
+    def _sections(self) -> dict[tuple[float, float], Evaluation]:
+        """Evaluations of other sections, which several components of the uncertainty share."""
+        return {}
 
 
 @dataclass(frozen=True)

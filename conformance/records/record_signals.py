@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_section, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
@@ -61,9 +61,16 @@ class RecordSignals:
         return self._add_stretches(evaluate_signals(pantographs, line), pantographs)
 
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Evaluate the quantities over another analysis section [m, m]; the force is not filtered again."""
-        moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-        return self._add_stretches(evaluate_section(self.pantographs, self.line, section), moved)
+        """Evaluate the quantities over another analysis section [m, m], once; the force is not filtered again."""
+        if section not in self._sections:
+            moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+            self._sections[section] = self.evaluate_channels(moved, replace(self.line, section=section))
+        return self._sections[section]
+
+    @cached_property
+    def _sections(self) -> dict[tuple[float, float], Evaluation]:
+        """Evaluations of other sections, which several components of the uncertainty share."""
+        return {}
 
     def _add_stretches(self, evaluation: Evaluation, pantographs: Mapping[int, PantographSignals]) -> Evaluation:
         """Add the quantities outside of the overlaps."""
