@@ -8,6 +8,7 @@ from importlib.metadata import version
 from typing import TypeVar
 
 from pantocheck.conformance.core.criterion import ComponentName
+from pantocheck.conformance.core.decision import format_decision
 from pantocheck.conformance.core.extras import version_or_absence
 from pantocheck.conformance.core.findings import count_findings
 from pantocheck.conformance.core.results_part import Number, Suite
@@ -93,6 +94,7 @@ def build_results(
         verdict="info",
         criteria_verdict=None,
         trust=trust,
+        decision=format_decision(participation.decision),
         started=started,
         platform=Platform(
             python=host.python_version(),

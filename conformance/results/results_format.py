@@ -263,7 +263,7 @@ class Results(ResultsPart):
     verification_only: list[str] = []
     """Ids of the cases without limits that count, which take part in the verification only."""
     trust: Trust
-    decision: DecisionText = "simple"
+    decision: DecisionText
     """Decision rule of the criteria."""
     conformity: Annotated[float | None, Field(ge=0, le=1)] = None
     """Probability that all counted values of the cases that take part lie inside their limits; null: not known."""

@@ -292,6 +292,7 @@ def example() -> dict[str, Any]:
         "statement": "self-declared conformance report, in the style of EN 50318",
         "verdict": "fail",
         "trust": "secondary",
+        "decision": "simple",
         "started": "2026-11-20T23:50:00Z",
         "platform": {
             "python": "3.11.9",
