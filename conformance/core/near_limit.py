@@ -110,12 +110,17 @@ def near_limit_remarks(
     distance, expanded = min(abs(value - limit) for limit in limits if limit is not None), errors.find_expanded(value)
     if not distance < expanded:
         return []
-    parts = {"limit": errors.limit_uncertainty or 0.0} | {str(name): width for name, width in errors.components.items()}
-    largest = max(parts, key=lambda name: parts[name])
+    largest = find_largest_component(errors.components, errors.limit_uncertainty)
     return [
         f"lies {_format(distance, unit)} from a limit, less than its uncertainty of {_format(expanded, unit)} "
         f"(mostly {largest}): {REMEDIES[largest]} could reverse the verdict"
     ]
+
+
+def find_largest_component(components: Mapping[ComponentName, float], limit_uncertainty: float | None) -> str:
+    """Largest component of the distance between value and limit; `limit` is the uncertainty of the limit itself."""
+    parts = {"limit": limit_uncertainty or 0.0} | {str(name): width for name, width in components.items()}
+    return max(parts, key=lambda name: parts[name])
 
 
 def _format(number: float, unit: str) -> str:

@@ -15,10 +15,9 @@ from pantocheck.conformance.pages.criteria_table import criteria_blocks, referen
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (
-    build_band_table,
     build_quantity_table,
     list_skipped,
-    uncertainty_blocks,
+    list_uncertainty_basis,
 )
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
@@ -82,13 +81,10 @@ def build_case_section(shown: ShownCase) -> doc.Section:
 def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
     """Sections on all values and facts, folded on a screen."""
     case = shown.case
-    bands, quantities = build_band_table(case), build_quantity_table(case)
-    if bands.rows:
-        yield doc.Section("Extended band, up to 50 Hz", (bands,))
-    if quantities.rows:
-        yield doc.Section("All quantities", (quantities,), folded=True)
-    if case.uncertainty_basis:
-        yield doc.Section("Uncertainty by component", uncertainty_blocks(case), folded=True)
+    quantities, basis = build_quantity_table(case), list_uncertainty_basis(case)
+    parts = (*((doc.BulletList(basis),) if basis else ()), *((quantities,) if quantities.rows else ()))
+    if parts:
+        yield doc.Section("All quantities, with uncertainty by component", parts, folded=True)
     yield from build_condition_section(case)
     if skipped := list_skipped(case):
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)
@@ -192,11 +188,12 @@ SHOWN_DIGITS = 5
 
 
 def derived_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
-    """Table of derived values, and by whom they were computed; nothing if there are none."""
-    if not case.derived:
+    """Table of derived values that are no quantities of the line, and by whom they were computed."""
+    quantities = case.quantities.get("0", {}).values()
+    if not (derived := [fact for fact in case.derived if fact.value not in quantities]):
         return ()
     table = doc.make_table(
-        case.derived,
+        derived,
         {
             doc.Column("Value", share=3): lambda fact: fact.name,
             doc.Column("Result", number=True): lambda fact: format_value(fact.value, SHOWN_DIGITS),

@@ -13,7 +13,7 @@ from pantocheck.conformance.pages.criteria_table import (
     build_findings_section,
     describe_criterion,
     error_name,
-    note_incomplete,
+    state_common_causes,
 )
 from pantocheck.conformance.pages.document import digest_results, find_date
 from pantocheck.conformance.pages.document_facts import (
@@ -224,8 +224,8 @@ def _build_case_summary(case: CaseResult) -> doc.Section:
     blocks += condition_blocks(case)
     if criteria := list_criteria(case, "criteria"):
         blocks += [
+            *state_common_causes(criteria, case.uncertainty_basis),
             _build_summary_table(criteria, case.uncertainty_basis),
-            *note_incomplete(criteria, case.uncertainty_basis),
         ]
     if (verification := case.verification) is not None:
         blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification.verdict))))

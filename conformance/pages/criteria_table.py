@@ -1,14 +1,15 @@
 """Table of the criteria of a case."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from pantocheck.conformance.core.criterion import ComponentName, Criterion
 from pantocheck.conformance.core.findings import GradedFinding
+from pantocheck.conformance.core.near_limit import REMEDIES, find_largest_component
 from pantocheck.conformance.core.results_part import select_item
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.margin_bar import draw_margin_bar
 from pantocheck.conformance.pages.words import (
     format_beside_limits,
     format_plain,
@@ -20,11 +21,13 @@ from pantocheck.conformance.pages.words import (
 )
 from pantocheck.conformance.quantities.joint_sample import DRAWS
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
+from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
 from pantocheck.conformance.results.incomplete_uncertainty import (
-    explain_mark,
+    EXACT,
+    describe_half_width,
+    explain_missing,
     list_missing,
     list_unknown,
-    mark_half_width,
 )
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -68,16 +71,18 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
     missing = list_missing(basis, criterion.uncertainty, criterion.trust)
     unit = "" if value is None else criterion.unit
     shown, limits = format_beside_limits(value, lower, upper)
+    if lower is not None and upper and lower == -upper:
+        limits = f"± {limits.rpartition(' ')[2]}"
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
-    close = criterion.close if criterion.is_close else []
     readings = criterion.readings if criterion.depends_on_reading else []
-    chance = describe_conformity(criterion.conformity) if close and criterion.conformity is not None else None
-    remarks = (criterion.reason, *close, *readings, remark_shift(criterion), _remark_limit(criterion), chance)
+    chance = criterion.conformity if criterion.is_close else None
+    close = "" if chance is None else f"close: {describe_conformity(chance)}"
+    remarks = (criterion.reason, close, *readings, _remark_limit(criterion))
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
         value=f"{shown} {unit}".rstrip(),
-        error="–" if error is None else mark_half_width(error, format_value(error, 2), missing, "± "),
+        error="–" if error is None else _format_error(criterion, error, missing),
         limits=limits,
         margin="–" if margin is None else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion.trust or "",
@@ -85,25 +90,41 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
     )
 
 
+def _format_error(criterion: Criterion, error: float, missing: Sequence[str]) -> str:
+    text = describe_half_width(error, format_value(error, 2), missing, criterion.quantity)
+    return text if text in (EXACT, UNKNOWN_BASIS) else f"± {text}"
+
+
+VALUE_HEADINGS = ("Value", "Limits")
+DEVIATION_HEADINGS = ("Deviation", "Tolerance")
+"""Headings of values and their limits, and of both as distances from the middle of the limits."""
+
+
 def criteria_blocks(
-    criteria: Sequence[Criterion], anchor: str, source_anchor: str, case: CaseResult | None = None
+    criteria: Sequence[Criterion],
+    anchor: str,
+    source_anchor: str,
+    case: CaseResult | None = None,
+    headings: tuple[str, str] = VALUE_HEADINGS,
 ) -> tuple[doc.Block, ...]:
-    """The table of criteria and the sources of their limits.
+    """The table of criteria with the facts that hold for all of them, and the sources of their limits.
 
     Args:
         criteria: Criteria of one of the verdicts of a case, or of a step of a procedure.
         anchor: Anchor of the section of the case or step.
         source_anchor: Anchor of the sources, before their number.
         case: Case of the criteria; None: they belong to no case.
+        headings: Headings of values and limits.
     """
     sources = list(dict.fromkeys(criterion.source for criterion in criteria if criterion.source))
-    error = error_name(criteria)
+    origins = {(criterion.trust, criterion.source) for criterion in criteria}
+    error, (value, limits) = error_name(criteria), headings
     columns = (
         doc.Column("Quantity", share=1),
         doc.Column("Pantograph", short="Pant."),
-        doc.Column("Value", number=True),
+        doc.Column(value, number=True),
         doc.Column(error, number=True, short=SHORT_NAMES[error]),
-        doc.Column("Limits", number=True),
+        doc.Column(limits, number=True),
         *map(doc.Column, ("Margin", "Verdict", "Trust", "Source")),
     )
     basis = NO_BASIS if case is None else case.uncertainty_basis
@@ -111,17 +132,41 @@ def criteria_blocks(
         _row(criterion, basis, sources, (source_anchor, () if case is None else _link_place(case, criterion, anchor)))
         for criterion in criteria
     )
+    common: tuple[doc.Block, ...] = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),)
+    if len(origins) == 1 and sources and (trust := criteria[0].trust):
+        columns, rows = columns[:-2], tuple(row[:-2] for row in rows)
+        common = (doc.SmallPrint(("All limits: ", doc.TrustMark(trust), f" {sources[0]}")),)
     table = doc.Table(columns, rows, layout="cards")
-    if case is not None:
+    if case is not None and headings == VALUE_HEADINGS:
         table = insert_reference(case, table, criteria)
-    listed = (doc.NumberedList("Sources of the limits", tuple(sources), source_anchor),) if sources else ()
-    return (table, *note_incomplete(criteria, basis), *listed)
+    return (*state_common_causes(criteria, basis), table, *(common if sources else ()))
 
 
-def note_incomplete(criteria: Sequence[Criterion], basis: Basis) -> tuple[doc.Block, ...]:
-    """Explanation of the mark of half-widths that lack a component; empty if none of the criteria has the mark."""
-    missing = [list_missing(basis, row.uncertainty, row.trust) for row in criteria]
-    return (doc.SmallPrint(explain_mark(list_unknown(basis))),) if any(missing) else ()
+def state_common_causes(criteria: Sequence[Criterion], basis: Basis) -> tuple[doc.Block, ...]:
+    """Sentences on the components that the half-widths lack, and on the causes of close values."""
+    missing = any(list_missing(basis, row.uncertainty, row.trust) for row in criteria)
+    incomplete = explain_missing(list_unknown(basis)) if missing else ""
+    texts = (*filter(None, [incomplete]), *describe_close(criteria, criterion_title))
+    return (doc.SmallPrint(" ".join(texts)),) if texts else ()
+
+
+def describe_close(criteria: Sequence[Criterion], name: Callable[[Criterion], str]) -> list[str]:
+    """Sentences on the values closer to a limit than their uncertainty, one for each largest component.
+
+    Args:
+        criteria: Criteria of one of the verdicts of a case.
+        name: Function that gives the name of the value of a criterion.
+    """
+    groups: dict[str, list[str]] = {}
+    for row in criteria:
+        if row.is_close:
+            cause = find_largest_component(row.components, row.limit_uncertainty)
+            groups.setdefault(cause, []).append(name(row))
+    return [
+        f"Closer to a limit than the uncertainty (mostly {cause}): {', '.join(dict.fromkeys(names))}; "
+        f"{REMEDIES[cause]} could reverse the verdict."
+        for cause, names in groups.items()
+    ]
 
 
 def _link_place(case: CaseResult, criterion: Criterion, anchor: str) -> tuple[doc.Inline, ...]:
@@ -204,109 +249,6 @@ def _remark_limit(criterion: Criterion) -> str | None:
         return None
     width = f"{format_value(criterion.limit_uncertainty, 2)} {criterion.unit}".rstrip()
     return f"uncertainty of the measurement ± {width}"
-
-
-def remark_shift(criterion: Criterion) -> str | None:
-    """A remark on the change of a value over the compared spans of its case, if it has any."""
-    if criterion.spread is None or criterion.value is None:
-        return None
-    change = f"{format_value(criterion.spread, 2)} {criterion.unit}".rstrip()
-    return f"changes by up to {change} when the analysis section is shifted span by span"
-
-
-# A margin drawn as a bar: where a value lies between its limits.
-#
-#   outside   |      inside      |   outside
-# ------------|========+---O-----|------------
-#           lower    middle    upper
-#
-# A filled disc is inside the limits, a cross is outside, an open ring does not count; the shapes differ without colour.
-# A value beyond the drawing is an arrow at its edge. The whisker is the error of the value.
-WIDTH, HEIGHT = 100.0, 18.0
-MIDDLE = HEIGHT / 2
-# Distance of a limit from the middle, as a share of half the width.
-BAR_REACH = 0.56
-# A value closer to an edge is drawn as an arrow.
-EDGE = 6.0
-# Width of a column of the strip of a sample.
-STRIP_WIDTH = 2.0
-
-
-def draw_margin_bar(
-    value: float,
-    lower: float | None,
-    upper: float | None,
-    error: float | None,
-    verdict: str,
-    draws: Sequence[float] = (),
-) -> str:
-    """SVG of the bar without text.
-
-    Args:
-        value: Graded value.
-        lower, upper: Limits.
-        error: Half of the length of the whisker.
-        verdict: Verdict, which selects the marker.
-        draws: Joint sample, whose strip lies under the bar.
-    """
-    centre, half = _scale(lower, upper)
-
-    def across(x: float) -> float:
-        return WIDTH / 2 * (1 + BAR_REACH * (x - centre) / half)
-
-    left = 0.0 if lower is None else across(lower)
-    right = WIDTH if upper is None else across(upper)
-    parts = [
-        f'<line x1="0" y1="{MIDDLE:g}" x2="{WIDTH:g}" y2="{MIDDLE:g}" stroke="#8a929b" stroke-width="1"/>',
-        f'<rect x="{left:.2f}" y="4" width="{max(right - left, 0):.2f}" height="{HEIGHT - 8:g}" fill="#d5dbe1"/>',
-    ]
-    parts += [
-        f'<line x1="{x:.2f}" y1="1" x2="{x:.2f}" y2="{HEIGHT - 1:g}" stroke="#1a1d21" stroke-width="1.6"/>'
-        for limit, x in ((lower, left), (upper, right))
-        if limit is not None
-    ]
-    x = across(value)
-    if error and EDGE <= x <= WIDTH - EDGE:
-        low, high = max(across(value - error), 0), min(across(value + error), WIDTH)
-        whisker = f"M{low:.2f} {MIDDLE:g}H{high:.2f}M{low:.2f} 6V12M{high:.2f} 6V12"
-        parts.append(f'<path d="{whisker}" stroke="#1a1d21" stroke-width="1"/>')
-    parts += _list_strip([across(draw) for draw in draws])
-    parts.append(_marker(x, verdict))
-    size = f'viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" height="{HEIGHT:g}"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(parts)}</svg>'
-
-
-def _list_strip(places: Sequence[float]) -> Iterator[str]:
-    """Strip of a sample under the bar: columns whose darkness is their share of the largest column."""
-    counts = Counter(round(min(max(place, 0.0), WIDTH) / STRIP_WIDTH) for place in places)
-    for column, count in sorted(counts.items()):
-        x, shade = column * STRIP_WIDTH - STRIP_WIDTH / 2, max(count / max(counts.values()), 0.1)
-        yield (
-            f'<rect x="{x:g}" y="{HEIGHT - 3:g}" width="{STRIP_WIDTH:g}" height="3" fill="#1a1d21" '
-            f'fill-opacity="{shade:.2f}"/>'
-        )
-
-
-def _scale(lower: float | None, upper: float | None) -> tuple[float, float]:
-    """Middle of the drawing and the distance that fills `BAR_REACH` of its half, in the unit of the quantity."""
-    if lower is not None and upper is not None:
-        return (lower + upper) / 2, (upper - lower) / 2 or max(abs(lower), 1.0)
-    if upper is not None:
-        return upper - (abs(upper) or 1.0), abs(upper) or 1.0
-    return (0.0, 1.0) if lower is None else (lower + (abs(lower) or 1.0), abs(lower) or 1.0)
-
-
-def _marker(x: float, verdict: str) -> str:
-    ink = {"pass": "#1b5e3a", "fail": "#8c1d18"}.get(verdict, "#1a1d21")
-    if x < EDGE:
-        return f'<path d="M1 {MIDDLE:g}l9 -6v12z" fill="{ink}"/>'
-    if x > WIDTH - EDGE:
-        return f'<path d="M{WIDTH - 1:g} {MIDDLE:g}l-9 -6v12z" fill="{ink}"/>'
-    if verdict == "fail":
-        cross = f"M{x - 4.5:.2f} {MIDDLE - 4.5:g}l9 9m0 -9l-9 9"
-        return f'<path d="{cross}" stroke="{ink}" stroke-width="2.6" fill="none"/>'
-    fill, edge = (ink, "#ffffff") if verdict == "pass" else ("#ffffff", ink)
-    return f'<circle cx="{x:.2f}" cy="{MIDDLE:g}" r="4.5" fill="{fill}" stroke="{edge}" stroke-width="1.4"/>'
 
 
 # Table of the findings of publications that the cases of a run grade.

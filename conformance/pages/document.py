@@ -82,9 +82,9 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class SmallPrint:
-    """An explanation in small letters below a table."""
+    """An explanation in small letters beside a table."""
 
-    text: str
+    text: RichText
 
 
 @dataclass(frozen=True)

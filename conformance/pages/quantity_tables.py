@@ -2,33 +2,26 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
-from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.pages.criteria_table import has_reference
-from pantocheck.conformance.pages.document import Block, BulletList, Code, Column, Drawing, RichText, SmallPrint, Table
+from pantocheck.conformance.pages.document import Code, Column, Drawing, RichText, Table, make_table
 from pantocheck.conformance.pages.two_verdicts import list_criteria
 from pantocheck.conformance.pages.words import (
     format_value,
     name_pantograph,
-    name_verdict,
     quantity_label,
     quantity_unit,
 )
-from pantocheck.conformance.quantities.registry import QUANTITIES, list_table_quantities
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.case_facts_format import ReferenceValues
-from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
-BAND_CAPTION = (
-    "Standard deviation, coefficient of variation and RMS by band. Each value has its verdict by the EN 50318 "
-    "criteria, and by verification where the converged solution limits it."
-)
-
-LONGEST_PRINTED_LIST = 10
+LONGEST_PRINTED_LIST = 5
 """Longest list that is printed in full; a longer one is drawn, and results.json has its values."""
 
 
@@ -36,64 +29,6 @@ def list_owners(case: CaseResult) -> list[str]:
     """Keys of the quantities of a case: pantographs in running order, then the line as "0"."""
     keys = set(case.quantities) | set(case.skipped)
     return sorted(keys, key=lambda key: (key == "0", len(key), key))
-
-
-def build_band_table(case: CaseResult) -> Table:
-    """Quantities of the bands up to 50 Hz with their verdicts; empty if none of them is graded."""
-
-    def cell(quantity: str, key: str) -> str:
-        value = case.quantities.get(key, {}).get(quantity)
-        if value is None:
-            return "not available"
-        return f"{format_value(select_single(value))} ({'; '.join(_list_verdicts(case, quantity, key))})"
-
-    rows = (*list_criteria(case, "criteria"), *list_criteria(case, "verification"))
-    graded = any(row.quantity in list_table_quantities("bands") for row in rows)
-    pantographs = [key for key in list_owners(case) if key != "0" and graded]
-    cells: dict[str, Callable[[str], RichText]] = {
-        name_pantograph(key).capitalize(): partial(cell, key=key) for key in pantographs
-    }
-    return _table(list_table_quantities("bands") if pantographs else (), cells, BAND_CAPTION)
-
-
-def _list_verdicts(case: CaseResult, quantity: str, key: str) -> Iterator[str]:
-    """Verdict of a quantity by the criteria, or the reason why it has none, and its verdict by verification."""
-    criteria, verification = (
-        [row.verdict for row in list_criteria(case, name)
-         if (row.quantity, str(row.pantograph), row.baseline) == (quantity, key, None)]
-        for name in ("criteria", "verification")
-    )  # fmt: skip
-    found = criteria[0] if criteria else None
-    yield "no published limit" if found is None else "limit does not count" if found == "info" else name_verdict(found)
-    yield from (f"verification {name_verdict(verdict)}" for verdict in verification)
-
-
-def build_quantity_table(case: CaseResult) -> Table:
-    """Every quantity of a case, beside that of the reference; a quantity that a pantograph does not have is a dash."""
-    keys = list_owners(case)
-    names = {name for key in keys for name in (*case.quantities.get(key, {}), *case.skipped.get(key, {}))}
-
-    def cell(quantity: str, key: str, values: CaseResult | ReferenceValues) -> RichText:
-        value = values.quantities.get(key, {}).get(quantity)
-        if value is None:
-            skipped = isinstance(values, CaseResult) and quantity in values.skipped.get(key, {})
-            return "skipped" if skipped else "–"
-        error = values.uncertainty.get(key, {}).get(quantity)
-        if isinstance(value, list):
-            return _format_list(value)
-        text = format_value(value, 5)
-        if error is None or isinstance(error, list):
-            return text
-        missing = list_unknown(values.uncertainty_basis) if isinstance(values, CaseResult) else ()
-        return f"{text} {mark_half_width(error, format_value(error, 2), missing, '± ')}"
-
-    cells: dict[str, Callable[[str], RichText]] = {}
-    for key in keys:
-        name = name_pantograph(key)
-        cells[name.capitalize()] = partial(cell, key=key, values=case)
-        if case.reference is not None and has_reference(case):
-            cells[f"Reference, {name}"] = partial(cell, key=key, values=case.reference)
-    return _table(_sort_quantities(names), cells)
 
 
 def _format_list(values: list[float]) -> RichText:
@@ -123,48 +58,94 @@ def list_skipped(case: CaseResult) -> tuple[str, ...]:
     )
 
 
-def _table(quantities: Iterable[str], cells: Mapping[str, Callable[[str], RichText]], caption: str = "") -> Table:
-    """One row per quantity; one column per heading, with the function of its values."""
-    share = 1 if len(cells) > 1 else 2
-    columns = (Column(heading, share=share, number=True) for heading in cells)
-    rows = tuple(
-        (_label(name), quantity_unit(name) or "–", *(cell(name) for cell in cells.values())) for name in quantities
-    )
-    return Table((Column("Quantity", share=2.4), Column("Unit"), *columns), rows, caption)
+# Table of all quantities with their uncertainty by component.
+ABOVE = "above"
+"""Cell of a value that the table of criteria has."""
 
-
-# Table of the uncertainty of every quantity by component.
 UNCERTAINTY_KEY = (
-    "Uncertainties are half-widths of 95 % intervals. The combined one is the root of the sum of the squares of the "
-    "components. A dash: the component does not apply to the quantity, or is not known. A quantity with several values "
-    "has the largest of its half-widths. An asterisk marks a half-width that lacks a component that is not known."
+    "Uncertainties are half-widths of 95 % intervals of the joint sample of all components. The columns behind show "
+    "each component alone; one that is zero or not known for all quantities has no column. A dash: it does not apply "
+    "to the quantity, or is not known. A quantity with several values has the largest of its half-widths. "
+    f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step. Shift: largest change "
+    "when the analysis section is shifted span by span, no part of the uncertainty."
 )
 """Meaning of the uncertainties by component of all cases."""
 
 
-def uncertainty_blocks(case: CaseResult) -> tuple[Block, ...]:
-    """Basis of each component, model uncertainty, and the half-widths of all quantities of a case."""
-    names = list(case.uncertainty_basis)
-    basis = tuple(f"{name.capitalize()}: {text}." for name, text in case.uncertainty_basis.items())
-    basis += tuple(f"Model, not part of the combined width: {sentence}" for sentence in case.model_uncertainty)
-    components = case.uncertainty_components
-    rows = tuple(
-        _row(case, key, name, names) for key in list_owners(case) for name in _sort_quantities(components.get(key, ()))
-    )
-    if not rows:
-        return (SmallPrint(" ".join(basis)),)
-    numbers = ("Combined", *(name.capitalize() for name in names))
-    columns = (
-        Column("Quantity", share=1),
-        Column("Of"),
-        Column("Unit"),
-        *(Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, "")) for heading in numbers),
-    )
-    return (BulletList(basis), Table(columns, rows))
+def list_uncertainty_basis(case: CaseResult) -> tuple[str, ...]:
+    """Sentences on the basis of each component, and on effects that the equations leave out."""
+    names: dict[str, list[str]] = {}
+    for name, text in case.uncertainty_basis.items():
+        names.setdefault(text, []).append(name)
+    basis = tuple(f"{', '.join(parts).capitalize()}: {text}." for text, parts in names.items())
+    return basis + tuple(f"Model, not part of the uncertainty: {text}" for text in case.model_uncertainty)
+
+
+def build_quantity_table(case: CaseResult) -> Table:
+    """Every quantity with its uncertainty by component and the value of the reference; graded values stand above."""
+    keys = [(key, name) for key in list_owners(case) for name in _sort_quantities(case.quantities.get(key, ()))]
+    columns: dict[Column, Callable[[tuple[str, str]], RichText]] = {
+        Column("Quantity", share=2): lambda key: (f"{quantity_label(key[1])} ", Code(key[1])),
+        Column("Pantograph", number=True, short="Pant."): lambda key: name_pantograph(key[0]).removeprefix(
+            "pantograph "
+        ),
+        Column("Unit"): lambda key: quantity_unit(key[1]) or "–",
+        Column("Value", share=1, number=True): partial(_format_ungraded, case, _format_quantity),
+    }
+    if case.reference is not None and has_reference(case):
+        columns[Column("Reference", number=True)] = partial(_format_reference, case.reference)
+    if case.uncertainty_basis:
+        columns[Column("Uncertainty", number=True, short="Uncer-\ntainty")] = partial(
+            _format_ungraded, case, _format_uncertainty
+        )
+    for component in case.uncertainty_basis:
+        if any(_find_component(case, component, key) for key in keys):
+            heading = component.capitalize()
+            column = Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, ""))
+            columns[column] = partial(_format_component, case, component)
+    if any(case.spread.values()):
+        columns[Column("Shift", number=True)] = lambda key: format_value(case.spread.get(key[0], {}).get(key[1]), 2)
+    return make_table(keys, columns)
 
 
 SHORT_COMPONENTS = {"Discretisation": "Discr."}
 """Headings of components on paper."""
+
+
+def _format_ungraded(
+    case: CaseResult, format_cell: Callable[[CaseResult, tuple[str, str]], RichText], key: tuple[str, str]
+) -> RichText:
+    """Cell of a quantity, or the place where its criterion states it."""
+    graded = {(str(row.pantograph), row.quantity) for row in list_criteria(case, "criteria") if row.item is None}
+    return ABOVE if key in graded else format_cell(case, key)
+
+
+def _format_quantity(case: CaseResult, key: tuple[str, str]) -> RichText:
+    value = case.quantities[key[0]][key[1]]
+    return _format_list(value) if isinstance(value, list) else format_value(value, 5)
+
+
+def _format_uncertainty(case: CaseResult, key: tuple[str, str]) -> RichText:
+    width = _find_largest(case.uncertainty.get(key[0], {}).get(key[1]))
+    if width is None:
+        return "–"
+    return describe_half_width(width, format_value(width, 2), list_unknown(case.uncertainty_basis), key[1])
+
+
+def _find_component(case: CaseResult, component: ComponentName, key: tuple[str, str]) -> float | None:
+    return _find_largest(case.uncertainty_components.get(key[0], {}).get(key[1], {}).get(component))
+
+
+def _format_component(case: CaseResult, component: ComponentName, key: tuple[str, str]) -> RichText:
+    return format_value(_find_component(case, component, key), 2)
+
+
+def _format_reference(reference: ReferenceValues, key: tuple[str, str]) -> RichText:
+    value, width = (values.get(key[0], {}).get(key[1]) for values in (reference.quantities, reference.uncertainty))
+    if value is None or isinstance(value, list):
+        return "–" if value is None else _format_list(value)
+    text = format_value(value, 5)
+    return text if not isinstance(width, float) else f"{text} ± {format_value(width, 2)}"
 
 
 def _sort_quantities(names: Iterable[str]) -> list[str]:
@@ -173,22 +154,9 @@ def _sort_quantities(names: Iterable[str]) -> list[str]:
     return sorted(names, key=lambda name: (order.get(name, len(order)), name))
 
 
-def _label(quantity: str) -> RichText:
-    return f"{quantity_label(quantity)} ", Code(quantity)
-
-
-def _row(case: CaseResult, key: str, quantity: str, names: list[ComponentName]) -> tuple[RichText, ...]:
-    components = case.uncertainty_components[key][quantity]
-    widths = [_format_largest(components.get(name)) for name in names]
-    combined = case.uncertainty[key][quantity]
-    largest = max(combined, default=0.0) if isinstance(combined, list) else combined
-    marked = mark_half_width(largest, _format_largest(combined), list_unknown(case.uncertainty_basis))
-    return (_label(quantity), name_pantograph(key), quantity_unit(quantity) or "–", marked, *widths)
-
-
-def _format_largest(width: float | list[float] | None) -> str:
-    """Largest half-width of the items of a quantity; a dash without one."""
-    return format_value(max(width, default=None) if isinstance(width, list) else width, 2)
+def _find_largest(width: float | list[float] | None) -> float | None:
+    """Largest half-width of the items of a quantity; None without one."""
+    return max(width, default=None) if isinstance(width, list) else width
 
 
 # A list of values drawn as a small curve without axes: its shape beside its range in words.

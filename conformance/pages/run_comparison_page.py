@@ -34,7 +34,7 @@ from pantocheck.conformance.results.comparison_format import (
     ForceAgreement,
     RunComparison,
 )
-from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult
 
 RUN_COMPARISON_SCOPE = (
@@ -167,7 +167,7 @@ def _build_value_table(case: CaseResult, comparison: MeasuredRun) -> doc.Table:
                     quantity_label(name),
                     name_pantograph(key),
                     format_value(other),
-                    _format_width(select_single(widths.get(name)), case.uncertainty_basis),
+                    _format_width(select_single(widths.get(name)), case.uncertainty_basis, name),
                     format_value(value),
                     format_value(select_single(comparison.uncertainty.get(key, {}).get(name)), 2),
                     format_signed(other - value),
@@ -177,9 +177,9 @@ def _build_value_table(case: CaseResult, comparison: MeasuredRun) -> doc.Table:
     return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
 
 
-def _format_width(width: float | None, basis: Basis) -> str:
-    """Half-width of a simulated value with two digits and its mark; a dash without one."""
-    return "–" if width is None else mark_half_width(width, format_value(width, 2), list_unknown(basis))
+def _format_width(width: float | None, basis: Basis, quantity: str) -> str:
+    """Half-width of a simulated value with two digits; a dash without one."""
+    return "–" if width is None else describe_half_width(width, format_value(width, 2), list_unknown(basis), quantity)
 
 
 def _draw_figures(

@@ -9,7 +9,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import criterion_title
 from pantocheck.conformance.pages.words import clean_tree, format_value, name_verdict, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_margin, raises_trust_only
-from pantocheck.conformance.results.incomplete_uncertainty import list_unknown, mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown
 from pantocheck.conformance.results.procedure_format import Procedure, ProcedureStep
 from pantocheck.conformance.results.results_format import CaseResult, Results, ScopeStep, name_case
 
@@ -168,10 +168,9 @@ def _describe_rest(results: Results, cases: list[str], states: set[str]) -> Iter
 PROCEDURE_KEY = (
     "Margin and uncertainty belong to the criterion of the step with the smallest margin. The margin is the distance "
     "to the nearer limit, divided by half the distance between the limits, or by the limit. The uncertainty is the "
-    "half-width of the 95 % interval of value and limit together, divided in the same way; an asterisk marks one that "
-    "lacks a component that is not known. With a limit of 0 alone, both are in the unit of the value. Steps that are "
-    "not required are for information and have no part in the verdict. The steps follow the style of EN 50318; the "
-    "text of the standard is not reproduced."
+    "half-width of the 95 % interval of value and limit together, divided in the same way. With a limit of 0 alone, "
+    "both are in the unit of the value. Steps that are not required are for information and have no part in the "
+    "verdict. The steps follow the style of EN 50318; the text of the standard is not reproduced."
 )
 
 
@@ -250,22 +249,23 @@ def _describe_step(step: ProcedureStep) -> Iterator[str]:
             yield f"{name_step(step)}, {criterion_title(row)}: {text}"
 
 
-def list_step_missing(step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[str, ...]:
-    """Components that the uncertainty of a step lacks: those of the case of its smallest margin."""
+def explain_step_missing(step: ProcedureStep, cases: Sequence[CaseResult]) -> str:
+    """Sentence on the components that the uncertainty of a step lacks: those of the case of its smallest margin."""
     named = (case for case in cases if case.id in step.cases and str(step.closest).startswith(f"{case.id}, "))
-    return next((list_unknown(case.uncertainty_basis) for case in named), ())
+    missing = next((list_unknown(case.uncertainty_basis) for case in named), ())
+    return "" if step.uncertainty is None else explain_missing(missing)
 
 
 def _build_procedure_row(number: int, step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[doc.RichText, ...]:
     margin = "–" if step.margin is None else replace_minus(format_margin(step.margin))
     width = step.uncertainty
-    missing = list_step_missing(step, cases)
-    texts = [text for text in (step.closest, step.unconfirmed, step.reason) if text]
+    lacking = explain_step_missing(step, cases).removesuffix(".")
+    texts = [text for text in (step.closest, lacking, step.unconfirmed, step.reason) if text]
     return (
         doc.Link(f"{number} {name_step(step)}", step_anchor(step)),
         name_state(step),
         doc.VerdictMark(step.verdict),
         margin,
-        "–" if width is None else mark_half_width(width, format_value(width, 2), missing),
+        "–" if width is None else format_value(width, 2),
         "; ".join(texts) or "–",
     )

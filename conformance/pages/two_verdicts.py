@@ -8,7 +8,7 @@ from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.criteria_table import criteria_blocks
+from pantocheck.conformance.pages.criteria_table import DEVIATION_HEADINGS, criteria_blocks
 from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -185,10 +185,19 @@ def verification_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
     if verification.reason and verification.reason != case.reason:
         blocks.append(doc.Paragraph(verification.reason))
     if verification.criteria:
-        blocks += criteria_blocks(verification.criteria, anchor, f"{anchor}-verification-source", case)
+        rows = [_subtract_converged(row) for row in verification.criteria]
+        blocks += criteria_blocks(rows, anchor, f"{anchor}-verification-source", case, DEVIATION_HEADINGS)
     if verification.omitted:
         blocks.append(doc.Section("Without a confirmed value", (doc.BulletList(tuple(verification.omitted)),)))
     return (doc.Section(NAMES["verification"], tuple(blocks)),)
+
+
+def _subtract_converged(row: Criterion) -> Criterion:
+    """Criterion of the deviation from the converged value, the middle of its limits."""
+    if row.value is None or row.lower is None or row.upper is None:
+        return row
+    width, middle = (row.upper - row.lower) / 2, (row.lower + row.upper) / 2
+    return row.model_copy(update={"value": row.value - middle, "lower": -width, "upper": width})
 
 
 # A badge for a README as SVG.

@@ -12,7 +12,7 @@ from pantocheck.conformance.pages.scope_page import build_procedure_headline, su
 from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
-from pantocheck.conformance.results.incomplete_uncertainty import INCOMPLETE_MARK, list_missing, mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import list_missing
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MARGINS_SHOWN = 3
@@ -134,6 +134,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
     """Sentences under headings, errors first; a heading without sentences is left out."""
     passed = _select(results, "pass")
     drifts = [(case, row) for case in results.cases for row in select_criteria(results, case) if row.is_drift]
+    # Between two equal limits a margin is 0 at best and says nothing about closeness.
     ranked = [
         (case, row) for case, row in passed if row.lower != row.upper and is_relative_margin(row.lower, row.upper)
     ]
@@ -149,18 +150,17 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
             if case.record and case.record.state == "unconfirmed"
         ],
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
-        "Closer to a limit than the uncertainty": [
-            _close_value(pair) for pair in _criteria(results) if pair[1].is_close
-        ],
+        "Closer to a limit than the uncertainty": _list_close(results),
         "Another documented reading reverses the verdict": [
-            f"{_value(pair).removesuffix('.')}; {'; '.join(pair[1].readings)}."
+            f"{_subject(*pair)}: {'; '.join(pair[1].readings)}."
             for pair in _criteria(results)
             if pair[1].depends_on_reading
         ],
         "Limits of the user": [_own_limit(pair) for pair in _criteria(results) if pair[1].trust == "own"],
-        # Between two equal limits a margin is 0 at best and says nothing about closeness.
-        "Smallest margins": [_value(pair) for pair in ranked[:MARGINS_SHOWN]],
+        "Smallest margins": [_describe_margin(pair) for pair in ranked[:MARGINS_SHOWN]],
     }
+    if groups["Closer to a limit than the uncertainty"]:
+        del groups["Smallest margins"]
     return tuple(
         Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
     )
@@ -190,7 +190,7 @@ def state_incomplete(results: Results) -> str | None:
     listed = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
     return (
         f"The uncertainty of {count_noun(number, 'counted value')} is incomplete "
-        f"({INCOMPLETE_MARK}: {listed} not known), so that more of them may lie closer to a limit than stated."
+        f"({listed} not known), so that more of them may lie closer to a limit than stated."
     )
 
 
@@ -241,15 +241,20 @@ def _value(pair: CaseCriterion) -> str:
     return f"{text}, limits {limits}{margin}."
 
 
-def _close_value(pair: CaseCriterion) -> str:
-    """A value and its limits with its uncertainty, which is the reason why it is close."""
+def _list_close(results: Results) -> list[str]:
+    """Names of the close values, one sentence for each case."""
+    names: dict[str, list[str]] = {}
+    for case, row in _criteria(results):
+        if row.is_close:
+            owner = f" of {name_owner(row)}" if row.pantograph > 1 or row.item else ""
+            names.setdefault(case.id, []).append(f"{criterion_title(row)}{owner}{_name_verification(row)}")
+    return [f"{case}: {'; '.join(close)}." for case, close in names.items()]
+
+
+def _describe_margin(pair: CaseCriterion) -> str:
     case, row = pair
-    uncertainty, unit = row.uncertainty, row.unit
-    missing = list_missing(case.uncertainty_basis, uncertainty, row.trust)
-    if uncertainty is None:
-        return _value(pair)
-    width = f"{mark_half_width(uncertainty, format_value(uncertainty, 2), missing, '± ')} {unit}".rstrip()
-    return f"{_value(pair).removesuffix('.')}, uncertainty {width}."
+    margin = format_criterion_margin(row.margin, row.lower, row.upper, row.unit)
+    return f"{_subject(case, row)}: margin {replace_minus(margin)}."
 
 
 def _own_limit(pair: CaseCriterion) -> str:
@@ -270,5 +275,8 @@ def _reason(pair: CaseCriterion) -> str:
 
 
 def _subject(case: CaseResult, criterion: Criterion) -> str:
-    verification = ", verification" if criterion.trust == "computed" else ""
-    return f"{case.id}, {name_owner(criterion)}, {criterion_title(criterion)}{verification}"
+    return f"{case.id}, {name_owner(criterion)}, {criterion_title(criterion)}{_name_verification(criterion)}"
+
+
+def _name_verification(criterion: Criterion) -> str:
+    return ", verification" if criterion.trust == "computed" else ""

@@ -1,4 +1,4 @@
-"""Half-widths that lack a component of the uncertainty: their mark, and its explanation.
+"""Half-widths of an uncertainty in words, and the components that they lack.
 
 A component that is not known is not zero: the half-width of the others is then too small.
 """
@@ -6,10 +6,11 @@ A component that is not known is not zero: the half-width of the others is then 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
 
-INCOMPLETE_MARK = "*"
-"""Mark of a half-width without a component that is not known."""
+EXACT = "exact"
+"""Half-width of a value of the line at rest that does not change with the mesh: it has a closed form."""
 
 
 def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
@@ -34,26 +35,26 @@ def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str
     return () if uncertainty is None or trust == "computed" else list_unknown(basis)
 
 
-def mark_half_width(width: float, text: str, missing: Sequence[str], sign: str = "") -> str:
-    """Text of a half-width: marked if a component is missing, and `not known` if the known ones are zero.
+def describe_half_width(width: float, number: str, missing: Sequence[str], quantity: str) -> str:
+    """Text of a half-width: one of zero is `exact`, or not known because a component is missing.
 
     Args:
         width: Half-width.
-        text: Its number with significant digits.
+        number: Its text with significant digits.
         missing: Components that it lacks.
-        sign: Sign before the number.
+        quantity: Name of the quantity.
     """
-    if not missing:
-        return f"{sign}{text}"
-    return f"{sign}{text}{INCOMPLETE_MARK}" if width else UNKNOWN_BASIS
+    if width:
+        return number
+    if quantity in QUANTITIES and QUANTITIES[quantity].scope == "static":
+        return EXACT
+    return UNKNOWN_BASIS if missing else number
 
 
-def explain_mark(missing: Sequence[str]) -> str:
-    """Explanation of the mark, for the components of a case.
-
-    Args:
-        missing: Components that are not known; at least one.
-    """
-    names = " and ".join(filter(None, (", ".join(missing[:-1]), missing[-1])))
+def explain_missing(missing: Sequence[str]) -> str:
+    """Sentence on the uncertainties of a case that lack components; empty if they lack none."""
+    names = " and ".join(filter(None, (", ".join(missing[:-1]), *missing[-1:])))
     verb = "is" if len(missing) == 1 else "are"
-    return f"{INCOMPLETE_MARK} Uncertainty without {names}, which {verb} not known: it is too small."
+    return (
+        f"Uncertainties of the passage without {names}, which {verb} not known: they are too small." if missing else ""
+    )

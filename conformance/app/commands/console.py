@@ -10,7 +10,7 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.guard import strip_control_characters
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.quantities.registry import unit_of
-from pantocheck.conformance.results.incomplete_uncertainty import mark_half_width
+from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width
 
 
 class HangingText:
@@ -223,14 +223,16 @@ def build_quantities_table(
             value, width = quantities.get(name), uncertainty.get(owner, {}).get(name)
             if isinstance(value, float):
                 text = name + (f", pantograph {owner}" if int(owner) > 1 else "")
-                errors = [format_width(width if isinstance(width, float) else None, missing)] if uncertainty else []
+                errors = (
+                    [format_width(width if isinstance(width, float) else None, missing, name)] if uncertainty else []
+                )
                 table.add_row(escape_text(text), format_number(value), *errors, unit_of(name))
     return table
 
 
-def format_width(width: float | None, missing: Sequence[str]) -> str:
-    """Half-width with two digits, marked if a component is missing; a dash for None."""
-    return "-" if width is None else mark_half_width(width, format_number(width, 2), missing)
+def format_width(width: float | None, missing: Sequence[str], quantity: str) -> str:
+    """Half-width of a quantity with two digits; a dash for None."""
+    return "-" if width is None else describe_half_width(width, format_number(width, 2), missing, quantity)
 
 
 def list_names(values: NamedValues) -> tuple[str, ...]:

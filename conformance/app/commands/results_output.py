@@ -23,13 +23,14 @@ from pantocheck.conformance.app.commands.console import (
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, describe_condition
+from pantocheck.conformance.pages.criteria_table import describe_close
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_results
 from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record, state_decision
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
-from pantocheck.conformance.results.incomplete_uncertainty import explain_mark, list_unknown
+from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
 
 EXIT_CODES: dict[Verdict, int] = {**dict.fromkeys(WORST_FIRST, 1), "pass": 0, "error": 2, "info": 3}
@@ -98,7 +99,7 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
         table = build_quantities_table(case.quantities, case.uncertainty, select_main(case.quantities), missing)
         yield from [table] if table.row_count else []
     if missing and case.uncertainty:
-        yield indent_text(explain_mark(missing))
+        yield indent_text(explain_missing(missing))
     if case.verification is not None:
         yield Text("  Verification up to 50 Hz: ") + style_verdict(case.verification.verdict)
         if case.verification.reason and not case.reason:
@@ -124,17 +125,21 @@ def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -
     """Criteria as a table, and their remarks."""
     if criteria:
         yield _build_criterion_table(criteria, missing)
+        trusts = {item.trust for item in criteria if item.trust not in (None, "computed")}
+        yield from [indent_text(f"Trust of the limits: {trust}.") for trust in trusts if len(trusts) == 1]
+    yield from map(indent_text, describe_close(criteria, _name))
     for item in criteria:
-        for remark in filter(None, (item.reason, *item.close, *item.readings)):
+        for remark in filter(None, (item.reason, *item.readings)):
             yield indent_text(f"{_name(item)}: {remark}")
 
 
 def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]) -> FittedTable:
-    """Table of criteria; without the column of the shift, if no shift is known."""
+    """Table of criteria; without the column of the shift, if no shift is known, and of a trust that all share."""
     numbers = ["value", "+-", "shift", "limits", "margin"]
     if all(item.spread is None for item in criteria):
         numbers.remove("shift")
-    headings = ("criterion", *numbers, "verdict", "trust")
+    origin = ("trust",) if len({item.trust for item in criteria if item.trust}) > 1 else ()
+    headings = ("criterion", *numbers, "verdict", *origin)
     table = build_table(*headings, unbroken=headings[1:], right=numbers)
     for item in criteria:
         error = item.discretisation_error if item.uncertainty is None else item.uncertainty
@@ -142,7 +147,7 @@ def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]
         cells: dict[str, str | Text] = {
             "criterion": escape_text(_name(item)),
             "value": texts.value,
-            "+-": format_width(error, () if item.uncertainty is None else missing),
+            "+-": format_width(error, () if item.uncertainty is None else missing, item.quantity),
             "shift": format_number(item.spread, 2),
             "limits": texts.bounds,
             "margin": format_criterion_margin(item.margin, item.lower, item.upper, item.unit),

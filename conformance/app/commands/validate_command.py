@@ -12,7 +12,6 @@ from pantocheck.conformance.app.commands.console import (
     build_table,
     escape_text,
     format_number,
-    format_width,
     indent_text,
     style_verdict,
 )
@@ -33,7 +32,7 @@ from pantocheck.conformance.dossier.validation import Validation
 from pantocheck.conformance.execution.runner import RunInterrupted
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_all
-from pantocheck.conformance.pages.scope_page import describe_steps, list_step_missing, name_state
+from pantocheck.conformance.pages.scope_page import describe_steps, explain_step_missing, name_state
 from pantocheck.conformance.pages.verdict_reasons import build_headline
 from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.results.file_places import FilePlace, ReportPlaces
@@ -92,11 +91,12 @@ def _describe_results(results: Results, procedure: Procedure) -> Iterator[Render
         name = read_words()["procedure"][step.step]
         numbers = (
             format_number(step.margin, 3),
-            format_width(step.uncertainty, list_step_missing(step, results.cases)),
+            format_number(step.uncertainty, 2),
         )
         table.add_row(name, name_state(step), style_verdict(step.verdict), *numbers)
     yield table
-    for sentence in (*describe_steps(procedure), *_describe_cases(results)):
+    lacking = dict.fromkeys(explain_step_missing(step, results.cases) for step in procedure.steps)
+    for sentence in filter(None, (*lacking, *describe_steps(procedure), *_describe_cases(results))):
         yield indent_text(sentence)
 
 

@@ -26,7 +26,7 @@ def test_skipped_cases_have_no_section_and_share_a_sentence(results: dict[str, A
     section = build_case_section(list_shown_cases(Results.model_validate(results).cases)[0])
     headings = [block.heading for block in section.blocks if isinstance(block, Section)]
     assert headings.index("Figures") == headings.index("Criteria") + 1
-    assert headings.index("Figures") < headings.index("All quantities")
+    assert headings.index("Figures") < headings.index("All quantities, with uncertainty by component")
     results["cases"].append(results["cases"][2] | {"id": "own/other"})
     [reasons] = [block for block in certify(results).blocks if isinstance(block, Section) and block.anchor == "reasons"]
     items = [str(item) for part in reasons.blocks if isinstance(part, Section) for item in part.blocks[0].items]  # type: ignore[union-attr]

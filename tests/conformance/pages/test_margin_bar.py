@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.pages.criteria_table import WIDTH, draw_margin_bar
+from pantocheck.conformance.pages.margin_bar import WIDTH, draw_margin_bar
 
 numbers = st.floats(-1e6, 1e6)
 

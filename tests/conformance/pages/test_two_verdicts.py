@@ -11,10 +11,9 @@ from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
 from pantocheck.conformance.pages.ci_reports import render_junit
-from pantocheck.conformance.pages.document import Code
+from pantocheck.conformance.pages.document import Section, Table
 from pantocheck.conformance.pages.markdown import render_markdown
-from pantocheck.conformance.pages.quantity_tables import build_band_table
-from pantocheck.conformance.pages.two_verdicts import summarise_verdict
+from pantocheck.conformance.pages.two_verdicts import summarise_verdict, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import build_headline, list_reasons
 from pantocheck.conformance.results.results_format import CaseResult, Results, VerdictName
 
@@ -68,13 +67,16 @@ def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
     assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
     assert summarise_verdict(Results.model_validate(decide(failing, "verification"))) == "fail 0/1"
-    # A value that the verification fails is not called informative beside it.
-    (row,) = (
-        row
-        for row in build_band_table(CaseResult.model_validate(decide(failing)["cases"][0])).rows
-        if Code(BAND) in row[0]
-    )
-    assert str(row[2]).endswith("(no published limit; verification FAIL)")
+    # A verified value is shown as its deviation from the middle of its limits.
+    result = CaseResult.model_validate(decide(failing)["cases"][0])
+    [section] = verification_blocks(result, "case-1")
+    assert isinstance(section, Section)
+    assert result.verification is not None
+    [table] = [block for block in section.blocks if isinstance(block, Table)]
+    assert [column.heading for column in table.columns][2:5:2] == ["Deviation", "Tolerance"]
+    value = result.verification.criteria[0].value
+    assert float(str(table.rows[0][2]).split()[0]) == pytest.approx((value or 0.0) - (1.0 + 2.0) / 2, rel=1e-3)
+    assert str(table.rows[0][4]).startswith("± ")
 
 
 def test_page_1_names_a_criterion_that_needs_the_stated_start(passing: dict[str, Any]) -> None:

@@ -1,44 +1,54 @@
-"""Table of the uncertainty by component in the certificate."""
+"""Table of all quantities with their uncertainty by component in the certificate."""
 
 from typing import Any
 
 from helpers.shown_page import certify, shown_certificate
-from pantocheck.conformance.pages.document import BulletList, Code, Section, Table
-from pantocheck.conformance.pages.quantity_tables import build_quantity_table, draw_spark_line, uncertainty_blocks
+from pantocheck.conformance.pages.document import Code, RichText, Section
+from pantocheck.conformance.pages.quantity_tables import (
+    build_quantity_table,
+    draw_spark_line,
+    list_uncertainty_basis,
+)
 from pantocheck.conformance.pages.words import format_value
 from pantocheck.conformance.results.results_format import CaseResult
 
 
+def list_rows(case: dict[str, Any]) -> dict[tuple[str, Code], tuple[RichText, ...]]:
+    """Rows of the table by pantograph and name of the quantity."""
+    rows = build_quantity_table(CaseResult.model_validate(case)).rows
+    return {(str(row[1]), row[0][1]): row for row in rows}  # type: ignore[index]
+
+
 def test_table_has_every_component_of_every_quantity(passing: dict[str, Any]) -> None:
-    """Both pantographs; an unknown component is a dash, and its reason stands above the table."""
+    """Both pantographs; a graded value stands above, and an unknown component only among the sentences."""
     case = passing["cases"][0]
-    basis, table = uncertainty_blocks(CaseResult.model_validate(case))
-    assert isinstance(table, Table)
-    assert isinstance(basis, BulletList)
-    assert basis.items[1].startswith("Start: 7 runs with other starts and ramps")
-    assert basis.items[3] == "Length: not known: the analysis section is shorter than 5 spans."
-    headings = [column.heading for column in table.columns]
-    assert headings[3:] == ["Combined", "Discretisation", "Start", "Section", "Length"]
-    rows = {(row[1], row[0][1]): row for row in table.rows}
-    assert len(rows) == sum(len(case["quantities"][key]) for key in "12")
+    result = CaseResult.model_validate(case)
+    basis = list_uncertainty_basis(result)
+    assert basis[1].startswith("Start: 7 runs with other starts and ramps")
+    assert basis[3] == "Length: not known: the analysis section is shorter than 5 spans."
+    headings = [column.heading for column in build_quantity_table(result).columns]
+    assert headings == ["Quantity", "Pantograph", "Unit", "Value", "Uncertainty", "Discretisation", "Start"]
+    rows = list_rows(case)
+    assert len(rows) == sum(map(len, case["quantities"].values()))
     for pantograph in ("1", "2"):
-        value = case["quantities"][pantograph]["std_force_N"]
-        widths = [format_value(share * value, 2) for share in (0.0025, 0.0015, 0.002)]
-        combined, *others = widths
-        assert rows[f"pantograph {pantograph}", Code("std_force_N")][2:] == ("N", f"{combined}*", *others, "–", "–")
+        for name, unit, graded in (("std_force_N", "N", True), ("cov_20", "–", False)):
+            value = case["quantities"][pantograph][name]
+            combined, *others = (format_value(share * value, 2) for share in (0.0025, 0.0015, 0.002))
+            shown = ("above", "above") if graded else (format_value(value, 5), combined)
+            assert rows[pantograph, Code(name)][2:] == (unit, *shown, *others)
 
 
 def test_model_uncertainty_stands_below_the_components_and_changes_no_width(passing: dict[str, Any]) -> None:
     case = passing["cases"][0]
-    _, table = uncertainty_blocks(CaseResult.model_validate(case))
+    rows = list_rows(case)
     case["model_uncertainty"] = ["Constant tension. Maximum of the 20 Hz force: 0.8 %."]
-    basis, same = uncertainty_blocks(CaseResult.model_validate(case))
-    assert isinstance(basis, BulletList)
-    assert len(basis.items) == 5
-    assert basis.items[4] == (
-        "Model, not part of the combined width: Constant tension. Maximum of the 20 Hz force: 0.8 %."
-    )
-    assert same == table
+    basis = list_uncertainty_basis(CaseResult.model_validate(case))
+    assert basis[4] == "Model, not part of the uncertainty: Constant tension. Maximum of the 20 Hz force: 0.8 %."
+    assert list_rows(case) == rows
+    case["uncertainty_basis"] = dict.fromkeys(case["uncertainty_basis"], "does not apply: the line is at rest")
+    stated, model = list_uncertainty_basis(CaseResult.model_validate(case))
+    assert stated == "Discretisation, start, section, length: does not apply: the line is at rest."
+    assert model == basis[4]
 
 
 def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str, Any]) -> None:
@@ -46,22 +56,28 @@ def test_several_values_have_the_largest_of_their_half_widths(passing: dict[str,
     case["quantities"]["0"]["presag_mm"] = [20.0, 55.0]
     case["uncertainty"]["0"] = {"presag_mm": [0.5, 0.25]}
     case["uncertainty_components"]["0"] = {"presag_mm": {"discretisation": [0.5, 0.25]}}
-    _, table = uncertainty_blocks(CaseResult.model_validate(case))
-    assert isinstance(table, Table)
-    assert table.rows[-1][1:] == ("line", "mm", "0.50*", "0.50", "–", "–", "–")
-    cells = {row[0][1]: row for row in build_quantity_table(CaseResult.model_validate(case)).rows}
-    assert cells[Code("presag_mm")][-1] == "20.000, 55.000"
+    assert list_rows(case)["line", Code("presag_mm")][2:] == ("mm", "20.000, 55.000", "0.50", "0.50", "–")
     # The curve of 3 points spans the height of the drawing inside its margins of 2; equal values lie at one height.
     assert 'points="2.00,16.00 50.00,2.00 98.00,9.00"' in draw_spark_line([1.0, 3.0, 2.0])
     assert 'points="2.00,16.00 98.00,16.00"' in draw_spark_line([1.0, 1.0])
+    case["quantities"]["0"] = {"presag_mm": [0.5] * 5, "elasticity_along_span_mm_N": [0.25, *[0.5] * 23]}
+    rows = list_rows(case)
+    assert str(rows["line", Code("presag_mm")][3]).count("0.50000") == 5
+    drawing, text = rows["line", Code("elasticity_along_span_mm_N")][3]
+    assert drawing.svg == draw_spark_line([0.25, *[0.5] * 23])  # type: ignore[union-attr]
+    assert drawing.alternative == text.strip() == "24 values, 0.25000 to 0.50000"  # type: ignore[union-attr]
+
+
+def test_closed_forms_are_exact_and_values_without_a_known_width_are_not(passing: dict[str, Any]) -> None:
+    """The length of the record is not known, and has no influence on the line at rest."""
     case = passing["cases"][0]
-    case["quantities"]["0"] = {"presag_mm": [0.5] * 10, "elasticity_along_span_mm_N": [0.25, *[0.5] * 23]}
-    case["uncertainty"]["0"] = {}
-    cells = {row[0][1]: row[-1] for row in build_quantity_table(CaseResult.model_validate(case)).rows}
-    assert cells[Code("presag_mm")].count("0.50000") == 10
-    drawing, text = cells[Code("elasticity_along_span_mm_N")]
-    assert drawing.svg == draw_spark_line([0.25, *[0.5] * 23])
-    assert drawing.alternative == text.strip() == "24 values, 0.25000 to 0.50000"
+    for owner, name in (("0", "wave_speed_m_s"), ("1", "cov_50")):
+        case["quantities"][owner][name] = 1.0
+        case["uncertainty"].setdefault(owner, {})[name] = 0.0
+        case["uncertainty_components"].setdefault(owner, {})[name] = {"discretisation": 0.0}
+    rows = list_rows(case)
+    assert rows["line", Code("wave_speed_m_s")][4] == "exact"
+    assert rows["1", Code("cov_50")][4] == "not known"
 
 
 def test_certificate_shows_the_components_only_where_there_are_results(results: dict[str, Any]) -> None:
@@ -69,6 +85,6 @@ def test_certificate_shows_the_components_only_where_there_are_results(results: 
     found = {
         section.heading: [part.heading for part in section.blocks if isinstance(part, Section)] for section in sections
     }
-    named = [heading for heading, parts in found.items() if "Uncertainty by component" in parts]
+    named = [heading for heading, parts in found.items() if "All quantities, with uncertainty by component" in parts]
     assert len(named) == 2
     assert "is not known. A quantity with several values" in shown_certificate(results)

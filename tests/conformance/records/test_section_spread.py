@@ -10,7 +10,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.record_uncertainty import section_spread
-from pantocheck.conformance.pages.criteria_table import remark_shift
+from pantocheck.conformance.pages.quantity_tables import build_quantity_table
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals, evaluate_record
 from pantocheck.conformance.runs.system import Delivered
@@ -53,8 +53,9 @@ def test_value_closer_to_a_limit_than_the_spread_is_marked(growing: tuple[Case, 
         {"start": 2.0, "section": 1.25 * 0.75, "sampling": 0.0, "resolution": 0.0}, abs=5e-3
     )
     assert any("less than its uncertainty of 2.2 N (mostly start)" in remark for remark in row.close)
-    remark = remark_shift(row)
-    assert remark.startswith("changes by up to 2.0 N when the analysis section")
+    table = build_quantity_table(result)
+    mean = next(row for row in table.rows if "mean_force_N" in str(row[0]))
+    assert (table.columns[-1].heading, mean[-1]) == ("Shift", "2.0")
 
 
 def test_case_without_compared_spans_has_no_spread(case_250: Case, wave: type[Wave]) -> None:
