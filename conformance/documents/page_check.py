@@ -93,6 +93,7 @@ class _Page(HTMLParser):
         self.tokens.append(("end of", tag))
 
     def handle_data(self, data: str) -> None:
+        """Keep a text, and the content of a style sheet or script."""
         line = " ".join(data.split())
         if not line:
             return

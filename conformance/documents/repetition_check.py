@@ -188,19 +188,10 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
 def _add_own_limits(case: Case, stated: CaseResult) -> Case:
     """Case with the limits of the user that a result states, so that its criteria are graded again."""
     own = [row for row in stated.criteria if row.trust == "own" and row.quantity in QUANTITIES]
+    rows = [row.model_dump(include={"quantity", "item", "lower", "upper", "trust", "source"}) for row in own]
+    owners = [row.pantograph or None for row in own]
     return case.with_limits(
-        tuple(
-            Limit.model_construct(
-                quantity=row.quantity,
-                pantograph=row.pantograph or None,
-                item=row.item,
-                lower=row.lower,
-                upper=row.upper,
-                trust="own",
-                source=row.source,
-            )
-            for row in own
-        )
+        tuple(Limit.model_construct(pantograph=n, **row) for n, row in zip(owners, rows, strict=True))
     )
 
 

@@ -29,7 +29,6 @@ from pantocheck.conformance.pages.criteria_table import name_figure
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.quantities.bands import BANDS
-from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.results_format import CaseResult
 
 LISTED_SUPPORTS = 3
@@ -45,9 +44,8 @@ def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[do
     limited = [row for row in case.criteria if not row.is_drift]
     for key, trace in sorted(case.traces.items(), key=lambda item: (len(item[0]), item[0])):
         if trace.position_m:
-            rows = [row for row in limited if str(row.pantograph) == key]
             curves = doc.Curves("force", number, key)
-            figure = _force_figure(key, trace, rows, select_reference_force(case, key))
+            figure = _force_figure(key, trace, select_reference_force(case, key))
             yield replace(figure, anchor=name_figure(anchor, key), curves=curves)
         if trace.spectrum.frequency_Hz:
             yield _spectrum_figure(key, trace, case.quantities.get(key, {}))
@@ -87,17 +85,14 @@ def _chart_figures(charts: Sequence[Chart]) -> Iterator[doc.Figure]:
             yield doc.Figure(draw_chart(chart, y_range), chart.alternative, chart.caption, wide)
 
 
-def _force_figure(key: str, trace: Traces, criteria: Sequence[Criterion], reference: list[float]) -> doc.Figure:
+def _force_figure(key: str, trace: Traces, reference: list[float]) -> doc.Figure:
     start, end = trace.position_m[0], trace.position_m[-1]
     mean, std = trace.mean_N, trace.std_N
-    text = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m"
-    if std is not None:
-        low, high = format_value(mean - 3 * std), format_value(mean + 3 * std)
-        text += f"; mean {format_value(mean)} N, mean ± 3 σ from {low} N to {high} N"
-    limited = select_limited(criteria)
-    strip = " On the right: limits and values of the force statistics." if limited else ""
-    behind = " Behind: the reference simulator." if reference else ""
-    return doc.Figure(draw_force(trace, limited, reference), f"{text}.{behind}", f"{text}.{behind}{strip}")
+    caption = f"Pantograph {key}: contact force from {format_plain(start)} m to {format_plain(end)} m."
+    caption += " Behind: the reference simulator." if reference else ""
+    levels = "" if std is None else f" from {format_value(mean - 3 * std)} N to {format_value(mean + 3 * std)} N"
+    text = f"{caption} Mean {format_value(mean)} N, mean ± 3 σ{levels}." if levels else caption
+    return doc.Figure(draw_force(trace, reference), text, caption)
 
 
 def _spectrum_figure(key: str, trace: Traces, quantities: Mapping[str, Number]) -> doc.Figure:
@@ -119,10 +114,6 @@ def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> doc.Figu
 
 
 # Contact force over the track, its spectrum and its histogram.
-# Levels of the force whose limits are drawn beside it, in this order, under short names.
-FORCE_LEVELS = {name: quantity.force_level for name, quantity in QUANTITIES.items() if quantity.force_level}
-
-
 MOST_SUPPORT_TICKS = 12
 """Largest number of supports whose positions are the ticks of the track."""
 
@@ -136,60 +127,25 @@ REFERENCE_STYLE: PlotStyle = {
 
 
 @render_svg
-def draw_force(trace: Traces, limited: Sequence[Criterion], reference: list[float]) -> Figure:
-    """Contact force of one pantograph over its reference, if any; on the right, the limits of `select_limited`."""
+def draw_force(trace: Traces, reference: list[float]) -> Figure:
+    """Contact force of one pantograph over its reference, if any."""
     figure = Figure(figsize=(FULL, 2.25))
-    if limited:
-        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1, 0.062 * (len(limited) + 1)))
-        _draw_limits(right, limited)
-    else:
-        left = figure.subplots()
+    axes = figure.subplots()
     position = trace.position_m
     if trace.force_N:
-        left.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
+        axes.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
     if reference:
-        left.plot(position, reference, **REFERENCE_STYLE)
+        axes.plot(position, reference, **REFERENCE_STYLE)
     if trace.force_20_N:
-        left.plot(position, trace.force_20_N, color=INK, linewidth=1.2, label="0–20 Hz")
-    _draw_levels(left.axhline, trace)
+        axes.plot(position, trace.force_20_N, color=INK, linewidth=1.2, label="0–20 Hz")
+    _draw_levels(axes.axhline, trace)
     for number, support in enumerate(trace.supports_m):
-        left.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
-    left.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
+        axes.axvline(support, color=INK, linewidth=0.8, linestyle=":", label=None if number else "support")
+    axes.set(xlim=(position[0], position[-1]), xlabel="position along the track [m]", ylabel="contact force [N]")
     if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
-        left.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
-    add_legend(left, 3 if reference else 5)
+        axes.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
+    add_legend(axes, 3 if reference else 5)
     return figure
-
-
-def select_limited(criteria: Sequence[Criterion]) -> list[Criterion]:
-    """Criteria of a pantograph whose limits are drawn beside its force, in the order of `FORCE_LEVELS`."""
-    return [
-        row
-        for name in FORCE_LEVELS
-        for row in criteria
-        if row.quantity == name and (row.lower is not None or row.upper is not None)
-    ]
-
-
-def _draw_limits(axes: Axes, rows: Sequence[Criterion]) -> None:
-    """One column per statistic: its limits as a bar, its value as a disc, cross or ring."""
-    for column, row in enumerate(rows):
-        lower, upper = row.lower, row.upper
-        bounds = [limit for limit in (lower, upper) if limit is not None]
-        if lower is not None and upper is not None:
-            axes.fill_between([column - 0.32, column + 0.32], lower, upper, color=LIMIT_FILL, linewidth=0)
-        axes.hlines(bounds, column - 0.36, column + 0.36, color=INK, linewidth=1.2)
-        if len(bounds) == 1:  # an arrow from the only limit into the permitted side
-            arrow = {"arrowstyle": "<-", "color": INK, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
-            tip = (0, 16 if upper is None else -16)
-            axes.annotate("", (column, bounds[0]), xytext=tip, textcoords="offset points", arrowprops=arrow)
-        if row.value is not None:
-            marker, face = {"pass": ("o", INK), "fail": ("X", INK)}.get(row.verdict, ("o", "white"))
-            axes.plot(column, row.value, marker, color=INK, markerfacecolor=face, markersize=5)
-    axes.set(xlim=(-0.7, len(rows) - 0.3), xlabel="limits")
-    axes.set_xticks(range(len(rows)), [FORCE_LEVELS[row.quantity] for row in rows])
-    axes.tick_params(axis="both", length=0, labelleft=False)
-    axes.spines.left.set_visible(False)
 
 
 @render_svg

@@ -70,7 +70,9 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
     shown = list_shown_cases(cases)
     anchors = {one.case.id: one.anchor for one in shown}
     steps = () if prepared.procedure is None else list_step_reasons(prepared.procedure)
-    reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph("Nothing was graded."),)
+    graded = any(row.verdict == "pass" for case in cases for name in NAMES for row in list_criteria(case, name))
+    calm = "No value is close to a limit." if graded else "Nothing was graded."
+    reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph(calm),)
     closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
     return doc.Document(
         title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",

@@ -2,13 +2,13 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
 from pantocheck.conformance.pages.criteria_table import has_reference
-from pantocheck.conformance.pages.document import Code, Column, Drawing, RichText, Table, make_table
+from pantocheck.conformance.pages.document import Code, Column, RichText, Table, make_table
 from pantocheck.conformance.pages.two_verdicts import list_criteria
 from pantocheck.conformance.pages.words import (
     format_value,
@@ -17,12 +17,11 @@ from pantocheck.conformance.pages.words import (
     quantity_unit,
 )
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.results.case_facts_format import ReferenceValues
 from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results
 
 LONGEST_PRINTED_LIST = 5
-"""Longest list that is printed in full; a longer one is drawn, and results.json has its values."""
+"""Longest list that is printed in full; results.json has the values of a longer one."""
 
 
 def list_owners(case: CaseResult) -> list[str]:
@@ -31,12 +30,11 @@ def list_owners(case: CaseResult) -> list[str]:
     return sorted(keys, key=lambda key: (key == "0", len(key), key))
 
 
-def _format_list(values: list[float]) -> RichText:
-    """Values separated by commas; of a long list a drawing with its range."""
+def _format_list(values: list[float]) -> str:
+    """Values separated by commas; of a long list its range."""
     if len(values) <= LONGEST_PRINTED_LIST:
         return ", ".join(format_value(number, 5) for number in values)
-    text = f"{len(values)} values, {format_value(min(values), 5)} to {format_value(max(values), 5)}"
-    return Drawing(draw_spark_line(values), text), f" {text}"
+    return f"{len(values)} values, {format_value(min(values), 5)} to {format_value(max(values), 5)}"
 
 
 def list_definitions(cases: Iterable[CaseResult]) -> tuple[RichText, ...]:
@@ -81,28 +79,42 @@ def list_uncertainty_basis(case: CaseResult) -> tuple[str, ...]:
     return basis + tuple(f"Model, not part of the uncertainty: {text}" for text in case.model_uncertainty)
 
 
+Key = tuple[str, str]
+"""Owner and name of a quantity."""
+
+
 def build_quantity_table(case: CaseResult) -> Table:
     """Every quantity with its uncertainty by component and the value of the reference; graded values stand above."""
-    keys = [(key, name) for key in list_owners(case) for name in _sort_quantities(case.quantities.get(key, ()))]
-    columns: dict[Column, Callable[[tuple[str, str]], RichText]] = {
+    keys = [(owner, name) for owner in list_owners(case) for name in _sort_quantities(case.quantities.get(owner, ()))]
+    graded = {(str(row.pantograph), row.quantity) for row in list_criteria(case, "criteria") if row.item is None}
+    missing = list_unknown(case.uncertainty_basis)
+
+    def format_uncertainty(key: Key) -> str:
+        width = _find_largest(case.uncertainty.get(key[0], {}).get(key[1]))
+        return "–" if width is None else describe_half_width(width, format_value(width, 2), missing, key[1])
+
+    columns: dict[Column, Callable[[Key], RichText]] = {
         Column("Quantity", share=2): lambda key: (f"{quantity_label(key[1])} ", Code(key[1])),
         Column("Pantograph", number=True, short="Pant."): lambda key: name_pantograph(key[0]).removeprefix(
             "pantograph "
         ),
         Column("Unit"): lambda key: quantity_unit(key[1]) or "–",
-        Column("Value", share=1, number=True): partial(_format_ungraded, case, _format_quantity),
+        Column("Value", share=1, number=True): lambda key: (
+            ABOVE if key in graded else _format_quantity(case.quantities, key)
+        ),
     }
     if case.reference is not None and has_reference(case):
-        columns[Column("Reference", number=True)] = partial(_format_reference, case.reference)
+        columns[Column("Reference", number=True)] = partial(_format_quantity, case.reference.quantities)
     if case.uncertainty_basis:
-        columns[Column("Uncertainty", number=True, short="Uncer-\ntainty")] = partial(
-            _format_ungraded, case, _format_uncertainty
+        columns[Column("Uncertainty", number=True, short="Uncer-\ntainty")] = lambda key: (
+            ABOVE if key in graded else format_uncertainty(key)
         )
     for component in case.uncertainty_basis:
-        if any(_find_component(case, component, key) for key in keys):
+        find_width = partial(_find_component, case, component)
+        if any(map(find_width, keys)):
             heading = component.capitalize()
             column = Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, ""))
-            columns[column] = partial(_format_component, case, component)
+            columns[column] = partial(_format_width, find_width)
     if any(case.spread.values()):
         columns[Column("Shift", number=True)] = lambda key: format_value(case.spread.get(key[0], {}).get(key[1]), 2)
     return make_table(keys, columns)
@@ -112,40 +124,17 @@ SHORT_COMPONENTS = {"Discretisation": "Discr."}
 """Headings of components on paper."""
 
 
-def _format_ungraded(
-    case: CaseResult, format_cell: Callable[[CaseResult, tuple[str, str]], RichText], key: tuple[str, str]
-) -> RichText:
-    """Cell of a quantity, or the place where its criterion states it."""
-    graded = {(str(row.pantograph), row.quantity) for row in list_criteria(case, "criteria") if row.item is None}
-    return ABOVE if key in graded else format_cell(case, key)
-
-
-def _format_quantity(case: CaseResult, key: tuple[str, str]) -> RichText:
-    value = case.quantities[key[0]][key[1]]
+def _format_quantity(quantities: Quantities, key: Key) -> str:
+    value = quantities.get(key[0], {}).get(key[1])
     return _format_list(value) if isinstance(value, list) else format_value(value, 5)
 
 
-def _format_uncertainty(case: CaseResult, key: tuple[str, str]) -> RichText:
-    width = _find_largest(case.uncertainty.get(key[0], {}).get(key[1]))
-    if width is None:
-        return "–"
-    return describe_half_width(width, format_value(width, 2), list_unknown(case.uncertainty_basis), key[1])
-
-
-def _find_component(case: CaseResult, component: ComponentName, key: tuple[str, str]) -> float | None:
+def _find_component(case: CaseResult, component: ComponentName, key: Key) -> float | None:
     return _find_largest(case.uncertainty_components.get(key[0], {}).get(key[1], {}).get(component))
 
 
-def _format_component(case: CaseResult, component: ComponentName, key: tuple[str, str]) -> RichText:
-    return format_value(_find_component(case, component, key), 2)
-
-
-def _format_reference(reference: ReferenceValues, key: tuple[str, str]) -> RichText:
-    value, width = (values.get(key[0], {}).get(key[1]) for values in (reference.quantities, reference.uncertainty))
-    if value is None or isinstance(value, list):
-        return "–" if value is None else _format_list(value)
-    text = format_value(value, 5)
-    return text if not isinstance(width, float) else f"{text} ± {format_value(width, 2)}"
+def _format_width(find_width: Callable[[Key], float | None], key: Key) -> str:
+    return format_value(find_width(key), 2)
 
 
 def _sort_quantities(names: Iterable[str]) -> list[str]:
@@ -157,24 +146,6 @@ def _sort_quantities(names: Iterable[str]) -> list[str]:
 def _find_largest(width: float | list[float] | None) -> float | None:
     """Largest half-width of the items of a quantity; None without one."""
     return max(width, default=None) if isinstance(width, list) else width
-
-
-# A list of values drawn as a small curve without axes: its shape beside its range in words.
-WIDTH, HEIGHT = 100.0, 18.0
-INSET = 2.0
-"""Distance of the extremes from the edges."""
-
-
-def draw_spark_line(values: Sequence[float]) -> str:
-    """SVG of at least two values at equal distances, from the lowest to the highest over the height of the drawing."""
-    low, high = min(values), max(values)
-    size = (HEIGHT - 2 * INSET) / (high - low) if high > low else 0.0
-    step = (WIDTH - 2 * INSET) / (len(values) - 1)
-    points = " ".join(f"{INSET + n * step:.2f},{HEIGHT - INSET - (y - low) * size:.2f}" for n, y in enumerate(values))
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" '
-        f'height="{HEIGHT:g}"><polyline points="{points}" fill="none" stroke="#1a1d21" stroke-width="1.2"/></svg>'
-    )
 
 
 # List of all quantities as comma-separated values: value, uncertainty by component, limits, verdict, input changes.

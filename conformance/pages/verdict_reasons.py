@@ -11,13 +11,9 @@ from pantocheck.conformance.pages.document import BulletList, Section
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
-from pantocheck.conformance.quantities.limit_text import format_criterion_margin, is_relative_margin
+from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import list_missing
 from pantocheck.conformance.results.results_format import CaseResult, Results
-
-MARGINS_SHOWN = 3
-"""Number of the smallest margins in the reasons."""
-
 
 NAMES_SHOWN = 5
 """Number of cases for information that the headline names."""
@@ -134,10 +130,6 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
     """Sentences under headings, errors first; a heading without sentences is left out."""
     passed = _select(results, "pass")
     drifts = [(case, row) for case in results.cases for row in select_criteria(results, case) if row.is_drift]
-    # Between two equal limits a margin is 0 at best and says nothing about closeness.
-    ranked = [
-        (case, row) for case, row in passed if row.lower != row.upper and is_relative_margin(row.lower, row.upper)
-    ]
     groups = {
         "Errors": [*_case_reasons(results, "error"), *map(_reason, _select(results, "error"))],
         "Failed": [*_case_reasons(results, "fail"), *map(_value, _select(results, "fail"))],
@@ -157,10 +149,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
             if pair[1].depends_on_reading
         ],
         "Limits of the user": [_own_limit(pair) for pair in _criteria(results) if pair[1].trust == "own"],
-        "Smallest margins": [_describe_margin(pair) for pair in ranked[:MARGINS_SHOWN]],
     }
-    if groups["Closer to a limit than the uncertainty"]:
-        del groups["Smallest margins"]
     return tuple(
         Section(heading, (BulletList(tuple(sentences)),)) for heading, sentences in groups.items() if sentences
     )
@@ -249,12 +238,6 @@ def _list_close(results: Results) -> list[str]:
             owner = f" of {name_owner(row)}" if row.pantograph > 1 or row.item else ""
             names.setdefault(case.id, []).append(f"{criterion_title(row)}{owner}{_name_verification(row)}")
     return [f"{case}: {'; '.join(close)}." for case, close in names.items()]
-
-
-def _describe_margin(pair: CaseCriterion) -> str:
-    case, row = pair
-    margin = format_criterion_margin(row.margin, row.lower, row.upper, row.unit)
-    return f"{_subject(case, row)}: margin {replace_minus(margin)}."
 
 
 def _own_limit(pair: CaseCriterion) -> str:

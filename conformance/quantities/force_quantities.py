@@ -35,7 +35,7 @@ ALL_SUPPORTS = Need[LineSignals](
 )
 
 _en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE_20, unit="N")
-_vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("bands", "damping models"))
+_vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("damping models",))
 _vovan2015_20 = partial(_vovan2015, needs=FORCE)
 _vovan2015_50 = partial(_vovan2015, needs=FORCE_50)
 
@@ -96,7 +96,6 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         definition="mean contact force over the analysis section",
         needs=FORCE,
         tables=("damping models",),
-        force_level="mean",
         compute=_mean,
     ),
     _en50318(
@@ -105,7 +104,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         definition="standard deviation of the contact force, 0-20 Hz",
         other_definition=_causal(1.6),
         never_negative=True,
-        tables=("bands", "damping models"),
+        tables=("damping models",),
         compute=_std_20,
     ),
     _vovan2015_50(
@@ -135,14 +134,12 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         name="statistical_max_N",
         label="Statistical maximum, mean + 3 σ",
         definition="mean_force_N plus three times std_force_N",
-        force_level="+3σ",
         compute=lambda *arguments: _extremes(*arguments)[1],
     ),
     _en50318(
         name="statistical_min_N",
         label="Statistical minimum, mean − 3 σ",
         definition="mean_force_N minus three times std_force_N",
-        force_level="−3σ",
         compute=lambda *arguments: _extremes(*arguments)[0],
     ),
     _en50318(
@@ -151,7 +148,6 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         definition="largest contact force, 0-20 Hz",
         other_definition=_causal(1.4),
         tables=("damping models",),
-        force_level="max",
         extreme="largest",
         compute=lambda signals, sampling: sampling.largest(signals.graded),
     ),
@@ -161,7 +157,6 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         definition="smallest contact force, 0-20 Hz",
         other_definition=_causal(15),
         tables=("damping models",),
-        force_level="min",
         extreme="smallest",
         compute=lambda signals, sampling: sampling.smallest(signals.graded),
     ),

@@ -9,8 +9,8 @@ from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
 from pantocheck.conformance.quantities.statistics import Sampling
 
-QuantityTable = Literal["bands", "damping models"]
-"""Tables with a fixed set of quantities: frequency bands in the certificate, and the study of damping sensitivity."""
+QuantityTable = Literal["damping models"]
+"""Tables with a fixed set of quantities: the study of damping sensitivity."""
 
 Scope = Literal["pantograph", "line", "static", "mass_drop", "study"]
 """Object of a value: a pantograph, the line in a run, the line at rest, identified modes, or a set of runs."""
@@ -57,8 +57,6 @@ class Quantity:
     """Whether a negative value is impossible."""
     tables: tuple[QuantityTable, ...] = ()
     """Fixed tables that show the quantity."""
-    force_level: str = ""
-    """Short name of the quantity as a level of the force, beside whose curve its limits are drawn; empty: no level."""
     other_definition: str = ""
     """Other definition in use, and the largest change of the value by it on the EN 50318:2002 cases; empty: none."""
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.evaluation import Evaluation, Value, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import Evaluation, SectionedSignals, Value, ValuesByOwner
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -43,7 +43,7 @@ SAME_RATE = 0.999
 """Share of a rate from which a record has the same rate."""
 
 
-class ChannelSignals(Protocol):
+class ChannelSignals(SectionedSignals, Protocol):
     """Signals whose quantities can be computed from changed channels."""
 
     @property
@@ -53,13 +53,6 @@ class ChannelSignals(Protocol):
     @property
     def line(self) -> LineSignals:
         """Uplift at the supports."""
-
-    @property
-    def evaluation(self) -> Evaluation:
-        """Quantities over the analysis section."""
-
-    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Quantities over another section [m, m]."""
 
     def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
         """Quantities of other channels in the same section."""

@@ -55,10 +55,7 @@ class ForceView {
     const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i], ...beside(i)]);
     const save = saveButton("Curves as CSV", fileName(this.case, name, "force"), headings, makeRows);
     this.tools = [...this.plot.makeButtons(), save];
-    const limited = this.case.criteria.some(({ pantograph, lower, upper, unit, baseline }) =>
-      baseline === null && String(pantograph) === figure.dataset.owner && unit === "N" && (lower ?? upper) !== null);
-    const remark = limited ? " The static figure shows the limits." : "";
-    const note = element("p", { class: "small" }, describeResolution(this.case, this.trace) + remark);
+    const note = element("p", { class: "small" }, describeResolution(this.case, this.trace));
     this.parts = [this.plot.element, note, element("div", { class: "pair" }, ...this.makeSpectrum(name), ...this.makeSpans(name))];
   }
 

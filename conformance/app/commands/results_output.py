@@ -13,7 +13,6 @@ from pantocheck.conformance.app.commands.console import (
     build_quantities_table,
     build_table,
     escape_text,
-    format_number,
     format_width,
     indent_text,
     list_names,
@@ -36,11 +35,8 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, n
 EXIT_CODES: dict[Verdict, int] = {**dict.fromkeys(WORST_FIRST, 1), "pass": 0, "error": 2, "info": 3}
 """Exit code by verdict: 0 only for `pass`, 3 where no limit judges."""
 
-SHIFT_LEGEND = " shift: its change when the analysis section is shifted span by span;"
-"""Part of the legend for tables with the column `shift`."""
-
 LEGEND = (
-    "+-: uncertainty of the value;{shift} margin: relative distance to the nearer limit, 1 in the middle between two "
+    "+-: uncertainty of the value; margin: relative distance to the nearer limit, 1 in the middle between two "
     "limits, 0 on a limit, negative outside; with one limit, the distance divided by it, and the distance itself with "
     "its unit if this limit is 0"
 )
@@ -66,8 +62,7 @@ def build_results_output(
     rows = [row for case in results.cases for row in case.criteria]
     rows += [row for case in results.cases if case.verification is not None for row in case.verification.criteria]
     if rows:
-        shift = SHIFT_LEGEND if any(row.spread is not None for row in rows) else ""
-        parts.append(Text(LEGEND.format(shift=shift), "dim"))
+        parts.append(Text(LEGEND, "dim"))
     parts += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
     return CommandOutput(
         conclusion=style_verdict(mark_results(results)) + escape_text(f" {headline}"),
@@ -134,10 +129,8 @@ def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -
 
 
 def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]) -> FittedTable:
-    """Table of criteria; without the column of the shift, if no shift is known, and of a trust that all share."""
-    numbers = ["value", "+-", "shift", "limits", "margin"]
-    if all(item.spread is None for item in criteria):
-        numbers.remove("shift")
+    """Table of criteria, without a trust that all share."""
+    numbers = ("value", "+-", "limits", "margin")
     origin = ("trust",) if len({item.trust for item in criteria if item.trust}) > 1 else ()
     headings = ("criterion", *numbers, "verdict", *origin)
     table = build_table(*headings, unbroken=headings[1:], right=numbers)
@@ -148,7 +141,6 @@ def _build_criterion_table(criteria: Sequence[Criterion], missing: Sequence[str]
             "criterion": escape_text(_name(item)),
             "value": texts.value,
             "+-": format_width(error, () if item.uncertainty is None else missing, item.quantity),
-            "shift": format_number(item.spread, 2),
             "limits": texts.bounds,
             "margin": format_criterion_margin(item.margin, item.lower, item.upper, item.unit),
             "verdict": style_verdict(item.verdict),

@@ -36,7 +36,7 @@ from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.processes import interruption_exit_code
 from pantocheck.conformance.core.toml_file import validate_model
-from pantocheck.conformance.execution.plan import PreparedPlan, locate_plan, locate_record, prepare_plan
+from pantocheck.conformance.execution.plan import Plan, PreparedPlan, locate_plan, locate_record, prepare_plan
 from pantocheck.conformance.execution.runner import RunInterrupted, add_reference, run_cases
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.baseline import compare_with_baseline, read_baseline
@@ -136,6 +136,11 @@ def run_command(
     if with_reference and options.system == "builtin":
         found = "the system under test is the reference simulator"
         raise InputError("--with-reference", found, "Name another system by --system.")
+    return _run_plan(options, plan, with_reference)
+
+
+def _run_plan(options: Plan, plan: Path | None, with_reference: bool) -> CommandOutput:
+    """Run the cases of the options, and write the reports; `plan` is the file of a plan."""
     prepared = prepare_plan(options)
     places = locate_plan(options, plan)
     with receive_signals(prepared.out / FILES["json"], len(prepared.cases)) as interruption:

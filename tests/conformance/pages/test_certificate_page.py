@@ -112,23 +112,21 @@ def test_certificate_states_a_close_criterion_once(passing: dict[str, Any]) -> N
     assert "119.9 N" not in text[: text.index('id="cases"')]
 
 
-def test_margin_beside_a_limit_of_zero_is_a_distance_and_not_ranked(passing: dict[str, Any]) -> None:
-    """A distance in newtons is no relative margin: it is not compared with those of other criteria."""
+def test_margin_beside_a_limit_of_zero_is_a_distance(passing: dict[str, Any]) -> None:
+    """A distance in newtons is no relative margin."""
     row = passing["cases"][0]["criteria"][0]
     row |= {"value": 0.004, "lower": 0.0, "upper": None, "margin": 0.004, "close": [], "unit": "N"}
     assert describe_criterion(Criterion.model_validate(row)).margin == "+0.004 N"
-    ranked = "".join(sentences(list_reasons(Results.model_validate(passing))[-1]))
-    assert list_reasons(Results.model_validate(passing))[-1].heading == "Smallest margins"
-    assert "+0.004" not in ranked
+    assert list_reasons(Results.model_validate(passing)) == ()
+    assert "No value is close to a limit." in shown_certificate(passing)
 
 
 def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:
     groups = {section.heading: sentences(section) for section in list_reasons(Results.model_validate(results))}
-    assert list(groups) == ["Failed", "Not evaluated", "Smallest margins"]
+    assert list(groups) == ["Failed", "Not evaluated"]
     assert len(groups["Failed"]) == 1
     assert "31.68 N, limits 32 to 34, margin −0.32" in groups["Failed"][0]
     assert len(groups["Not evaluated"]) == 2
-    assert "Contact loss" not in "".join(groups["Smallest margins"])
 
 
 def test_definitions_state_the_worth_of_filter_and_band(results: dict[str, Any]) -> None:

@@ -6,9 +6,8 @@ from typing import Any
 import matplotlib
 import pytest
 
-from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import Traces, UpliftTrace
-from pantocheck.conformance.pages.case_figures import draw_force, draw_uplift, select_limited
+from pantocheck.conformance.pages.case_figures import draw_force, draw_uplift
 from pantocheck.conformance.results.results_format import CaseResult
 
 
@@ -23,18 +22,10 @@ def test_uplift_figure_names_few_supports_and_no_two_curves_look_alike() -> None
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(lines) == 8
 
 
-def test_force_figure_has_ticks_at_the_supports_and_limits_of_force_statistics(passing: dict[str, Any]) -> None:
+def test_force_figure_has_ticks_at_the_supports(passing: dict[str, Any]) -> None:
     trace = Traces.model_validate(passing["cases"][0]["traces"]["1"])
-    axes = draw_force.__wrapped__(trace, [], []).axes[0]
+    axes = draw_force.__wrapped__(trace, []).axes[0]
     assert list(axes.get_xticks()) == trace.supports_m == [240, 300, 360]
-    rows = [
-        {"quantity": "std_force_N", "lower": 26.0, "upper": 31.0},
-        {"quantity": "mean_force_N", "lower": None, "upper": 120.0},
-        {"quantity": "max_force_N", "lower": None, "upper": None},
-        {"quantity": "change_rms_20_50_pct", "lower": 0.0, "upper": None},
-    ]
-    first = Criterion.model_validate(passing["cases"][0]["criteria"][0])
-    assert [row.quantity for row in select_limited([first.model_copy(update=row) for row in rows])] == ["mean_force_N"]
     # The example has 0.98 x 24 N at the span-passing frequency; two spans hold two periods: no leakage.
     trace = passing["cases"][0]["traces"]["1"]["spectrum"]
     peak = max(zip(trace["amplitude_N"], trace["frequency_Hz"], strict=True))
