@@ -194,16 +194,12 @@ class CaseFile(SourcedTable):
     @classmethod
     def _complete_readings(cls, content: Any) -> Any:
         """Add the keys of the filter of the case to the filters of its readings."""
-        tables = content.get("reading") if isinstance(content, dict) else None
-        own = content.get("filter") if tables else None
+        tables, own = (content.get("reading"), content.get("filter")) if isinstance(content, dict) else (None, None)
         if not isinstance(tables, list | tuple) or not isinstance(own, dict):
             return content
-        filters = [reading.get("filter") if isinstance(reading, dict) else None for reading in tables]
-        completed = [
-            {**reading, "filter": {**own, **other}} if isinstance(other, dict) else reading
-            for reading, other in zip(tables, filters, strict=True)
-        ]
-        return {**content, "reading": completed}
+        partial = [isinstance(reading, dict) and isinstance(reading.get("filter"), dict) for reading in tables]
+        pairs = zip(tables, partial, strict=True)
+        return content | {"reading": [r | {"filter": own | r["filter"]} if given else r for r, given in pairs]}
 
     @cross_check
     def _check_study(self) -> Problems:

@@ -172,14 +172,12 @@ def state_incomplete(results: Results) -> str | None:
     """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
     counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "undecided", "fail")]
     missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]
-    number = sum(map(bool, missing))
-    if not number:
+    if not (number := sum(map(bool, missing))):
         return None
-    names = [name for name in COMPONENT_NAMES if any(name in names for names in missing)]
-    listed = " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    names = " or ".join(name for name in COMPONENT_NAMES if any(name in lacking for lacking in missing))
     return (
-        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete "
-        f"({listed} not known), so that more of them may lie closer to a limit than stated."
+        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete ({names} not known), so that more of "
+        "them may lie closer to a limit than stated."
     )
 
 

@@ -14,36 +14,20 @@ EXACT = "exact"
 
 
 def list_unknown(basis: Mapping[Any, str]) -> tuple[str, ...]:
-    """Components that are not known.
-
-    Args:
-        basis: `uncertainty_basis` of a case.
-    """
+    """Components that are not known, by the `uncertainty_basis` of a case."""
     return tuple(name for name, text in basis.items() if text.startswith(UNKNOWN_BASIS))
 
 
 def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str | None) -> tuple[str, ...]:
-    """Components that the half-width of a criterion lacks.
+    """Components that the half-width of a criterion lacks, by the basis of its case and the trust of its limits.
 
     A comparison with the converged solution needs the discretisation only: both have the same start and section.
-
-    Args:
-        basis: `uncertainty_basis` of the case.
-        uncertainty: Half-width of the criterion; None: not known at all.
-        trust: Trust of its limits.
     """
     return () if uncertainty is None or trust == "computed" else list_unknown(basis)
 
 
 def describe_half_width(width: float, number: str, missing: Sequence[str], quantity: str) -> str:
-    """Text of a half-width: one of zero is `exact`, or not known because a component is missing.
-
-    Args:
-        width: Half-width.
-        number: Its text with significant digits.
-        missing: Components that it lacks.
-        quantity: Name of the quantity.
-    """
+    """The number of a half-width; one of zero is exact for a closed form, and not known if a component is missing."""
     if width:
         return number
     if quantity in QUANTITIES and QUANTITIES[quantity].scope == "static":

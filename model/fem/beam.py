@@ -70,25 +70,6 @@ def shape(s: float, h: float) -> Array:
     return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
 
 
-def pinned_frequencies(
-    n: int, length: float, tension: float, bending_stiffness: float, mass_per_length: float
-) -> Array:
-    """Natural frequencies of a pinned tensioned beam in closed form.
-
-    Args:
-        n: Number of modes.
-        length: Length [m].
-        tension: Tension T [N].
-        bending_stiffness: Bending stiffness EI [N m2].
-        mass_per_length: Mass per length [kg/m].
-
-    Returns:
-        Frequencies of the modes 1 to n, (n,) [Hz].
-    """
-    k = np.arange(1, n + 1) * np.pi / length
-    return np.asarray(np.sqrt((tension * k**2 + bending_stiffness * k**4) / mass_per_length) / (2 * np.pi))
-
-
 def wave_speed(tension: float, mass_per_length: float) -> float:
     """Speed sqrt(T / m) of transverse waves on a wire without bending stiffness [m/s].
 

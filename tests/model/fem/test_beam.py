@@ -7,10 +7,10 @@ from scipy.linalg import eigh
 from helpers.lines import Array, bare_wire
 from pantocheck.model.description.catenary import GRAVITY
 from pantocheck.model.discretisation.discretised_line import discretise
-from pantocheck.model.fem import beam
 from pantocheck.model.fem.beams import weight
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order
 from pantocheck.model.statics.static_solver import StaticSolver
+from verification.formulations.pinned_wire import pinned_frequencies
 from verification.guide.topics.closed_forms import wire_sag
 
 SPAN, TENSION, MASS, BENDING = 60.0, 20e3, 1.35, 195.0
@@ -26,14 +26,14 @@ def frequencies(elements: int, n: int, tension: float = TENSION, bending_stiffne
 
 def test_first_twenty_frequencies_of_a_pinned_wire() -> None:
     """With h = 0.5 m, mode 20 has 12 elements per wave: the error of cubic elements is then below 1e-6."""
-    exact = beam.pinned_frequencies(20, SPAN, TENSION, BENDING, MASS)
+    exact = pinned_frequencies(20, SPAN, TENSION, BENDING, MASS)
     np.testing.assert_allclose(frequencies(120, 20), exact, rtol=1e-6)
 
 
 @pytest.mark.parametrize("mode", [5, 10, 20])
 def test_frequencies_converge_with_order_four_to_six(mode: int) -> None:
     """Cubic elements converge with h^4 where bending rules and h^6 where tension rules; a contact wire lies between."""
-    exact = beam.pinned_frequencies(20, SPAN, TENSION, BENDING, MASS)[mode - 1]
+    exact = pinned_frequencies(20, SPAN, TENSION, BENDING, MASS)[mode - 1]
     coarse, fine = (abs(frequencies(n, 20)[mode - 1] / exact - 1) for n in (40, 80))
     assert 4 < np.log2(coarse / fine) < 6
 
@@ -41,7 +41,7 @@ def test_frequencies_converge_with_order_four_to_six(mode: int) -> None:
 @pytest.mark.parametrize(("tension", "bending_stiffness", "order_"), [(0.0, 2e4, 4), (20e3, 0.0, 6)])
 def test_orders_of_the_pure_beam_and_the_pure_string(tension: float, bending_stiffness: float, order_: int) -> None:
     """Limits of that range, each within a tenth: the next term of the error is two orders of h smaller."""
-    exact = beam.pinned_frequencies(10, SPAN, tension, bending_stiffness, MASS)[9]
+    exact = pinned_frequencies(10, SPAN, tension, bending_stiffness, MASS)[9]
     coarse, fine = (abs(frequencies(n, 10, tension, bending_stiffness)[9] / exact - 1) for n in (80, 160))
     assert np.log2(coarse / fine) == pytest.approx(order_, abs=0.1)
 

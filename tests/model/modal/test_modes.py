@@ -8,9 +8,9 @@ import pytest
 from helpers.lines import DAMPED, bare_wire, complex_roots, simple_line
 from pantocheck.model import Kind, Rayleigh, discretise
 from pantocheck.model.discretisation.discretised_line import with_damping
-from pantocheck.model.fem.beam import pinned_frequencies
 from pantocheck.model.modal.modes import component_energies, compute_modes, compute_modes_below, damping_ratios
 from pantocheck.model.statics.assembly import assemble_matrices, free_unknowns
+from verification.formulations.pinned_wire import pinned_frequencies
 
 
 def test_compute_modes_of_a_bare_wire_are_the_closed_form() -> None:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from pantocheck.model import discretise
-from pantocheck.model.fem.beam import pinned_frequencies
 from pantocheck.model.modal.modes import compute_modes
+from verification.formulations.pinned_wire import pinned_frequencies
 from verification.guide.comparisons import build_study, compare_relative
 from verification.guide.guide_format import ConvergenceStudy, Topic
 from verification.guide.topics.bare_wires import WIRE_BENDING, WIRE_MASS, WIRE_TENSION, build_wire
