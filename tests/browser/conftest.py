@@ -21,6 +21,7 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.identification_page import build_identification_document
 from pantocheck.conformance.pages.site_pages import build_site_index, order_results
 from pantocheck.conformance.pages.study_chart import draw_chart
+from pantocheck.conformance.results.identification_format import IdentifiedLine
 from pantocheck.conformance.results.results_format import Results, SystemIdentity
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -81,7 +82,7 @@ def page_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         "measured": build_certificate(Results.model_validate(with_measured_run())),
         "reference": build_certificate(Results.model_validate(with_reference())),
         "hostile": build_certificate(Results.model_validate(with_hostile_text())),
-        "identification": build_identification_document([build_example_line()]),
+        "identification": build_identification_document([IdentifiedLine.model_validate(build_example_line())]),
         "plain": build_plain_document(),
         "site": build_site_page(),
     }
