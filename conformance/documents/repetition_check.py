@@ -34,7 +34,6 @@ from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.records.record_reading import open_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.case_facts_format import RecordState
 from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results, UncertaintyComponents
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
@@ -51,11 +50,10 @@ A table of a record has at least nine significant digits; extremes and filters k
 
 @dataclass(frozen=True)
 class RecomputedRecord:
-    """Quantities of a record with the components of their uncertainty, by owner and name; its state, if judged."""
+    """Quantities of a record with the components of their uncertainty, by owner and name."""
 
     quantities: dict[str, dict[str, Number]]
     components: UncertaintyComponents
-    state: RecordState | None
     graded: CaseResult | None = None
     """Case, graded again; None: an assessment by a profile."""
 
@@ -100,11 +98,10 @@ def _compare(results: Results, result: CaseResult, computed: RecomputedRecord, n
     )
     numbers, widths = (compare_numbers(*pair, RECORD_TOLERANCE) for pair in pairs)
     differences = [*numbers.differences, *(f"uncertainty, {text}" for text in widths.differences)]
-    if results.system.kind == "record" and computed.graded is not None:
-        samples = compare_numbers(_select_samples(result), _select_samples(computed.graded), ROUNDING_OF_DRAWS)
-        differences += samples.differences
-    if computed.state is not None and result.record is not None and result.record.state != computed.state:
-        differences.append(f"state of the record '{result.record.state}' stated, '{computed.state}' computed")
+    if (graded := computed.graded) is not None and results.system.kind == "record":
+        differences += compare_numbers(_select_samples(result), _select_samples(graded), ROUNDING_OF_DRAWS).differences
+    if graded and graded.record and result.record and result.record.state != graded.record.state:
+        differences.append(f"state of the record '{result.record.state}' stated, '{graded.record.state}' computed")
     largest = max(numbers.largest, widths.largest)
     yield judge_details(
         f"{result.id}: {numbers.count} quantities follow from the samples of {name} (largest relative difference "
@@ -172,7 +169,7 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
     if result.profile is not None:
         assessed = load_assessed_record(sidecar, load_profile(result.profile), LineTable())
         parts = list_components(assessed.uncertainty)
-        return RecomputedRecord(key_by_owner(select_finite(assessed.values.values)), parts, None)
+        return RecomputedRecord(key_by_owner(select_finite(assessed.values.values)), parts)
     if (entry := catalogue.find_id(result.id)) is None:
         hint = "Give the folder of the case by --cases, or install the distribution that offers it."
         raise InputError(f"record '{sidecar.name}'", f"{result.id} is not in the installed library", hint)
@@ -181,8 +178,7 @@ def _compute(result: CaseResult, results: Results, sidecar: Path, catalogue: Cat
     graded = grade_case(
         case, system.run(case), results.trust, parse_decision(results.decision, "results, key decision")
     )
-    state = None if graded.record is None else graded.record.state
-    return RecomputedRecord(_list_values(graded), graded.uncertainty_components, state, graded)
+    return RecomputedRecord(_list_values(graded), graded.uncertainty_components, graded)
 
 
 def _add_own_limits(case: Case, stated: CaseResult) -> Case:

@@ -152,16 +152,7 @@ def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: flo
 
 
 def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
-    """Largest difference of each quantity from its value when the analysis section is shifted.
-
-    Args:
-        signals: Signals of the run.
-        sections: Start and end of every section of the same length [m, m].
-
-    Returns:
-        Spread in the units of the quantities, by pantograph and name; quantities available in fewer than `MIN_SECTIONS`
-        sections are left out.
-    """
+    """Largest difference of each quantity from its value in other sections [m, m]; at least `MIN_SECTIONS` have it."""
     shifted = [signals.evaluate_section(section).values for section in sections]
     return largest_changes(signals.evaluation.values, shifted, MIN_SECTIONS)
 

@@ -163,8 +163,8 @@ def describe_close(criteria: Sequence[Criterion], name: Callable[[Criterion], st
             cause = find_largest_component(row.components, row.limit_uncertainty)
             groups.setdefault(cause, []).append(name(row))
     return [
-        f"Closer to a limit than the uncertainty (mostly {cause}): {', '.join(dict.fromkeys(names))}; "
-        f"{REMEDIES[cause]} could reverse the verdict."
+        f"Closer to a limit than the uncertainty (mostly {cause}): {'; '.join(dict.fromkeys(names))}. "
+        f"{REMEDIES[cause].capitalize()} could reverse the verdict."
         for cause, names in groups.items()
     ]
 

@@ -210,9 +210,7 @@ class CaseResult(ResultsPart):
     `uncertainty`.
     """
     uncertainty: Annotated[Quantities, Field(default_factory=dict)]
-    """Half-width of the 95 % interval, as in `quantities`: root of the sum of squares of the components; without
-    `uncertainty_components`: from the length of the record alone.
-    """
+    """Half-width of the 95 % interval of the joint sample, as in `quantities`."""
     uncertainty_components: Annotated[UncertaintyComponents, Field(default_factory=dict)]
     """Half-widths by component, as in `quantities`; unknown ones are missing."""
     uncertainty_basis: Annotated[dict[ComponentName, str], Field(default_factory=dict)]

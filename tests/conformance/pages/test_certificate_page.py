@@ -73,7 +73,7 @@ def test_criterion_close_to_its_limit_is_marked_in_row_and_reasons(passing: dict
     assert reasons.heading == "Closer to a limit than the uncertainty"
     assert sentences(reasons) == (f"{passing['cases'][0]['id']}: Mean contact force.",)
     assert describe_close([Criterion.model_validate(row)], lambda close: close.quantity) == [
-        "Closer to a limit than the uncertainty (mostly start): mean_force_N; another start or run-in could reverse "
+        "Closer to a limit than the uncertainty (mostly start): mean_force_N. Another start or run-in could reverse "
         "the verdict."
     ]
     assert describe_criterion(Criterion.model_validate(row | {"verdict": "info"})).remarks == ()

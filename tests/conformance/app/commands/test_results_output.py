@@ -125,7 +125,7 @@ def test_lines_of_a_case_stand_above_its_table(passing: dict[str, Any], capsys: 
     assert any(line.startswith("  warning: The contact force is sampled at 1000 Hz") for line in above)
     assert any("every consistency check that applies confirms the record" in line for line in above)
     assert "  mean_force_N: 2 N above the upper limit" in below
-    close = "Closer to a limit than the uncertainty (mostly start): mean_force_N; another start or run-in could"
+    close = "Closer to a limit than the uncertainty (mostly start): mean_force_N. Another start or run-in could"
     assert close in " ".join(" ".join(below).split())
     assert "  Trust of the limits: secondary." in below
     assert LEGEND in " ".join(line.strip() for line in below)
