@@ -23,7 +23,7 @@ from pantocheck.conformance.quantities.joint_sample import DRAWS
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
 from pantocheck.conformance.results.incomplete_uncertainty import (
-    EXACT,
+    EXACT_WIDTH,
     describe_half_width,
     explain_missing,
     list_missing,
@@ -92,7 +92,7 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
 
 def _format_error(criterion: Criterion, error: float, missing: Sequence[str]) -> str:
     text = describe_half_width(error, format_value(error, 2), missing, criterion.quantity)
-    return text if text in (EXACT, UNKNOWN_BASIS) else f"± {text}"
+    return text if text in (EXACT_WIDTH, UNKNOWN_BASIS) else f"± {text}"
 
 
 VALUE_HEADINGS = ("Value", "Limits")

@@ -79,7 +79,7 @@ def list_uncertainty_basis(case: CaseResult) -> tuple[str, ...]:
     return basis + tuple(f"Model, not part of the uncertainty: {text}" for text in case.model_uncertainty)
 
 
-Key = tuple[str, str]
+QuantityKey = tuple[str, str]
 """Owner and name of a quantity."""
 
 
@@ -89,11 +89,11 @@ def build_quantity_table(case: CaseResult) -> Table:
     graded = {(str(row.pantograph), row.quantity) for row in list_criteria(case, "criteria") if row.item is None}
     missing = list_unknown(case.uncertainty_basis)
 
-    def format_uncertainty(key: Key) -> str:
+    def format_uncertainty(key: QuantityKey) -> str:
         width = _find_largest(case.uncertainty.get(key[0], {}).get(key[1]))
         return "–" if width is None else describe_half_width(width, format_value(width, 2), missing, key[1])
 
-    columns: dict[Column, Callable[[Key], RichText]] = {
+    columns: dict[Column, Callable[[QuantityKey], RichText]] = {
         Column("Quantity", share=2): lambda key: (f"{quantity_label(key[1])} ", Code(key[1])),
         Column("Pantograph", number=True, short="Pant."): lambda key: name_pantograph(key[0]).removeprefix(
             "pantograph "
@@ -124,16 +124,16 @@ SHORT_COMPONENTS = {"Discretisation": "Discr."}
 """Headings of components on paper."""
 
 
-def _format_quantity(quantities: Quantities, key: Key) -> str:
+def _format_quantity(quantities: Quantities, key: QuantityKey) -> str:
     value = quantities.get(key[0], {}).get(key[1])
     return _format_list(value) if isinstance(value, list) else format_value(value, 5)
 
 
-def _find_component(case: CaseResult, component: ComponentName, key: Key) -> float | None:
+def _find_component(case: CaseResult, component: ComponentName, key: QuantityKey) -> float | None:
     return _find_largest(case.uncertainty_components.get(key[0], {}).get(key[1], {}).get(component))
 
 
-def _format_width(find_width: Callable[[Key], float | None], key: Key) -> str:
+def _format_width(find_width: Callable[[QuantityKey], float | None], key: QuantityKey) -> str:
     return format_value(find_width(key), 2)
 
 

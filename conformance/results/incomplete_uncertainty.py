@@ -9,7 +9,7 @@ from typing import Any
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
 
-EXACT = "exact"
+EXACT_WIDTH = "exact"
 """Half-width of a value of the line at rest that does not change with the mesh: it has a closed form."""
 
 
@@ -31,7 +31,7 @@ def describe_half_width(width: float, number: str, missing: Sequence[str], quant
     if width:
         return number
     if quantity in QUANTITIES and QUANTITIES[quantity].scope == "static":
-        return EXACT
+        return EXACT_WIDTH
     return UNKNOWN_BASIS if missing else number
 
 
