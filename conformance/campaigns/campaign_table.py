@@ -38,7 +38,7 @@ def _write(store: CampaignStore, path: Path) -> None:
 
 
 def list_values(row: RunRow) -> dict[str, float]:
-    """Quantities of a run, each with the half-width of its 95 % interval behind it, if that is known."""
+    """Quantities of a run, each with the half-width of its interval of uncertainty behind it, if that is known."""
     values: dict[str, float] = {}
     for name, value in row.quantities.items():
         values[name] = value

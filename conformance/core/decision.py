@@ -26,7 +26,7 @@ class SimpleAcceptance:
 
 @dataclass(frozen=True)
 class GuardedAcceptance:
-    """A value passes only if its 95 % interval lies inside the limits."""
+    """A value passes only if its interval of uncertainty lies inside the limits."""
 
 
 @dataclass(frozen=True)
@@ -66,14 +66,15 @@ def format_decision(rule: DecisionRule) -> str:
 
 def describe_decision(rule: DecisionRule) -> str:
     """Decision rule in a sentence for a page."""
-    close = "a value inside its limits passes, and is counted as close if its 95 % interval reaches over a limit"
+    close = (
+        "a value inside its limits passes, and is counted as close if its interval of uncertainty reaches over a limit"
+    )
     match rule:
         case SimpleAcceptance():
             return f"simple acceptance: {close}"
         case GuardedAcceptance():
-            return (
-                "guarded acceptance: a value passes if its 95 % interval lies inside the limits; else it is undecided"
-            )
+            inside = "its interval of uncertainty lies inside the limits"
+            return f"guarded acceptance: a value passes if {inside}; else it is undecided"
         case SharedRisk(risk):
             chance = f"the probability that it lies outside the limits is at most {risk:g}"
             return f"shared risk: a value passes if {chance}; else it is undecided"
@@ -107,7 +108,7 @@ def judge_by_rule(
             return "undecided", f"its uncertainty is not complete: {names} not known"
         case GuardedAcceptance():
             inside = _contains(limits, value, errors.find_expanded(value))
-            return ("pass", None) if inside else ("undecided", "its 95 % interval reaches over a limit")
+            return ("pass", None) if inside else ("undecided", "its interval of uncertainty reaches over a limit")
         case SharedRisk(largest_risk):
             conformity = errors.find_conformity(limits)
             if conformity is None:  # no joint sample: the value has one component, or none

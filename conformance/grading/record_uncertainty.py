@@ -15,7 +15,7 @@ from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.uncertainty import BOUNDED_COMPONENTS, Component, Uncertainty
 from pantocheck.conformance.records.length_uncertainty import (
     FEWEST_SPANS,
-    FEWEST_SPANS_95,
+    FEWEST_SPANS_INTERVAL,
     ExtremeInterval,
     LengthUncertainty,
     SpanInterval,
@@ -143,8 +143,8 @@ def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: flo
     ranges = [name for name, uncertainty in found if isinstance(uncertainty, SubRecordRange)]
     of_halves = f"range of the values of half records, spans of {span_m:g} m"
     if len(ranges) == len(found):
-        return f"{of_halves}; fewer than {FEWEST_SPANS_95} spans are too few for a 95 % interval"
-    interval = f"95 % interval from the fluctuations along the record, spans of {span_m:g} m"
+        return f"{of_halves}; fewer than {FEWEST_SPANS_INTERVAL} spans are too few for an interval of stated coverage"
+    interval = f"interval from the fluctuations along the record, measured coverage 93 to 97 %, spans of {span_m:g} m"
     extremes = [name for name, uncertainty in found if isinstance(uncertainty, ExtremeInterval)]
     if extremes:
         interval += f"; interval without a stated share for {', '.join(dict.fromkeys(extremes))}"

@@ -145,7 +145,9 @@ def _build_statistics_table(statistics: Sequence[ValueStatistics]) -> doc.Table:
         "Limit": lambda row: row.limit or "–",
         "Outside [%]": lambda row: _format_share(row.exceedance),
     }
-    caption = "Values over the random designs; share of runs outside the limit with its 95 % interval (Wilson 1927)"
+    caption = (
+        "Values over the random designs; share of runs outside the limit with its interval of uncertainty (Wilson 1927)"
+    )
     if len(statistics) > SHOWN_ROWS:
         caption += f" (the first {SHOWN_ROWS} of {len(statistics)} rows; campaign.json has all)"
     return doc.make_grid(caption, statistics[:SHOWN_ROWS], cells)

@@ -278,7 +278,7 @@ def _damping_figures(modes: Sequence[Mode]) -> tuple[doc.Figures, ...]:
     ratios = doc.Figure(
         figures.draw_damping(modes),
         "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
-        "Damping ratio of every mode with its 95 % interval.",
+        "Damping ratio of every mode with its interval of uncertainty.",
     )
     return (doc.Figures((boxes, ratios)),)
 

@@ -61,9 +61,9 @@ ABOVE = "above"
 """Cell of a value that the table of criteria has."""
 
 UNCERTAINTY_KEY = (
-    "Uncertainties are half-widths of 95 % intervals of the joint sample of all components. The columns behind show "
-    "each component alone; one that is zero or not known for all quantities has no column. A dash: it does not apply "
-    "to the quantity, or is not known. A quantity with several values has the largest of its half-widths. "
+    "Uncertainties are half-widths of the intervals that hold 95 % of the joint sample of all components. The columns "
+    "behind show each component alone; one that is zero or not known for all quantities has no column. A dash: it does "
+    "not apply to the quantity, or is not known. A quantity with several values has the largest of its half-widths. "
     f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step. Shift: largest change "
     "when the analysis section is shifted span by span, no part of the uncertainty."
 )

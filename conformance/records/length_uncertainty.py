@@ -41,8 +41,8 @@ from pantocheck.conformance.quantities.unavailable import ChannelMissing, Quanti
 FEWEST_SPANS = 5
 """Smallest number of spans that show how a statistic varies along a record."""
 
-FEWEST_SPANS_95 = 60
-"""Smallest number of spans for a 95 % interval; fewer do not show a correlation of neighbouring spans."""
+FEWEST_SPANS_INTERVAL = 60
+"""Smallest number of spans for an interval; fewer do not show a correlation of neighbouring spans."""
 
 MOST_BLOCKS = 500
 """Largest number of parts of a record; the parts of a longer record have more than one span."""
@@ -87,8 +87,8 @@ class SpanInterval:
         return float(self.change(np.asarray(_student_quantile(COSINES) * deviation)))
 
 
-class Interval95(SpanInterval):
-    """Interval of a statistic, which contains the true value in 95 % of the records."""
+class StatisticInterval(SpanInterval):
+    """Interval of a statistic, which contains the true value in 93 to 97 % of the records of a benchmark."""
 
 
 class ExtremeInterval(SpanInterval):
@@ -103,7 +103,7 @@ class SubRecordRange:
     """Largest distance from the value of the record."""
 
 
-LengthUncertainty = Interval95 | ExtremeInterval | SubRecordRange
+LengthUncertainty = StatisticInterval | ExtremeInterval | SubRecordRange
 """Uncertainty of a value from the length of the record."""
 
 
@@ -200,7 +200,7 @@ def length_uncertainties(signals: PantographSignals | SignalsOutside, span_s: fl
 
 
 def uplift_uncertainties(line: LineSignals) -> dict[str, LengthUncertainty]:
-    """Uncertainties of the extremes at the supports, by quantity; empty with fewer than `FEWEST_SPANS_95` supports."""
+    """Uncertainties of the extremes at the supports, by quantity; empty below `FEWEST_SPANS_INTERVAL` supports."""
     found: dict[str, LengthUncertainty] = {}
     for quantity in LINE_QUANTITIES:
         try:
@@ -208,7 +208,7 @@ def uplift_uncertainties(line: LineSignals) -> dict[str, LengthUncertainty]:
             values = quantity.support_values(line)
         except QuantityUnavailable:
             continue
-        if values.size >= FEWEST_SPANS_95 and not _is_sparse(values):
+        if values.size >= FEWEST_SPANS_INTERVAL and not _is_sparse(values):
             found[quantity.name] = _extreme_interval(values[None, :])
     return found
 
@@ -218,7 +218,7 @@ def _find_uncertainty(
 ) -> LengthUncertainty:
     index = np.arange(starts.size - 1)
     single = index[:, None] == index
-    if index.size >= FEWEST_SPANS_95:
+    if index.size >= FEWEST_SPANS_INTERVAL:
         if quantity.extreme:
             sign = {"largest": 1, "smallest": -1}[quantity.extreme]
             extremes = np.atleast_2d(sign * quantity.compute(signals, SingleSpans(starts, single)))
@@ -242,7 +242,7 @@ def _is_sparse(values: RealArray) -> bool:
     return bool(np.mean(distance <= SAME_VALUE * values.std()) > 0.5)
 
 
-def _statistic_interval(others: RealArray, value: float, never_negative: bool) -> Interval95:
+def _statistic_interval(others: RealArray, value: float, never_negative: bool) -> StatisticInterval:
     """Interval of a statistic from its values without one span, (spans,).
 
     The logarithm of a quantity that is never negative has a more symmetrical distribution than the quantity.
@@ -250,7 +250,7 @@ def _statistic_interval(others: RealArray, value: float, never_negative: bool) -
     change = partial(_relative_change, value) if never_negative else np.asarray
     others = np.log(others) if never_negative else others
     influence = (others.size - 1) * (others.mean() - others)
-    return Interval95((1 + _skewness_widening(influence)) * cosine_contributions(influence), 0.0, change)
+    return StatisticInterval((1 + _skewness_widening(influence)) * cosine_contributions(influence), 0.0, change)
 
 
 def _relative_change(value: float, deviation: RealArray) -> RealArray:

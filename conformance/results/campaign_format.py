@@ -43,14 +43,14 @@ class ValueStatistics(ResultsPart):
     """Case, system and grid inputs; empty if there is one group."""
     runs: int
     mean: Estimate
-    """Mean with its 95 % interval (normal approximation)."""
+    """Mean with its interval of uncertainty (normal approximation)."""
     std: FiniteNumber
     quantiles: dict[str, FiniteNumber]
     """Quantiles 5, 50 and 95 %."""
     limit: str | None
     """Bounds of the limit; null: no limit."""
     exceedance: Estimate | None
-    """Share of runs outside the limit, with its 95 % interval (Wilson 1927)."""
+    """Share of runs outside the limit, with its interval of uncertainty (Wilson 1927)."""
 
 
 class InputShare(ResultsPart):

@@ -84,7 +84,8 @@ def test_long_run_in_has_a_reproducible_start_and_section(twin: Case) -> None:
     for component in ("start", "section", "length"):
         for pantograph in (1, 2):
             assert mean_width(found, component, pantograph) < 0.05
-    basis = "range of the values of half records, spans of 55 m; fewer than 60 spans are too few for a 95 % interval"
+    few = "fewer than 60 spans are too few for an interval of stated coverage"
+    basis = f"range of the values of half records, spans of 55 m; {few}"
     assert found.components["length"].basis == basis
     first, second = (uncertainty(twin, Delivered(record(twin, growth=0.3))).combined for _ in range(2))
     assert first == second

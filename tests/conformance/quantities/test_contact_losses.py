@@ -8,7 +8,7 @@ from pantocheck.conformance.quantities.evaluation import evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
-from pantocheck.conformance.records.length_uncertainty import Interval95, length_uncertainties
+from pantocheck.conformance.records.length_uncertainty import StatisticInterval, length_uncertainties
 
 RATE, SPEED = 1000.0, 50.0
 POSITION = SPEED * np.arange(20_000) / RATE
@@ -77,7 +77,7 @@ def test_interval_gives_the_scatter_of_the_losses() -> None:
     starts = random.choice(np.arange(2000, 17_990, 5), 250, replace=False)
     signals = build_signals(lose_contact(*((start, start + 3) for start in starts)))
     found = length_uncertainties(signals, 0.2)
-    assert isinstance(found["contact_loss_events"], Interval95)
+    assert isinstance(found["contact_loss_events"], StatisticInterval)
     assert found["contact_loss_events"].half_width == pytest.approx(48, rel=0.4)
     assert found["longest_contact_loss_s"].half_width == 0, "every loss lasts 3 ms"
 

@@ -16,12 +16,12 @@ from pantocheck.conformance.quantities.statistics import WHOLE_RECORD, Sampling
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
 from pantocheck.conformance.records.length_uncertainty import (
     COSINES,
-    FEWEST_SPANS_95,
+    FEWEST_SPANS_INTERVAL,
     GUMBEL_HALF_WIDTH,
     ExtremeInterval,
-    Interval95,
     SingleSpans,
     SpanSelections,
+    StatisticInterval,
     SubRecordRange,
     cosine_contributions,
     draw_deviations,
@@ -127,14 +127,14 @@ def half_width_of(influence: RealArray) -> float:
 
 def test_interval_of_the_mean_is_that_of_a_slow_twin() -> None:
     """The jackknife of the mean of equal spans gives the means of the spans themselves."""
-    force = spans(np.random.default_rng(9), FEWEST_SPANS_95)
+    force = spans(np.random.default_rng(9), FEWEST_SPANS_INTERVAL)
     found = length_uncertainties(force_signals(force, filter_applied_Hz=20.0), 1.0)
-    means = force[:-1].reshape(FEWEST_SPANS_95, 100).mean(axis=1)
+    means = force[:-1].reshape(FEWEST_SPANS_INTERVAL, 100).mean(axis=1)
     assert found["mean_force_N"].half_width == pytest.approx(half_width_of(means - means.mean()), rel=1e-9)
     # Logarithm of the deviation, with every span left out in turn by hand.
-    pieces, value = np.split(force[:-1], FEWEST_SPANS_95), force[:-1].std()
-    others = np.log([np.concatenate(pieces[:j] + pieces[j + 1 :]).std() for j in range(FEWEST_SPANS_95)])
-    influence = FEWEST_SPANS_95 * others.mean() - FEWEST_SPANS_95 * others - others.mean() + others
+    pieces, value = np.split(force[:-1], FEWEST_SPANS_INTERVAL), force[:-1].std()
+    others = np.log([np.concatenate(pieces[:j] + pieces[j + 1 :]).std() for j in range(FEWEST_SPANS_INTERVAL)])
+    influence = FEWEST_SPANS_INTERVAL * others.mean() - FEWEST_SPANS_INTERVAL * others - others.mean() + others
     deviation = half_width_of(influence)
     assert found["std_force_N"].half_width == pytest.approx(value * np.expm1(deviation), rel=1e-9)
 
@@ -165,10 +165,10 @@ def test_joint_draws_have_the_stated_intervals_and_correlations() -> None:
     """Student variates: 100,000 draws give the quantile within 1 %, the correlation within 0.02."""
     one, two = np.array([3.0, *[0.0] * 5]), np.array([1.0] * 4 + [0.0] * 2)
     intervals = {
-        "one": Interval95(one, 0.0, np.asarray),
-        "two": Interval95(two, 0.0, np.asarray),
-        "scattered": Interval95(two, 2.0, np.asarray),
-        "logarithm": Interval95(0.02 * two, 0.0, lambda deviation: 10 * np.expm1(deviation)),
+        "one": StatisticInterval(one, 0.0, np.asarray),
+        "two": StatisticInterval(two, 0.0, np.asarray),
+        "scattered": StatisticInterval(two, 2.0, np.asarray),
+        "logarithm": StatisticInterval(0.02 * two, 0.0, lambda deviation: 10 * np.expm1(deviation)),
     }
     drawn = draw_deviations(intervals, 100_000, DIGEST)
     for name in ("one", "two", "scattered"):
@@ -188,7 +188,7 @@ def test_intervals_of_95_percent_cover_the_truth() -> None:
     """400 records give the coverage within 2.2 % (two standard deviations); coverage.csv has 2,000 in a row."""
     random, hits = np.random.default_rng(4), np.zeros(2)
     for _ in range(400):
-        signals = force_signals(spans(random, FEWEST_SPANS_95), filter_applied_Hz=20.0)
+        signals = force_signals(spans(random, FEWEST_SPANS_INTERVAL), filter_applied_Hz=20.0)
         found = length_uncertainties(signals, SPAN / SPEED)
         hits += [
             abs(signals.delivered.mean() - 120) < found["mean_force_N"].half_width,
@@ -210,7 +210,7 @@ def test_few_spans_have_a_range_and_a_short_record_nothing() -> None:
     assert not length_uncertainties(cut_short, 1.0)
 
 
-@pytest.mark.parametrize(("count", "kind"), [(59, SubRecordRange), (60, Interval95)])
+@pytest.mark.parametrize(("count", "kind"), [(59, SubRecordRange), (60, StatisticInterval)])
 def test_interval_needs_sixty_spans(count: int, kind: type) -> None:
     """Contact losses in fewer than half of the spans have a range with any number of spans."""
     force = np.repeat(spans(np.random.default_rng(6), count), 2)
@@ -221,7 +221,7 @@ def test_interval_needs_sixty_spans(count: int, kind: type) -> None:
     lossy = {"contact_loss_pct", "longest_contact_loss_s", "contact_loss_events"}
     extremes = {"max_force_N", "min_force_N"}
     assert {type(found[name]) for name in found.keys() - lossy - extremes} == {kind}
-    of_extremes = ExtremeInterval if kind is Interval95 else SubRecordRange
+    of_extremes = ExtremeInterval if kind is StatisticInterval else SubRecordRange
     assert {type(found[name]) for name in extremes} == {of_extremes}, "no share is stated for extremes"
     assert found.keys() >= {"max_force_N", "min_force_N", "cov_20", *lossy}
     assert {type(found[name]) for name in lossy} == {SubRecordRange}
