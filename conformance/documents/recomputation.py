@@ -193,7 +193,8 @@ def _check_grade(
 def _check_conformity(case: CaseResult) -> Iterator[str]:
     """The probability of a case must follow from the joint samples of its criteria."""
     stated = case.conformity
-    found = find_case_conformity(case.criteria, (0, 0) if stated is None else (stated.starts, stated.passing_starts))
+    starts = (0, 0) if stated is None else (stated.starts, stated.passing_starts)
+    found = find_case_conformity(case.criteria, starts, case.readings)
     if stated != found:
         yield f"{case.id}: the probability of conformity does not follow from the joint samples of the criteria"
     elif stated is not None and stated.passing_starts > stated.starts:

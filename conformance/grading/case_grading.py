@@ -96,7 +96,7 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: Deci
             *([start.text] if record is not None and start.state == "not stated" else []),
         ],
         criteria=criteria,
-        conformity=find_case_conformity(criteria, count_passing_starts(evaluation, criteria)),
+        conformity=find_case_conformity(criteria, count_passing_starts(evaluation, criteria), readings),
         record=record,
         quantities=key_by_owner(select_finite(values.evaluation.values)),
         readings=readings,

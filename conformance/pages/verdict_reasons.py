@@ -13,7 +13,7 @@ from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria
 from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import list_missing
-from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.results_format import CaseConformity, CaseResult, Results
 
 NAMES_SHOWN = 5
 """Number of cases for information that the headline names."""
@@ -161,11 +161,17 @@ def state_decision(results: Results) -> str:
     parts = [f"Decision rule: {rule}."]
     if results.conformity is not None:
         pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
-        starts = [f", {of.passing_starts} of {of.starts} starts pass" if of.starts else "" for _, of in pairs]
-        shares = [f"{n} {format_probability(of.probability)}{s}" for (n, of), s in zip(pairs, starts, strict=True)]
+        shares = [f"{name} {_describe_chances(of)}" for name, of in pairs]
         chance = format_probability(results.conformity)
         parts.append(f"Probability that all counted values lie inside their limits: {chance} ({'; '.join(shares)}).")
     return " ".join(parts)
+
+
+def _describe_chances(of: CaseConformity) -> str:
+    """Probability of a case, its starts that pass, and the probability under its other readings."""
+    starts = [f"{of.passing_starts} of {of.starts} starts pass"] if of.starts else []
+    readings = [f"{format_probability(share)} under the reading '{name}'" for name, share in of.readings.items()]
+    return ", ".join([format_probability(of.probability), *starts, *readings])
 
 
 def state_incomplete(results: Results) -> str | None:

@@ -141,6 +141,8 @@ class CaseConformity(ResultsPart):
     """Number of starts that were run, that of the case included; 0: the system ran no other start."""
     passing_starts: Annotated[int, Field(ge=0)]
     """Number of these starts with every counted value inside its limits."""
+    readings: dict[str, Annotated[float, Field(ge=0, le=1)]] = {}
+    """The probability under each further reading of the evaluation, by its id: its values shift the joint sample."""
 
 
 Quantities = dict[Owner, dict[str, Number]]

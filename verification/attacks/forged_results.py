@@ -17,7 +17,7 @@ from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.results.case_facts_format import RecordFacts
+from pantocheck.conformance.results.case_facts_format import ReadingFacts, RecordFacts
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.scope import build_scope
 
@@ -33,7 +33,8 @@ def regrade(results: Tree) -> None:
             regrade_row(row, results["trust"])
         rows = [Criterion.model_validate(row) for row in case["criteria"]]
         starts = case["conformity"] or {"starts": 0, "passing_starts": 0}
-        found = find_case_conformity(rows, (starts["starts"], starts["passing_starts"]))
+        readings = [ReadingFacts.model_validate(reading) for reading in case["readings"]]
+        found = find_case_conformity(rows, (starts["starts"], starts["passing_starts"]), readings)
         case["conformity"] = None if found is None else found.model_dump()
         case["criteria_verdict"] = judge_case((row["verdict"] for row in case["criteria"]), record)
         if case["verification"] is not None and case["verification"]["criteria"]:

@@ -11,18 +11,23 @@ import pytest
 
 from helpers.case_fixtures import EditedCase
 from helpers.command_line import pantocheck
+from helpers.criterion_fixtures import build_requirement
 from helpers.toml_edit import edit_toml
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.case_facts_format import ReadingFacts
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.system import Delivered
 
@@ -72,6 +77,28 @@ def test_value_that_changes_side_is_marked(results: Results) -> None:
     assert result.readings[1].filter == result.run.filter
     assert result.readings[1].quantities["1"]["mean_force_N"] == pytest.approx(119.0, rel=0.01)
     assert Results.model_validate(json.loads(results.to_json())) == results
+
+
+def make_row(quantity: str = "std_force_N", **changes: Any) -> Criterion:
+    """Criterion of pantograph 1 that passes."""
+    requirement = build_requirement(quantity, None, changes.pop("upper"), pantograph=1)
+    facts = {"verdict": "pass", "margin": None, "discretisation_error": None, "reason": None}
+    return Criterion.model_validate(requirement.model_dump() | facts | changes)
+
+
+def test_probability_under_a_reading_is_that_of_the_shifted_sample() -> None:
+    """Draws 9, 10, 11 and 12 below 11.5; the reading adds 1: two of four. A value without draws is in or out."""
+    rows = [
+        make_row(value=10.5, upper=11.5, draws=[9.0, 10.0, 11.0, 12.0]),
+        make_row(quantity="max_force_N", value=150.0, upper=160.0),
+    ]
+    base: dict[str, Any] = {"trust": "provisional", "source": "", "filter": Filter(), "evaluated_m": (0.0, 1.0)}
+    shifted = ReadingFacts(id="a", quantities={"1": {"std_force_N": 11.5}}, **base)
+    outside = ReadingFacts(id="b", quantities={"1": {"max_force_N": 161.0}}, **base)
+    unread = ReadingFacts(id="c", quantities={}, reason="filtered", **base)
+    found = find_case_conformity(rows, (0, 0), [shifted, outside, unread])
+    assert found is not None
+    assert (found.probability, found.readings) == (0.75, {"a": 0.5, "b": 0.0})
 
 
 def test_filter_of_a_reading_keeps_the_other_keys_of_the_case(edited_case: EditedCase) -> None:
