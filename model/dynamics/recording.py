@@ -68,9 +68,10 @@ def simulate_steps(
         )
         steps = _advance(kernel, motion, train, work, load[block], part)
         if steps < block.stop - first:
+            time = (first + steps + 1) * kernel.time_step
             raise DidNotConverge(
-                f"the contact, dropper and damping forces of the time step at"
-                f" {(first + steps + 1) * kernel.time_step:.3f} s after the start did not converge"
+                f"the contact, dropper and damping forces of the time step at {time:.3f} s after the start"
+                " did not converge"
             )
         if progress:
             progress(block.stop / load.size)
