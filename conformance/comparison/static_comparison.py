@@ -184,7 +184,7 @@ def _place_curve(name: StaticValue, spans: tuple[SpanDifferences, ...], model: _
         for span in spans
         if span.values
     ]
-    return np.concatenate(positions or [np.zeros(0)])
+    return np.concatenate(positions)
 
 
 def _list_spans(pair: ValuePair, geometry: Geometry) -> tuple[SpanDifferences, ...]:
