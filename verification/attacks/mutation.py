@@ -50,6 +50,8 @@ IDLE = 20.0
 """A mutant whose tests take this multiple of their largest processor time waits for ever, and counts as killed."""
 NOT_FOR_TESTS, ASSERTION = re.compile(r"\s*@dataclass\(|if TYPE_CHECKING:"), re.compile(r"\bzip\(.*\bstrict=$")
 """Lines for the type checker, which finds assignments to frozen fields; text before an assertion of equal lengths."""
+BOUND_TESTS = ("test_bounds_of_keys.py", "test_schemas.py")
+"""Tests of the bounds of all keys of files, which name no model."""
 OPERATORS = tuple(
     f"core/{name}"
     for name in (
@@ -169,20 +171,24 @@ class CoveringTests:
     def select(self, file: str, line: int) -> list[str]:
         """Test files that execute a line: the one of its name, those of the same folder, then the fastest.
 
-        A line that runs at import belongs to every test of its file; those that mention its definition come first.
+        A line that runs at import belongs to every test of its file; those that mention its definition come first. The
+        tests of all bounds precede them where the statement has the bounds of a key.
         """
         source = (self.root / file).read_text("utf-8")
         lines, names = self.lines.get(file, {}), name_definitions(source, line)
-        found = set().union(*(lines.get(number, set()) for number in list_statement_lines(source, line)))
-        found = found or set().union(*lines.values())
+        statement = list_statement_lines(source, line)
+        found = set().union(*(lines.get(number, set()) for number in statement)) or set().union(*lines.values())
+        has_bounds = any("Field(" in source.splitlines()[number - 1] for number in statement)
+        bounds = {test for test in self.seconds if has_bounds and Path(test).name in BOUND_TESTS}
         mention = re.compile(rf"\b({'|'.join(names)})\b")
 
-        def rank(test: str) -> tuple[bool, bool, bool, float]:
+        def rank(test: str) -> tuple[bool, bool, bool, bool, float]:
             text, path = (self.root / test).read_text("utf-8"), Path(test)
             near = path.parent == "tests" / Path(file).parent
-            return path.name != f"test_{Path(file).name}", not mention.search(text), not near, self.seconds[test]
+            is_named = path.name == f"test_{Path(file).name}"
+            return test not in bounds, not is_named, not mention.search(text), not near, self.seconds[test]
 
-        return sorted(found, key=rank)
+        return sorted(found | bounds, key=rank)
 
 
 def list_statement_lines(source: str, line: int) -> range:
