@@ -104,6 +104,12 @@ def test_tornado_has_both_signs_of_every_input_the_largest_first() -> None:
     assert larger.y == pytest.approx([-3 * inputs[:, 1].std(), inputs[:, 0].std()])
     assert smaller.y == pytest.approx([-change for change in larger.y])
     assert draw_tornado(tornado).startswith("<svg")
+    # A regression needs more than two runs per input.
+    named = {key: tuple(range(9)) for key in "abcd"}
+    for runs, charts in ((8, 1), (9, 2)):
+        numbers = np.where(np.arange(9) < runs, np.arange(9.0), np.nan)
+        columns = build_columns(named, {FRONT.column: numbers})
+        assert len(list(build_sample_charts(columns, [EvaluatedValue(FRONT.column)], (), tuple("abcd")))) == charts
 
 
 def test_map_has_a_cell_per_run_and_many_curves_become_one(columns: CampaignColumns) -> None:
@@ -146,6 +152,7 @@ def test_statistics_of_random_designs_are_those_of_each_point_of_the_grid() -> N
     distribution, *convergence = build_sample_charts(columns, [value], ["speed_km_h"], ["tension"])
     assert [series.y[-1] for series in distribution.series] == [1.0, 1.0]
     assert [chart.series[0].y[-1] for chart in convergence] == [0.0, 0.5]
+    assert not any(chart.wide for chart in convergence)
 
 
 def test_report_has_facts_statistics_maps_and_charts(columns: CampaignColumns) -> None:
@@ -185,7 +192,7 @@ def test_campaign_without_any_result_is_evaluated(tmp_path: Path) -> None:
 def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:
     """Ten seeds with the forces 1 to 10: their mean is 5.5, and no curve runs over the seed."""
     droppers = "line.variation.droppers"
-    seeds = {"key": f"{droppers}.seed", "values": list(range(1, 11))}
+    seeds = {"key": f"{droppers}.seed", "values": list(range(1, 11)), "trust": "secondary", "source": "draw of 2026"}
     content = {"cases": ["en50318-2002/250"], "set": [f"{droppers}.tolerance_m=0.003"], "vary": [seeds]}
 
     def deliver(run: PlannedRun) -> RunRow:
@@ -195,6 +202,7 @@ def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:
     (statistics,) = results.statistics
     assert (statistics.runs, statistics.mean.value) == (10, 5.5)
     assert [chart for chart in results.charts if chart.x_label.endswith("seed")] == []
+    assert results.sources == {f"{droppers}.seed": "draw of 2026 (secondary)"}
 
 
 def shift_force(row: RunRow, shift: float, system: str) -> RunRow:

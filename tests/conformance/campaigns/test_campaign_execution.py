@@ -80,22 +80,25 @@ def test_failing_runs_become_rows_with_their_reason(tmp_path: Path, monkeypatch:
         reasons = {row.run.number: row.reason for row in store.rows()}
         ended = "the process of this run ended unexpectedly at every attempt"
         assert reasons == {1: ended, 2: "ZeroDivisionError: no mass", 3: "longer than 2 s", 4: None, 5: None}
+        assert {row.run.number: row.wall_s < 60 for row in store.rows()} == dict.fromkeys(range(1, 6), True)
         store.forget_failed()
         assert store.count() == (2, 0)
         fill_store(store, design)
         assert store.count() == (5, 0)
 
 
-def test_campaign_stops_at_a_share_of_failed_runs_and_goes_on_without_this_limit(tmp_path: Path) -> None:
-    """Half of the runs fail: the campaign stops as soon as 20 are finished."""
+def test_campaign_stops_at_a_share_of_failed_runs_and_goes_on_with_a_larger_one(tmp_path: Path) -> None:
+    """Half of the runs fail: the campaign stops as soon as 20 are finished, but not if half of them may fail."""
     design, states = speed_design(50), list[CampaignProgress]()
     with open_store(tmp_path, {}) as store:
         execution = Execution(max_failed_share=0.4)
         ending = drive_campaign(design, fail_even, store, ThisProcess(), execution, states.append)
         assert ending == "failure share"
         assert store.count() == (20, 10)
+        assert {state.finished for state in states if state.rate is None} <= {0, 1}
         assert (states[-1].total, states[-1].finished, states[-1].failed) == (50, 20, 10)
-        ending = drive_campaign(speed_design(50), fail_even, store, ThisProcess(), Execution(), states.append)
+        half = Execution(max_failed_share=0.5)
+        ending = drive_campaign(speed_design(50), fail_even, store, ThisProcess(), half, states.append)
         assert ending == "complete"
         assert store.count() == (50, 25)
 

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -56,10 +57,37 @@ def test_jobs_are_submitted_to_a_batch_system(tmp_path: Path) -> None:
 
 
 def test_scheduler_that_cannot_be_reached_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("distributed")
+    """Of a long reason, 200 characters are kept."""
+    distributed = pytest.importorskip("distributed")
     wrong = Execution(scheduler="nowhere://host")
     with pytest.raises(InputError, match="scheduler 'nowhere://host': cannot be reached"), choose_executor(wrong):
         pass
+
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError("x" * 300)
+
+    monkeypatch.setattr(distributed, "Client", refuse)
+    with pytest.raises(InputError, match=r"cannot be reached \(x{200}\)"), choose_executor(wrong):
+        pass
+
+
+def test_job_has_one_core_unless_the_campaign_states_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The cluster refuses every option, so no job is submitted."""
+    pytest.importorskip("distributed")
+
+    def refuse(**options: object) -> None:
+        raise ValueError(f"{options['cores']} core, {options['processes']} process, queue {options['queue']}")
+
+    monkeypatch.setitem(sys.modules, "dask_jobqueue", SimpleNamespace(PBSCluster=refuse))
+    execution = Execution(cluster="pbs", cluster_options={"queue": "long"})
+    refused = pytest.raises(InputError, match=r"cannot be used \(1 core, 1 process, queue long\)")
+    with refused, choose_executor(execution):
+        pass
+
+
+def test_runs_without_a_scheduler_or_cluster_stay_on_this_machine() -> None:
+    places = (Execution(), Execution(scheduler="tcp://host:8786"), Execution(cluster="pbs"))
+    assert [execution.is_local for execution in places] == [True, False, False]
 
 
 def test_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

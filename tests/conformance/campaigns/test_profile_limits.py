@@ -1,5 +1,6 @@
 """Rules of a profile as limits of the runs of a campaign."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from pantocheck.conformance.campaigns.campaign_run import ProfileLimits
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import Filter
 
 PROFILE = load_profile("acceptance-ac")
@@ -37,6 +39,13 @@ def test_rule_without_a_bound_is_named_and_another_kind_of_profile_refused(case_
         ProfileLimits(PROFILE, None).resolve(other)
     with pytest.raises(InputError, match="needs a measured record; a campaign has none"):
         ProfileLimits(load_profile("line-test"), None).resolve(case_250)
+
+
+def test_profile_file_stands_beside_the_campaign(tmp_path: Path) -> None:
+    shutil.copy(library_folder() / "profiles" / "acceptance-ac.toml", tmp_path / "own.toml")
+    for profile in ("own.toml", "acceptance-ac"):
+        content = {"cases": ["en50318-2002/250"], "profile": profile}
+        assert prepare_campaign(CampaignFile.model_validate(content), tmp_path).design.count_runs() == 1
 
 
 def test_run_with_a_rule_without_a_bound_cannot_pass() -> None:

@@ -56,6 +56,11 @@ def test_influences_are_those_of_a_linear_model() -> None:
     influences, determination = linear_influences(x[:, None], x + x**2 - 1)
     assert_allclose(influences, [1.0], atol=1e-2)
     assert determination == pytest.approx(1 / 3, abs=5e-3)
+    # An input that does not vary has no influence.
+    influences, _ = linear_influences(np.column_stack([x, np.ones(2000)]), x)
+    assert_allclose(influences, [1.0, 0.0], atol=1e-2)
+    # The sample 1, 2, 3 has a standard deviation of 1.
+    assert_allclose(mean_interval(np.array([1.0, 2.0, 3.0])), 2 + stats.norm.ppf([0.025, 0.975]) / np.sqrt(3))
     intervals = np.array([mean_interval(linear_runs(seed)[1]) for seed in range(REPETITIONS)])
     assert 0.91 <= np.mean((intervals[:, 0] <= 100) & (intervals[:, 1] >= 100)) <= 0.98
 

@@ -14,7 +14,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import NamedBound, Rule, SpeedFormula, load_profile, resolve_bounds
-from pantocheck.conformance.cases.study_tables import DropperDamping, ReleaseVelocity
+from pantocheck.conformance.cases.study_tables import DropperDamping, DropperOscillation, ReleaseVelocity
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.elements.damping import Damping, overlay_damping
 from pantocheck.conformance.line.elements.dropper import DropperTable
@@ -310,6 +310,12 @@ def test_drops_are_checked(changes: dict[str, Any], key: str | None, drop_case: 
     assert find_fault(edit_toml(drop_case, changes)) == key
 
 
+def test_hint_on_a_frequency_follows_from_the_rate(drop_case: Path) -> None:
+    """At most 0.4 of the rate of 100 Hz, or 2.5 times the frequency as the rate."""
+    with pytest.raises(InputError, match=r"Give at most 40 Hz, or rate_Hz = 100\.5\."):
+        load_case(edit_toml(drop_case, {"mass_drop.highest_Hz": 40.2}))
+
+
 def test_defaults_of_mass_drops_and_lines(drop_case: Path) -> None:
     """Five seconds at rest, acceleration at 100 Hz without noise, modes up to 10 Hz, release at once."""
     content = tomllib.loads(drop_case.read_text())
@@ -420,6 +426,16 @@ def test_coefficients_of_a_study_ascend(coefficients: list[float], valid: bool) 
     table = {"kind": "dropper-damping", "coefficients_s": coefficients, "x_m": 10.0, **OWN}
     with nullcontext() if valid else pytest.raises(ValidationError, match="ascending"):
         assert DropperDamping.model_validate(table).coefficients_s == tuple(coefficients)
+
+
+def test_coefficients_of_an_oscillation_ascend_from_zero() -> None:
+    for coefficients, key in (
+        ([0.0, 1e-3, 2e-3], None),
+        ([1e-4, 1e-3, 2e-3], "coefficients_s"),
+        ([0.0, 2e-3, 1e-3], "coefficients_s"),
+    ):
+        table = {"kind": "dropper-oscillation", "coefficients_s": coefficients, **OWN}
+        assert find_table_fault(DropperOscillation, table) == key
 
 
 def test_study_of_drops_needs_drops(edited_case: EditedCase) -> None:

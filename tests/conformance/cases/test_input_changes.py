@@ -12,8 +12,10 @@ from helpers.case_fixtures import EditedCase
 from helpers.command_line import pantocheck
 from pantocheck.conformance import open_case
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.case_file import CaseFile
+from pantocheck.conformance.cases.case_parts import change_tree
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.cases.input_changes import InputChange, build_change, parse_changes
 from pantocheck.conformance.cases.library import load_case, select_cases
 from pantocheck.conformance.cases.limits import own_limits
 from pantocheck.conformance.core.input_error import InputError
@@ -103,6 +105,16 @@ def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Pa
     assert "The limits of the library do not apply." in result.output
 
 
+def test_long_keys_and_values_are_shortened_in_messages() -> None:
+    with pytest.raises(InputError, match=r" '\?{80}': is not a key"):
+        build_change("?" * 100, 1.0)
+    for length, shown in ((198, f'"{"x" * 198}"'), (199, f'"{"x" * 196}...')):
+        title = InputChange("title", "case", None, ("title",), "x" * length)
+        (text,) = change_tree({}, CaseFile, [title])[1]
+        assert text == f"title = {shown} (not in the file)"
+    assert change("line.title=Own").line.title == "Own"
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -124,6 +136,7 @@ def test_changed_library_case_never_passes_by_its_limits(wave: Any, tmp_path: Pa
         ("speed_km_h=900", "250.toml' with --set speed_km_h = 900 (file: 250.0), key speed_km_h: 900 must be at most"),
         ("line.droppers.x_m=[70.0]", "70 m is not inside the span of 60 m"),
         ("id=own/a", "cannot be changed on the command line"),
+        ("requires[1]=own/a", "cannot be changed on the command line"),
         ("line.geometry.trust=primary", "cannot be changed on the command line"),
         ("limit[1].upper=3", "Give your limits in a file with --limits"),
     ],

@@ -129,7 +129,7 @@ def test_a_folder_cannot_replace_a_case_of_a_distribution(site: Path, tmp_path: 
     with pytest.raises(InputError) as caught:
         open_catalogue([path.parent])
     assert str(path) in str(caught.value)
-    assert "acme_lines" in str(caught.value)
+    assert "(distribution acme_lines 1.0)" in str(caught.value)
 
 
 def test_a_broken_distribution_does_not_take_others_down(site: Path) -> None:

@@ -66,6 +66,12 @@ def test_own_data_are_shown_as_user_data_of_the_lowest_trust(own_case: Case, cas
     assert own_case.digest == case_250.digest  # provenance is not part of the inputs
 
 
+def test_tables_of_a_list_are_numbered_from_one(edited_case: EditedCase) -> None:
+    masses = [{"x_m": x, "wire": "contact_wire", "mass_kg": 5.0} for x in (30.0, 40.0)]
+    names = load_case(edited_case("line.toml", {"point_mass": masses})).sourced_tables
+    assert {"line.point_mass 1", "line.point_mass 2"} == {name for name in names if "point_mass" in name}
+
+
 @pytest.mark.parametrize(
     ("file", "key"), [("line.toml", "geometry"), ("250.toml", "pantograph.0"), ("250.toml", "limit.0")]
 )

@@ -10,6 +10,7 @@ import pytest
 from helpers.recorded_drops import DURATION, RATE, RELEASE, WINDOWS, build_task, read_short_line, record_drop
 from pantocheck.conformance.comparison.comparison_limits import ComparisonLimit
 from pantocheck.conformance.comparison.drop_comparison import compare_drop
+from pantocheck.conformance.comparison.drop_motion import ALIGNED_S, SEARCH_S, align_release
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_simulation import decimate
@@ -108,13 +109,15 @@ def grade(record: DropRecord, *tables: dict[str, Any], model: float = 0.1) -> Dr
 def test_limits_grade_the_first_model() -> None:
     comparison = grade(record_drop(), limit(), limit(quantity="correlation", lower=0.99, upper=None))
     assert comparison.verdict == "pass"
+    assert {item.source for item in comparison.criteria} == {""}
     assert [item.where.sensor for item in comparison.criteria] == [1, 2, 1, 2]
     assert all(item.uncertainty is not None and item.uncertainty > 0 for item in comparison.criteria)
     # Elements of 2.25 m: half of them change the late ratio of sensor 2 by more than 2 %.
     assert comparison.criteria[0].close == []
     assert "finer mesh and time step could reverse the verdict" in comparison.criteria[1].close[0]
-    other = grade(record_drop(), limit(), model=0.11)
+    other = grade(record_drop(), limit(source="plan 3"), model=0.11)
     assert other.verdict == "fail"
+    assert {item.source for item in other.criteria} == {"plan 3"}
     assert "below the lower limit" in str(other.criteria[0].reason)
 
 
@@ -145,6 +148,16 @@ def test_sensor_without_a_limit_does_not_move_the_release() -> None:
     assert with_it.drop.release_s == pytest.approx(RELEASE, abs=2e-5)
 
 
+def test_release_at_an_end_of_the_search_is_found() -> None:
+    """The record is not longer than the compared seconds, or the release lies at the latest time of the search."""
+    model = np.sin(2 * np.pi * 1.3 * np.arange(round(ALIGNED_S * RATE)) / RATE)[:, None]
+    assert align_release(model, model, RATE, 0.0) == (pytest.approx(0.0, abs=2e-3), pytest.approx(1.0, abs=0.01))
+    late = np.vstack([np.zeros((round(SEARCH_S * RATE), 1)), model, np.zeros((400, 1))])
+    found, correlation = align_release(late, model, RATE, 0.0)
+    assert found == pytest.approx(SEARCH_S, abs=1e-3)
+    assert correlation > 0.99
+
+
 @pytest.mark.parametrize("rest", [0.0, 0.4, 1.7])
 def test_release_near_the_start_of_the_record_is_found(rest: float) -> None:
     """A record that begins at the release, or less than a second before it; the wave needs 0.1 s to a sensor.
@@ -171,6 +184,9 @@ def test_record_that_ends_early_or_has_no_rest_leaves_its_limits_open() -> None:
     assert [item.verdict for item in comparison.criteria] == ["pass", "pass", "skip", "skip"]
     assert "does not contain the window from 6 to 9 s" in str(comparison.criteria[2].reason)
     assert any("window from 6 to 9 s" in text for text in comparison.warnings)
+    # The window of the first four seconds ends half a second before the fade.
+    early = compare_drop(keep_samples(None, round((RELEASE + 5.5) * RATE)), build_task(0.1, windows=(EARLY,)))
+    assert not any("window from" in text for text in early.warnings)
     # Its noise is not known, and could hide a ratio outside the limits.
     record = keep_samples(round(2.5 * RATE), trigger_nominal=RELEASE - 2.5)
     comparison = grade(record, limit())

@@ -1,6 +1,7 @@
 """Differences of two forces: sums of sines whose bands, coherence and profile are known."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,6 +50,7 @@ def test_one_force_at_two_rates_has_no_difference(rates: tuple[float, float]) ->
     # Interpolation from 137 samples per second: at most 1 % of the 5 N at 33 Hz.
     assert np.abs(forces.difference).max() < 0.05
     assert correlation(forces) > 0.9999
+    assert correlation(replace(forces, second=np.full(forces.second.size, 120.0))) == 0
     assert forces.rate == max(rates)
 
 

@@ -68,6 +68,8 @@ def test_each_span_has_its_own_statistics(run: Run) -> None:
     comparison = compare_measured_run(run("simulated"), run("measured", 10.0), SUPPORTS)
     assert comparison is not None
     for key, amplitude in (("1", 20.0), ("2", 30.0)):
+        part = comparison.pantographs[key]
+        assert part.simulated_spectrum != part.measured_spectrum
         spans = comparison.pantographs[key].spans
         assert [span.start_m for span in spans] == list(SUPPORTS[2:8])
         for number, span in enumerate(spans, 2):

@@ -56,6 +56,14 @@ def test_end_of_a_cut_decay_does_not_reach_its_start() -> None:
     assert np.abs(filtered[TIME < 4]).max() < 0.01
 
 
+def test_last_second_is_faded() -> None:
+    """A constant in a band without edges: half a period of a cosine, from 1 to 0."""
+    filtered = filter_motion(np.cos(2 * np.pi * 5.0 * TIME)[:, None], RATE, 0, BAND)[:, 0]
+    fade = (1 + np.cos(np.pi * (TIME - TIME[-1] + TAPER_S) / TAPER_S)) / 2
+    last = TIME[-1] - TAPER_S < TIME
+    np.testing.assert_allclose(filtered[last], (fade * np.cos(2 * np.pi * 5.0 * TIME))[last], rtol=0, atol=0.03)
+
+
 def test_noise_at_rest_has_the_share_of_the_band() -> None:
     """White noise: its power is spread over half the rate; 30 s give an estimate within some percent."""
     rest = 0.01 * np.random.default_rng(0).standard_normal((round(30 * RATE), 1))

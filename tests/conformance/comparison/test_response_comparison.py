@@ -87,6 +87,9 @@ def test_known_deviation_has_the_same_size_in_every_kind(tmp_path: Path, kind: s
     compared = compare_responses([response], REFERENCE).responses[0]
     percent, degrees = 100 * np.log(1.1), 5.0
     expected = (percent, degrees, np.hypot(percent, 100 * np.radians(degrees)), percent, degrees)
+    stated = read_response(rig.write_response(tmp_path, columns, "stated", kind=kind, **NOISE))
+    shares = [band.beyond_uncertainty_pct for band in compare_responses([stated], REFERENCE).responses[0].bands]
+    assert shares == pytest.approx([100.0] * 3)
     for band in compared.bands:
         assert [band.deviations[name] for name in RESPONSE_QUANTITIES] == pytest.approx(expected, rel=1e-7)
     assert compared.modulus_deviation_pct[7] == pytest.approx(-percent)
@@ -163,6 +166,8 @@ def test_incomplete_band_does_not_pass(tmp_path: Path, kept: Any, reason: str) -
     comparison = compare_responses([read_response(rig.write_response(tmp_path, columns))], REFERENCE, limit())
     assert comparison.verdict == "skip"
     assert reason in str(comparison.criteria[0].reason)
+    inside = (frequency >= 20) & (frequency <= 50)
+    assert comparison.responses[0].bands[2].rows == np.count_nonzero(inside)
 
 
 def test_missing_value_leaves_its_band_open(tmp_path: Path) -> None:

@@ -10,7 +10,12 @@ from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
-from pantocheck.conformance.comparison.static_differences import ValuePair, grade_static_difference
+from pantocheck.conformance.comparison.static_differences import (
+    SAME_POSITION_M,
+    ValuePair,
+    find_static_gaps,
+    grade_static_difference,
+)
 from pantocheck.conformance.comparison.static_record import StaticSidecar, read_static_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -94,13 +99,14 @@ def test_common_offset_has_no_outliers_and_shows_the_error_of_the_mesh(
 
 
 def test_difference_of_two_forces_is_the_slope_between_them(tmp_path: Path, computed: dict[str, Array]) -> None:
-    """Droppers slacken under 200 N: the slope from 100 N to 200 N exceeds the elasticity under 100 N."""
+    """Droppers slacken under 200 N: the slope from 100 N to 200 N exceeds the elasticity, but not at supports."""
     one, two = (
         compare(tmp_path, computed, {}, **COMPLETE, force_N=force).values[0].model
         for force in ([100.0], [100.0, 200.0])
     )
     assert np.all(np.array(two) >= np.array(one) - 1e-9)
     assert max(np.array(two) / np.array(one)) > 1.05
+    assert min(np.array(two) / np.array(one)) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_stated_uncertainty_marks_a_close_criterion(tmp_path: Path, computed: dict[str, Array]) -> None:
@@ -135,6 +141,7 @@ def test_missing_values_leave_the_criterion_open_and_are_named_with_outliers(
     comparison = compare(tmp_path, columns, TOLERANCES, **COMPLETE)
     elasticity, height = comparison.criteria
     assert elasticity.verdict == "skip"
+    assert [values.missing_rows for values in comparison.values] == [(30,), ()]
     assert "no measured value between 169.5 and 181.5 m" in str(elasticity.reason)
     assert height.verdict == "pass"
     assert comparison.values[0].missing_rows == (30,)
@@ -155,6 +162,7 @@ def test_missing_values_leave_the_criterion_open_and_are_named_with_outliers(
     ("name", "factor", "offset", "message"),
     [
         ("elasticity_mm_N", 10.0, 0.0, "the median is 10 times that of the model"),
+        ("elasticity_mm_N", 5.5, 0.0, "the median is 5.5 times"),
         ("elasticity_mm_N", 1e-3, 0.0, "the median is 0.001 times"),
         ("contact_wire_height_m", 1.0, 5.3, "give datum_m = 5.3 in the sidecar"),
     ],
@@ -183,6 +191,18 @@ def test_heights_of_a_line_that_counts_from_the_rail_need_no_datum(tmp_path: Pat
     (heights,) = compare_statics(record, raised, 0.5, ()).values
     catenary = discretise(build_catenary(LINE), 0.5)
     assert heights.model == pytest.approx(5300 + 1e3 * rest_height(catenary, columns["position_m"]), abs=1e-3)
+
+
+def test_gaps_are_counted_and_named_up_to_a_number() -> None:
+    """Every second distance of 5 m is too long; a distance that is too long by a rounding error is not."""
+    section = (0.0, 5.0 + SAME_POSITION_M)
+    assert find_static_gaps(np.array(section), section, 5.0) == []
+    measured = np.full(7, 5e-4)
+    position = np.arange(0.0, 61.0, 10.0)
+    pair = ValuePair(position, measured, measured, measured, np.arange(1, 8), np.zeros(0, dtype=np.int64))
+    (limit,) = build_tolerances({"elasticity_difference_mm_N": 0.1})
+    reason = str(grade_static_difference(limit, {"elasticity": pair}, SIDECAR, (0.0, 60.0)).reason)
+    assert "40 and 50 m and 1 more" in reason
 
 
 POSITION = np.arange(0.0, 100.1, 5.0)

@@ -70,6 +70,8 @@ def test_tables_of_spreadsheets_hdf5_and_other_programs_are_read(tmp_path: Path)
         ({"elasticity_m_N": np.ones(3)}, {}, "'elasticity_m_N': repeats elasticity"),
         ({}, {"force_N": None}, "key force_N: missing"),
         ({}, {"force_N": [100.0, 60.0]}, "key force_N: the second force is not greater"),
+        ({}, {"force_N": [60.0, 60.0]}, "key force_N: the second force is not greater"),
+        ({}, {"columns": {"x" * 90: "position_m"}}, "key columns.x{80}: unknown column"),
         ({}, {"evaluated_spans": [2, 7]}, "key evaluated_spans: span 7 does not exist"),
         ({}, {"evaluated_spans": [3, 2]}, "key evaluated_spans: .* are not a first and a last span"),
         ({}, {"largest_distance_m": 60.0}, "60 m is longer than the shortest span of 54 m"),

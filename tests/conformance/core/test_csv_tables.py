@@ -10,6 +10,7 @@ from pantocheck.conformance.core import csv_table
 from pantocheck.conformance.core.csv_table import read_csv_table, write_csv_table
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import MeasuredTable
+from pantocheck.conformance.core.text_reading import find_text_layout
 from pantocheck.conformance.core.text_settings import TextSettings
 
 EXPECTED = [[0.0, 1.0], [0.5, -2.5], [1.0, 1e3]]
@@ -117,6 +118,10 @@ def test_head_lines_units_and_encodings_of_a_logger(encoding: str, tmp_path: Pat
     (table,) = read_csv_table(tmp_path / "r.csv", (), 100)
     assert_array_equal(table.values, [[0, 0.112], [0.01, 0.098], [0.02, 0.101]])
     assert [(column.name, column.unit) for column in table.columns] == [("Zeit", "s"), ("Kraft vorn, Lösung µ", "kN")]
+    lines = [(number, text) for number, text in enumerate(LOGGER.splitlines(), 1) if text]
+    assert find_text_layout(lines, "r", TextSettings(header_lines=3)).preface == ("Messzug 7", "Strecke;NBS Nord")
+    with pytest.raises(InputError, match="r, line 2: is stated to hold the names, but 2 lines stand"):
+        find_text_layout(lines, "r", TextSettings(header_lines=1))
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t", "|", " ", "   "])

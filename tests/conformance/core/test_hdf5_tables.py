@@ -72,6 +72,14 @@ def test_rows_of_data_sets_at_the_root_are_columns(tmp_path: Path) -> None:
     assert_array_equal(table.values, SAMPLES.T)
 
 
+def test_data_sets_keep_their_order_and_long_names_are_shortened(tmp_path: Path) -> None:
+    write_hdf5_table(tmp_path / "r.h5", {}, {"time_s": SAMPLES[0], "force_N": SAMPLES[1]})
+    assert [column.name for column in read(tmp_path / "r.h5")[0].columns] == ["time_s", "force_N"]
+    write_hdf5_table(tmp_path / "r.h5", {}, {"x" * 90: np.zeros((2, 2, 2))})
+    with pytest.raises(InputError, match=r"data set 'x{80}'"):
+        read(tmp_path / "r.h5")
+
+
 def describe_nothing(file: h5py.File) -> None:
     for key in list(file["channels"]):
         del file["channels"][key]

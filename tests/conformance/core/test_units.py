@@ -29,6 +29,7 @@ def test_key_in_another_unit_is_converted(key: str, value: float, known: str, hi
         ("kg", {"kg": 1.0, "g": 1e-3, "t": 1e3}),
         ("kg_m", {"kg_m": 1.0, "g_m": 1e-3, "kg_km": 1e-3}),
         ("N_m", {"N_m": 1.0, "kN_m": 1e3, "MN_m": 1e6, "N_mm": 1e3, "kN_mm": 1e6}),
+        ("m_N", {"m_N": 1.0, "mm_N": 1e-3, "mm_daN": 1e-4, "mm_kN": 1e-6, "m_kN": 1e-3, "cm_kN": 1e-5}),
         ("N_s_m", {"N_s_m": 1.0, "Ns_m": 1.0, "kN_s_m": 1e3, "kNs_m": 1e3}),
         ("N_m2", {"N_m2": 1.0, "Nm2": 1.0, "kN_m2": 1e3, "kNm2": 1e3}),
         ("m2", {"m2": 1.0, "mm2": 1e-6, "cm2": 1e-4}),

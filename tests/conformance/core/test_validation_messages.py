@@ -9,6 +9,8 @@ import pytest
 from helpers.case_fixtures import EditedCase
 from pantocheck.conformance.cases.library import load_case, read_limits
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.key_paths import parse_key
+from pantocheck.conformance.core.validation_messages import append_table_number
 from pantocheck.conformance.line.library_folder import library_folder
 
 LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
@@ -37,6 +39,8 @@ LINE, PANTOGRAPH, CASE = "line.toml", "pantograph.toml", "250.toml"
         (LINE, {"contact_wire.mass_kg_m": math.nan}, "contact_wire.mass_kg_m: nan is not a finite number."),
         (LINE, {"contact_wire.mass_kg_m": -math.inf}, "contact_wire.mass_kg_m: -inf is not a finite number."),
         (LINE, {"contact_wire.mass_kg_m": "1.35"}, "contact_wire.mass_kg_m: found '1.35', expected a number."),
+        (LINE, {"point_mass": [{"x_m": 30.0, "mass_kg": 5.0}]},
+         'point_mass[1].wire: missing.\n  It is: wire that carries the mass. Allowed: "contact_wire" or'),
         (LINE, {"droppers.x_m.8": 65.0}, "droppers.x_m[9]: 65 m is not inside the span of 60 m."),
         (LINE, {"droppers.x_m.1": 17.0, "droppers.x_m.2": 10.5},
          "droppers.x_m[3]: 10.5 m is not greater than the preceding 17 m."),
@@ -71,6 +75,13 @@ def test_message_names_file_key_and_next_step(
     kind = {LINE: "line", PANTOGRAPH: "pantograph", CASE: "case"}[file]
     assert str(caught.value).startswith(f"{kind} '{file}', key {message}")
     assert caught.value.hint
+
+
+def test_number_of_a_table_follows_its_key() -> None:
+    tree = {"support": [{"number": 2}, {"number": 5}]}
+    assert (parse_key("support[1].x_m"), parse_key("support[0].x_m")) == (("support", 0, "x_m"), None)
+    for item, number in ((1, 2), (2, 5)):
+        assert append_table_number(f"support[{item}].x_m", tree) == f"support[{item}].x_m (number {number})"
 
 
 @pytest.mark.parametrize(

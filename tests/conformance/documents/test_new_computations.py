@@ -100,6 +100,12 @@ def test_rerun_finds_a_change_of_one_bit(static_results: Results) -> None:
     [changed] = check_rerun(change_quantity(static_results, "elasticity_mm_N", 1 + 1e-12))
     assert changed.outcome == "contradicted"
     assert "quantities, 0, elasticity_mm_N" in changed.details[0]
+    content = static_results.to_dict()
+    curve = content["cases"][0]["line_shape"]["side"]["points"]
+    for point in curve:
+        point["y_m"] += 0.001
+    [many] = check_rerun(Results.model_validate(content))
+    assert len(curve) > len(many.details) == 10
 
 
 @pytest.mark.parametrize("place", ["draw", "passing_starts"])
@@ -163,6 +169,8 @@ def test_rerun_elsewhere_is_compared_within_rounding(static_results: Results, ke
         ({"a": 1.0}, {"a": 1.0 + 1e-9}, 1e-6, 0),
         ({"a": 1.0}, {"a": 1.0 + 1e-5}, 1e-6, 1),
         ({"a": [1e-9, 100.0]}, {"a": [2e-9, 100.0]}, 1e-6, 0),  # relative to the largest number of the list
+        ({"a": [100.0, 1e-9]}, {"a": [100.0, 2e-9]}, 1e-6, 0),
+        ({"a": 1.5e-6}, {"a": 0.0}, 1e-6, 1),  # relative to one
         ({"a": [1.0]}, {"a": [1.0, 2.0]}, 1e-6, 2),  # the number of values, and the second one
         ({"a": 1.0}, {"b": 1.0}, 1e-6, 2),
         ({"a": "x"}, {"a": "y"}, 1e-6, 1),

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.documents.recomputation import check_components, find_discrepancies
 from pantocheck.conformance.documents.verification import find_gaps
 from pantocheck.conformance.results.results_format import Results
 
@@ -171,6 +171,42 @@ def test_results_without_cases_lack_the_verdict_of_the_criteria(ungraded: dict[s
     for results, missing in ((ungraded, True), (only, False), ({**ungraded, "cases": []}, True)):
         gaps = find_gaps(Results.model_validate(results))
         assert ("criteria_verdict is missing" in gaps) is missing
+
+
+def test_curve_has_the_stated_mean_and_deviation(ungraded: dict[str, Any]) -> None:
+    """The drawn force alone is changed: by 3 N in the mean, or by half in its deviation."""
+    trace = ungraded["cases"][0]["traces"]["2"]
+    drawn, mean = trace["force_20_N"], trace["mean_N"]
+    for offset, factor in ((3.0, 1.0), (0.0, 1.5)):
+        trace["force_20_N"] = [mean + offset + factor * (force - mean) for force in drawn]
+        assert any("follow from the drawn curve" in text for text in recompute(ungraded)), (offset, factor)
+
+
+def test_quantities_of_the_line_follow_from_each_other(ungraded: dict[str, Any]) -> None:
+    """Case of 250 km/h; alpha of 0.4 and the Doppler factor (c - v) / (c + v) give their quotient."""
+    line = ungraded["cases"][0]["quantities"]["0"]
+    speed, wave = 250 / 3.6, line["wave_speed_m_s"]
+    doppler = (wave - speed) / (wave + speed)
+    line |= {"doppler_factor": doppler, "reflection_coefficient": 0.4}
+    for amplification, found in ((0.4 / doppler, 0), (0.41 / doppler, 1)):
+        line["amplification_coefficient"] = amplification
+        assert len(recompute(ungraded)) == found
+    del line["reflection_coefficient"]
+    assert recompute(ungraded) == []
+
+
+def test_components_belong_to_every_row_with_a_limit(passing: dict[str, Any]) -> None:
+    """A row with one limit is checked as one with two; a drift and a row without limits have no components."""
+    row = Results.model_validate(passing).cases[0].criteria[0].model_copy(update={"components": {}})
+    reported = {str(row.pantograph): {row.quantity: {"start": 1.0}}}
+    for changes, found in (
+        ({}, 1),
+        ({"lower": None}, 1),
+        ({"upper": None}, 1),
+        ({"lower": None, "upper": None}, 0),
+        ({"baseline": 1.0}, 0),
+    ):
+        assert len(list(check_components(row.model_copy(update=changes), reported, ("start",)))) == found, changes
 
 
 def test_minimum_above_maximum_is_found_without_samples(ungraded: dict[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -54,6 +55,14 @@ def test_signer_without_a_given_root_is_named_but_not_trusted(signers: Signers, 
     assert report.contradictions == (
         "signature 1 (Ada Author): not trusted, its chain does not lead to a given trust root",
     )
+
+
+def test_first_certificate_of_a_key_signs_and_a_long_name_is_shortened() -> None:
+    own = [SimpleNamespace(public_key=SimpleNamespace(dump=lambda: b"key")) for _ in range(2)]
+    key = SimpleNamespace(public_key=lambda: SimpleNamespace(public_bytes=lambda *_: b"key"))
+    assert key_files._select_certificate(key, own, "key.pem").certificate is own[0]
+    for length, shown in ((120, "x" * 120), (121, "x" * 119 + "…")):
+        assert key_files.read_name(SimpleNamespace(native={"common_name": "x" * length})) == shown
 
 
 @pytest.mark.usefixtures("any_key")

@@ -124,6 +124,8 @@ def test_hostile_names_are_escaped(passing_certificate: Path, tmp_path: Path, si
 @pytest.mark.parametrize("place", BOXES)
 def test_visible_signature(passing_certificate: Path, signers: Signers, place: str) -> None:
     """The box lies at its place in the margin above the header, and its fonts are embedded, as PDF/A demands."""
+    left, bottom, right, top = BOXES[place]
+    assert (right - left, top - bottom) == (158, 22)  # equal boxes, in equal margins at both sides
     signed = sign(passing_certificate, signers.author, place=place)
     reader = PdfReader(signed)
     widget = reader.pages[0]["/Annots"][0].get_object()

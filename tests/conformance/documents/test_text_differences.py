@@ -21,6 +21,8 @@ def test_texts_are_quoted_around_their_difference() -> None:
         "'… the style of EN 50318. It is not a certification by a third party.' follows from the results"
     )
     assert quote_difference("26.57 N", "26.37 N") == ("'26.57 N'", "'26.37 N'")
+    longest = "a" * (QUOTED_CHARACTERS - 1)
+    assert quote_difference(f"{longest}b", f"{longest}c") == (f"'{longest}b'", f"'{longest}c'")
     assert quote_difference(None, "26.37 N") == ("nothing", "'26.37 N'")
     first, second = quote_difference("a" * 200 + "b" * 200, "a" * 200 + "c" * 200)
     assert first != second

@@ -1,6 +1,7 @@
 """Public interface for mass drops: records, identified modes and fitted damping."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from pantocheck.conformance import (
     open_drop,
     open_modes,
 )
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification
@@ -59,8 +61,9 @@ def test_wrong_run_format_drop_or_line_is_named(drop: OpenedDrop, tmp_path: Path
         open_drop(drop.write(tmp_path / "drop.csv"), run=2)
     with pytest.raises(InputError, match=r"\.xls.*\n.*\.uff, \.csv, \.h5"):
         drop.write(tmp_path / "drop.xls")
-    with pytest.raises(InputError, match="has 3 mass drops, not drop 4"):
-        CASE.simulate_drop(4)
+    for number in (0, 4):
+        with pytest.raises(InputError, match=f"has 3 mass drops, not drop {number}"):
+            CASE.simulate_drop(number)
     with pytest.raises(InputError, match=r"Choose a case with a \[mass_drop\] table"):
         open_case("en50318-2002/250").simulate_drop()
     # The modes state the spans of their record.
@@ -70,6 +73,19 @@ def test_wrong_run_format_drop_or_line_is_named(drop: OpenedDrop, tmp_path: Path
         IdentifiedLines(stated).fit_damping(CASE, ELEMENT)
     (line,) = drop.plot("S2z").lines
     np.testing.assert_array_equal(line.get_ydata(), drop.record.signals[:, 1])
+
+
+def test_first_drop_of_a_case_is_simulated(drop: OpenedDrop, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The simulation itself is replaced: the interface passes the case and the number of the drop on."""
+    asked = []
+
+    def simulate(case: Case, number: int) -> SimpleNamespace:
+        asked.append((case.id, number))
+        return SimpleNamespace(record=drop.record)
+
+    monkeypatch.setattr("pantocheck.conformance.drops.drop_simulation.simulate_drop", simulate)
+    assert CASE.simulate_drop().record is drop.record
+    assert asked == [(CASE.id, 1)]
 
 
 def test_fit_finds_the_coefficients_of_the_line(fit: FittedDamping) -> None:

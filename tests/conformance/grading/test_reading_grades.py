@@ -181,6 +181,7 @@ def test_command_prints_one_table_at_80_columns(case: Case, edited_case: EditedC
     [std] = [line for line in lines if line.startswith("std_force_N") and "26 to 31" in line]
     assert re.search(r"FAIL .* PASS reading *$", std)
     assert any(line.startswith("  against std_force_N") and line.count("%") == 2 for line in lines)
+    assert "Not evaluated" not in done.stdout
     tree = json.loads(pantocheck("readings", sidecar, "--cases", tmp_path, "--json").stdout)["result"]
     assert [reading["id"] for reading in tree["readings"]] == ["order-4-twice"]
     edit_toml(sidecar, {"case": None})

@@ -11,7 +11,6 @@ from pantocheck.model.description.failures import DidNotConverge
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.newmark import step
-from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.simulation import start_motion
 
 PASSAGE = Passage((PANTOGRAPH_2002,), (20.0,), 50.0, 0.05, 1e-3)
@@ -42,14 +41,6 @@ def test_simulate_passage_fails_for_nan_in_a_pantograph(where: str) -> None:
     pantograph = build_chain(masses, stiffness, damping, values["uplift"], 0, values["contact"])
     with pytest.raises((DidNotConverge, ValueError, np.linalg.LinAlgError)):
         simulate_passage(discretise(simple_line(), 1.0), replace(PASSAGE, pantographs=(pantograph,)))
-
-
-def test_time_of_the_step_that_fails_is_named() -> None:
-    line = discretise(simple_line(), 1.0)
-    kernel = build_kernel_arrays(line, 1e-3)
-    load, recording = np.array([0.0, 0.0, np.nan, 0.0]), allocate_recording(line, (), 4, 1)
-    with pytest.raises(DidNotConverge, match=r"time step at 0\.003 s after the start"):
-        simulate_steps(kernel, *start_motion(line, kernel, PASSAGE), load, recording)
 
 
 @pytest.mark.parametrize("where", ["w", "r", "tension", "z", "contact", "far away"])

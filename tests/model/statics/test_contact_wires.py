@@ -39,6 +39,7 @@ def test_parallel_wires_share_the_force_at_the_start() -> None:
     kernel = build_kernel_arrays(built, 1e-3)
     _, train = start_motion(built, kernel, Passage((PANTOGRAPH_2002,), (31.0,), 50.0, 1.0, 1e-3))
     np.testing.assert_array_equal(train.contact, [[60.0, 60.0]])
+    np.testing.assert_array_equal(train.elapsed, [0.0])
 
 
 def test_start_in_an_overlap_presses_on_the_lowest_wire() -> None:

@@ -52,6 +52,16 @@ def test_deflection_grows_more_than_proportionally_with_slack_droppers() -> None
     assert lift[1].displacement[0, station, 0] > 1.1 * 80 * lift[0].displacement[0, station, 0]
 
 
+def test_dropper_slackens_at_zero_tension() -> None:
+    """The first dropper is taut with half a newton left, and slack with a force that would compress it by as much."""
+    direction = point_load(LINE, 0, 90.0)
+    per_newton = LINE.connectors.stiffness * STATICS.point_response(direction).elongation
+    relieved = np.flatnonzero(LINE.connectors.unilateral & (per_newton < 0))
+    for left, slack in ((0.5, 0), (-0.5, 1)):
+        force = ((left - LINE.connectors.preload[relieved]) / per_newton[relieved]).min()
+        assert STATICS.deflection(force * direction).slack.sum() == slack
+
+
 @settings(max_examples=40)
 @given(st.lists(st.tuples(st.floats(1.0, 179.0), st.floats(-600.0, 900.0), st.integers(0, 1)), min_size=1, max_size=4))
 def test_slack_droppers_are_those_of_the_convex_minimum(loads: list[tuple[float, float, int]]) -> None:

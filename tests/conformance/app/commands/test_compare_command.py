@@ -72,6 +72,7 @@ def test_record_without_an_analysis_section_is_named_with_the_reason(folder: Pat
 def test_two_records_are_compared_for_both_pantographs(folder: Path) -> None:
     done = run("first.csv", "other.csv", "--out", "out")
     assert done.exit_code == 0, done.output
+    assert done.output.count("std_force_N") == 2
     content = read(folder)
     assert [subject["name"] for subject in content["subjects"]] == ["first", "other"]
     assert [owner["number"] for owner in content["cases"][0]["owners"]] == [0, 1, 2]

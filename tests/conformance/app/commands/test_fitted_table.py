@@ -53,6 +53,8 @@ def test_sentences_wrap_beside_whole_names_and_a_row_without_cells_takes_one_lin
         "en50318-2002/250 EN 50318:2002 reference",
         "                 model, 250 km/h",
     ]
+    # Sentences have 24 columns at least: with 16 for the name and a space, 41 in all.
+    assert [len(shown(table, width)) for width in (41, 40)] == [3, 5]
     table = build_table("input", "value", unbroken=("input", "value"))
     table.add_row("line.damping", "")
     table.add_row("  tension_N", "20000.0")

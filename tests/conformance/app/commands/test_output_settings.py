@@ -88,6 +88,13 @@ def test_every_command_gives_its_result_as_json(command: list[str]) -> None:
     assert content["result"]
 
 
+@pytest.mark.usefixtures("records")
+def test_limit_of_another_pantograph_is_a_problem_of_the_limits() -> None:
+    Path("own.toml").write_text('[[limit]]\nquantity = "std_force_N"\npantograph = 3\nupper = 30.0\n')
+    done = pantocheck("assess", "records/250.toml", "--profile", "acceptance-ac", "--limits", "own.toml")
+    assert (done.exit_code, "limit[1].pantograph: there is no pantograph 3" in done.stderr) == (2, True)
+
+
 def test_options_count_before_and_after_the_command_and_must_agree() -> None:
     for arguments in (["--json", "cases"], ["cases", "--json"], ["--json", "cases", "--json"]):
         assert json.loads(pantocheck(*arguments).stdout)["command"] == "cases"

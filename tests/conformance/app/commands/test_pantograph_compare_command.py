@@ -52,6 +52,7 @@ run = partial(pantocheck, "pantograph", "compare", "--pantograph", "pantograph.t
 def test_reports_are_written_and_the_exit_code_follows_the_verdict(folder: Path) -> None:
     done = run("right.csv", "--limits", "limits.toml")
     assert done.exit_code == 0, done.output
+    assert all(f"{band} Hz" in done.output for band in ("0.5 to 5", "5 to 20", "20 to 50"))
     results = json.loads((folder / "out" / "response_comparison.json").read_text())
     validate(results, build_schema("response-comparison"))
     assert (folder / "out" / "response_comparison.pdf").read_bytes().startswith(b"%PDF")

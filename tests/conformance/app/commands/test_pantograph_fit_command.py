@@ -30,6 +30,8 @@ def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
     """Two masses are chosen; their interval is 0.4 % in the mean of many measurements."""
     done = run("--title", "Rig 12")
     assert done.exit_code == 0, done.output
+    assert "determined" in done.output  # of the table of parameters
+    assert "times the stated noise" not in done.output
     tables = tomllib.loads((folder / "fitted.toml").read_text())
     assert tables["title"] == "Rig 12"
     assert tables["chain"]["masses_kg"] == pytest.approx([15.0, 7.2], rel=0.01)

@@ -105,6 +105,12 @@ def test_cases_and_steps_that_are_running_are_named(caplog: pytest.LogCaptureFix
     assert progress.describe().startswith(
         "running cases: 1 of 4 finished, line/250: in a process of its own, line/320: in a process of its own, 25 %"
     )
+    # A case may take a further step after its end; no more than all of the work is done.
+    progress = TaskProgress("running cases", 1, Clock())
+    progress.finish_task()
+    with follow(progress), caplog.at_level(logging.DEBUG, LOGGER.name):
+        StepSequence(LOGGER, "line/250", {"report": 1.0}).begin("report")(0.5)
+    assert ", 100 %" in progress.describe()
     # A part such as the self-test runs many cases, which end without a message.
     progress = TaskProgress("guide", 4, Clock())
     progress.reach("", 0, 0.0)
@@ -164,7 +170,8 @@ def test_levels_and_handlers_are_restored() -> None:
     assert 2 <= REDRAWS_PER_S <= 4
     root = logging.getLogger("pantocheck")
     before = root.level, list(root.handlers)
-    with follow_steps("anything"):
+    with follow_steps("anything") as progress:
+        assert progress.describe().startswith("anything, 0:00:0")
         assert root.isEnabledFor(logging.DEBUG)
     assert (root.level, root.handlers) == before
 

@@ -50,6 +50,9 @@ def test_line_and_pantograph_of_a_file_are_those_of_its_cases() -> None:
     frequency_Hz = np.array([1.0, 5.0])
     (curve,) = pantograph.plot(frequency_Hz).lines
     assert curve.get_ydata() == pytest.approx(np.abs(pantograph.apparent_mass_kg(frequency_Hz)))
+    (whole,) = pantograph.plot().lines
+    assert whole.get_xdata()[[0, -1]] == pytest.approx([0.5, 50.0])
+    assert pantograph.model.force == pytest.approx([0.0, 0.0])  # no uplift force
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,7 @@ def test_a_run_agrees_with_its_record(run: SimulatedRun, tmp_path: Path) -> None
     """The record holds nine digits."""
     compared = compare_runs(run, run.write(tmp_path / "run.csv"))
     agreement = compared.agreement(pantograph=2)
+    assert compared.agreement() == compared.agreement(pantograph=1, subject=2) != agreement
     assert agreement.correlation == pytest.approx(1, abs=1e-9)
     assert agreement.rms_difference_N < 1e-6 * SIGMA
     assert repr(compared) == f"<ComparedRuns {', '.join(compared.subjects)}>"

@@ -4,12 +4,15 @@ import csv
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from helpers.command_line import pantocheck
+from helpers.wave_system import Wave
 from pantocheck.conformance.app.self_test import mutants
 from pantocheck.conformance.app.self_test.mutants import MILD, MUTANTS, Mutant, SelfTest, run_self_test
 from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, run_numerical_faults
+from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.runs.system import Delivered
 from verification.tables import self_test_tables
@@ -34,6 +37,16 @@ def test_self_test_passes_the_simulator_and_detects_every_mutant(self_test: Self
     by_limits = {row.mutant.name: row.by_limits for row in self_test.severe}
     assert by_limits["time shift"] == by_limits["position shift"] == "pass"
     assert by_limits["no slackening"] == by_limits["gain 1.05"] == "fail"
+
+
+def test_faults_have_the_size_of_their_name(two_pantograph_case: Case) -> None:
+    record = Wave().record(two_pantograph_case)
+    for name, factor in (("units x1000", 1000.0), ("gain 1.05", 1.05), ("gain 1.02", 1.02)):
+        (mutant,) = (mutant for mutant in (*MUTANTS, *MILD) if mutant.name == name)
+        outcome = mutant.run(two_pantograph_case, record)
+        assert isinstance(outcome, Delivered)
+        assert outcome.record is not None
+        np.testing.assert_allclose(outcome.record.force, factor * record.force)
 
 
 def test_numerical_faults_are_detected_by_the_verification(self_test: SelfTest) -> None:
