@@ -1,16 +1,26 @@
 """Limits of a result beside those of the installed case: every limit that differs is named, and no other."""
 
+from types import SimpleNamespace
+
 import pytest
 from pydantic import ValidationError
 
 from helpers.example_results import passing_case
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.findings import GradedFinding
-from pantocheck.conformance.documents.library_check import compare_limits, list_own_limits
-from pantocheck.conformance.grading.case_identity import limits_digest
+from pantocheck.conformance.documents.library_check import (
+    compare_limits,
+    compare_profile,
+    compare_with_case,
+    list_own_limits,
+)
+from pantocheck.conformance.grading.case_grading import build_ungraded
+from pantocheck.conformance.grading.case_identity import limits_digest, profile_limits_digest
 from pantocheck.conformance.grading.criterion_grading import GradedValues, criterion_name, grade_limit
 from pantocheck.conformance.quantities.evaluation import Evaluation
+from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.results.results_format import CaseResult
 
 
@@ -51,3 +61,40 @@ def test_own_limits_are_named_alone(case_250: Case, result: CaseResult) -> None:
     changed = result.model_copy(update={"criteria": [*result.criteria, added]})
     for found in (list_own_limits(case_250, changed), list(compare_limits(case_250, changed))):
         assert [text.startswith(criterion_name(added)) for text in found] == [True]
+
+
+def test_each_fact_of_a_case_is_compared(case_250: Case) -> None:
+    stated = build_ungraded(case_250, "skip", "not run")
+    known = set(compare_with_case(case_250, stated))
+    faster = stated.run.model_copy(update={"speed_km_h": 260.0})
+    for changes, text in (
+        ({"title": "Other"}, "title: EN 50318:2002 reference model, 250 km/h in the library, Other in the certificate"),
+        ({"run": faster}, "the speed differs"),
+        ({"readings": [SimpleNamespace(id="other", filter=None)]}, "the readings of the evaluation differ"),
+        ({"inputs": stated.inputs[1:]}, f"inputs differ from those of the library: {stated.inputs[0].group}"),
+        ({"derived": stated.derived[1:]}, f"derived values differ from those of the library: {stated.derived[0].name}"),
+        ({"notes": []}, "a note of the library case is missing"),
+        ({"changes": ["speed_km_h = 260 (file: 250)"]}, "changed inputs are stated"),
+    ):
+        (found,) = set(compare_with_case(case_250, stated.model_copy(update=changes))) - known
+        assert text in found
+
+
+def test_each_fact_of_an_assessment_is_compared(result: CaseResult) -> None:
+    profile = load_profile("acceptance-ac")
+    rows = [result.criteria[0].model_copy(update={"quantity": r.quantity, "trust": r.trust}) for r in profile.rule]
+    digest = profile_limits_digest(profile)
+    facts = {"run": result.run.model_copy(update={"filter": profile.filter}), "criteria": rows, "record": None}
+    assessed = result.model_copy(update=facts | {"limits_digest": digest, "stated_limits_digest": digest})
+    assert list(compare_profile(profile, assessed)) == []
+    own = rows[0].model_copy(update={"trust": "own"})
+    for changes, text in (
+        ({"limits_digest": "0", "stated_limits_digest": "0"}, "digest of the rules"),
+        ({"run": result.run.model_copy(update={"filter": Filter(cutoff_Hz=10.0)})}, "the filter differs"),
+        ({"criteria": rows[1:]}, f"{rows[0].quantity}: a rule in the library, no criterion"),
+        ({"criteria": [own, *rows[1:]]}, f"'{rows[0].trust}' in the library, 'own' in the certificate"),
+    ):
+        (found,) = compare_profile(profile, assessed.model_copy(update=changes))
+        assert text in found
+    without_rows = {"criteria": [], "limits_digest": "own"}  # the limits of a user replace the rules
+    assert list(compare_profile(profile, assessed.model_copy(update=without_rows))) == []

@@ -82,11 +82,13 @@ def test_folder_or_document_outside_is_no_table(tmp_path: Path) -> None:
     assert len(error.value.problems) == 6
 
 
-def test_folder_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
-    path = copy_example(tmp_path)
+@pytest.mark.parametrize("name", ["statics.csv", "statics.toml"])
+def test_folder_in_place_of_a_table_is_refused(tmp_path: Path, name: str) -> None:
+    """Also if the dossier names the sidecar, which names the table."""
+    path = copy_example(tmp_path, {"line.0.statics": f"measured/{name}"})
     (tmp_path / "measured" / "statics.csv").unlink()
     (tmp_path / "measured" / "statics.csv").mkdir()
-    with pytest.raises(InputError, match=r"line\[1\].statics.*there is no file"):
+    with pytest.raises(InputError, match=r"line\[1\].statics.*(there is no|not a regular) file"):
         read_dossier(path)
 
 

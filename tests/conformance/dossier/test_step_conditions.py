@@ -16,6 +16,7 @@ from pantocheck.conformance.dossier.line_test_step import LINE_TEST_PROFILE, Lin
 from pantocheck.conformance.dossier.model_steps import check_pantographs, check_parameters, check_statics
 from pantocheck.conformance.dossier.run_reading import list_mismatches, measure_spacing, run_and_read
 from pantocheck.conformance.dossier.step_result import grade_again, list_inputs
+from pantocheck.conformance.dossier.validation import Validation
 from pantocheck.conformance.results.results_format import CaseResult
 
 
@@ -46,6 +47,14 @@ def test_declared_parameters_bound_every_run() -> None:
         "largest_element_m", "largest_time_step_s", "shortest_run_s", "start",
     ]  # fmt: skip
     assert [row.verdict for row in check_parameters(dossier, [good, good]).criteria] == ["pass"] * 3
+
+
+def test_runs_of_a_train_with_quantities_state_the_parameters() -> None:
+    """A case at rest and a run without a result have no parameters of a passage."""
+    at_rest, ended = build_run(speed_km_h=None), build_run().model_copy(update={"quantities": {}})
+    steps = {name: SimpleNamespace(cases=[at_rest, ended, build_run()]) for name in ("reference_models", "line_test")}
+    validation: Any = Validation
+    assert validation._list_runs(SimpleNamespace(finished=steps)) == [build_run()] * 2
 
 
 def test_inputs_and_parameters_of_a_claim_are_listed(case_250: Case) -> None:
@@ -118,6 +127,8 @@ def test_pass_by_a_wide_own_tolerance_does_not_count() -> None:
         again = grade_again(graded, {}, "secondary")
         assert again.verdict == verdict
         assert again.limit_uncertainty in (None, 0.0)
+        again = grade_again(graded.model_copy(update={"limit_uncertainty": 0.3}), {}, "secondary")
+        assert again.limit_uncertainty == 0.3
 
 
 @pytest.mark.parametrize("step", ["pantograph", "line"])

@@ -48,6 +48,11 @@ def test_difference_without_an_order_counts_more(coarse: float, value: float, fi
     assert discretisation_half_width(-coarse, -value, -fine) == pytest.approx(half_width, rel=1e-9)
 
 
+def test_difference_that_doubles_has_the_order_minus_one() -> None:
+    assert observed_order(50.1, 50.0, 49.8) == pytest.approx(-1.0, rel=1e-9)
+    assert observed_order(50.1, 50.0, 50.3) is None
+
+
 def test_two_meshes_have_the_large_factor_and_equal_values_no_uncertainty() -> None:
     assert discretisation_half_width(None, 50.0, 49.9) == pytest.approx(0.3, rel=1e-9)
     assert discretisation_half_width(0.0, 0.0, 0.0) == 0.0

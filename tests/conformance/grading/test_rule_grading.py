@@ -124,3 +124,20 @@ def test_curves_of_a_record_show_its_supports(tmp_path: Path) -> None:
     bare = write_record(tmp_path / "bare.csv", Record(time, 60.0, position, record.force, (110.0, 190.0)))
     traces = assess_record(load_assessed_record(bare, profile, LineTable()), profile).cases[0].traces
     assert {key: trace.supports_m for key, trace in traces.items()} == {"1": [], "2": []}
+
+
+def test_pass_by_a_wide_own_tolerance_is_information(tmp_path: Path) -> None:
+    """Wider than half of the measured value, unless the library states as much: 20 mm for the range of heights."""
+    profile = load_profile("line-test")
+    (published,) = (rule for rule in profile.rule if rule.quantity == "contact_height_range_mm")
+    for value, tolerance, verdict, reason in (
+        (30.0, 15.0, "pass", ""),
+        (30.0, 20.0, "pass", ""),
+        (30.0, 21.0, "info", "the own tolerance of 21 mm is 70 % of the measured value"),
+        (0.0, 21.0, "info", "is more than any share of the measured value"),
+    ):
+        rule = published.model_copy(update={"tolerance": tolerance, "trust": "own", "source": "plan 3"})
+        pair = [summary(tmp_path / f"{name}.toml", {"contact_height_range_mm": value}) for name in ("own", "measured")]
+        graded = assess_record(pair[0], profile.model_copy(update={"rule": (rule,)}), "secondary", pair[1])
+        (row,) = graded.cases[0].criteria
+        assert (row.verdict, reason in (row.reason or "")) == (verdict, True), row
