@@ -21,7 +21,7 @@ from pantocheck.conformance.pages.quantity_tables import (
 )
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
-from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, verification_blocks
+from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, mark_case, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import describe_record, summarise_case
 from pantocheck.conformance.pages.words import format_plain, format_value, name_pantograph, replace_minus
 from pantocheck.conformance.results.case_facts_format import ContactLossFacts, EventFacts, StoredRange, StoredValue
@@ -56,7 +56,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     """Section of a case."""
     case, anchor = shown.case, shown.anchor
     blocks: list[doc.Block] = [
-        doc.Paragraph((doc.VerdictMark(case.verdict), "\N{EN SPACE}", doc.Code(case.id))),
+        doc.Paragraph((doc.VerdictMark(mark_case(case)), "\N{EN SPACE}", doc.Code(case.id))),
         doc.Paragraph(" ".join(filter(None, (summarise_case(case), describe_record(case))))),
     ]
     changes = [f"{text}."] if (text := describe_changes(case)) else []

@@ -42,6 +42,7 @@ from pantocheck.conformance.pages.two_verdicts import (
     describe_comparison,
     list_criteria,
     mark_results,
+    mark_rows,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
     build_headline,
@@ -154,7 +155,7 @@ def _case_index(cases: Sequence[CaseResult], anchors: dict[str, str]) -> doc.Tab
         (
             doc.Link(case.id, anchors[case.id]) if case.id in anchors else case.id,
             describe_origin(case),
-            doc.VerdictMark(case_verdict(case, "criteria") or ""),
+            _mark(case, "criteria"),
             summarise_case(case),
         )
         for case in cases
@@ -171,7 +172,7 @@ def _case_index(cases: Sequence[CaseResult], anchors: dict[str, str]) -> doc.Tab
 def _mark(case: CaseResult, name: str) -> doc.RichText:
     """One of the verdicts of a case as a mark; a dash without this verdict."""
     verdict = case_verdict(case, name)
-    return "–" if verdict is None else doc.VerdictMark(verdict)
+    return "–" if verdict is None else doc.VerdictMark(mark_rows(verdict, list_criteria(case, name)))
 
 
 def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:

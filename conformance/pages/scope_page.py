@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import criterion_title
+from pantocheck.conformance.pages.two_verdicts import mark_rows
 from pantocheck.conformance.pages.words import clean_tree, format_value, name_verdict, read_words, replace_minus
 from pantocheck.conformance.quantities.limit_text import format_margin, raises_trust_only
 from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown
@@ -131,7 +131,7 @@ def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.
     """Table of the steps of the procedure with the verdicts of their cases, linked by the anchors of their sections."""
     if not results.scope:
         return ()
-    verdicts = {case.id: case.criteria_verdict or case.verdict for case in results.cases}
+    verdicts = {case.id: mark_rows(case.criteria_verdict or case.verdict, case.criteria) for case in results.cases}
     steps = [step for step in results.scope if step.state != "not done"]
     rows = tuple(_step_row(step, verdicts, anchors) for step in steps)
     columns = (doc.Column("Step", share=2), doc.Column("State"), doc.Column("Cases", share=3))
@@ -140,7 +140,7 @@ def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.
     return (doc.Section(SCOPE_HEADING, (*table, doc.SmallPrint(" ".join(sentences))), anchor="scope"),)
 
 
-def _step_row(step: ScopeStep, verdicts: Mapping[str, Verdict], anchors: dict[str, str]) -> tuple[doc.RichText, ...]:
+def _step_row(step: ScopeStep, verdicts: Mapping[str, str], anchors: dict[str, str]) -> tuple[doc.RichText, ...]:
     """Step of the procedure, its state, and its cases with their verdicts."""
     cases: list[doc.Inline] = []
     for name in step.cases:

@@ -9,7 +9,7 @@ from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
-from pantocheck.conformance.pages.two_verdicts import mark_results
+from pantocheck.conformance.pages.two_verdicts import mark_case, mark_results
 from pantocheck.conformance.pages.words import clean_text, format_value, name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -120,7 +120,7 @@ def _describe_cell(found: tuple[PublishedResults, CaseResult] | None) -> doc.Ric
     run, case = found
     copy: tuple[doc.Inline, ...] = (doc.Remark("modified copy"),) if case.library == "modified" else ()
     link = doc.PageLink(clean_text(run.version) or "certificate", f"{run.folder}/certificate.html")
-    return (doc.VerdictMark(run.verdict(case.verdict)), " ", link, *copy)
+    return (doc.VerdictMark(run.verdict(mark_case(case))), " ", link, *copy)
 
 
 def _build_run_table(published: Sequence[PublishedResults]) -> doc.Table:
@@ -135,7 +135,7 @@ def _build_run_table(published: Sequence[PublishedResults]) -> doc.Table:
 
 def _describe_run(run: PublishedResults) -> tuple[doc.RichText, ...]:
     cases = run.results.cases
-    passed = sum(run.verdict(case.verdict) == "pass" for case in cases)
+    passed = sum(run.verdict(mark_case(case)) == "pass" for case in cases)
     texts = (run.date.replace("T", " ").rstrip("Z") or "not stated", run.system, run.version)
     return (
         *map(clean_text, texts),
@@ -188,7 +188,7 @@ def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:
             run.date[:10] or "not stated",
             clean_text(run.system),
             doc.PageLink(clean_text(run.version) or "certificate", f"../{run.folder}/certificate.html"),
-            doc.VerdictMark(run.verdict(case.verdict)),
+            doc.VerdictMark(run.verdict(mark_case(case))),
             clean_text(run.discrepancies[0] if run.discrepancies else case.reason or ""),
         )
         for run, case in reversed(runs)

@@ -1,7 +1,7 @@
 """Verdicts side by side: EN 50318 criteria, verification and drift from a baseline; and the verdict as a badge."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape
 
 from pantocheck.conformance.core.criterion import Criterion
@@ -76,6 +76,16 @@ def mark_results(results: Results) -> str:
     return CLOSE if results.verdict == "pass" and count_close(results) else results.verdict
 
 
+def mark_rows(verdict: str, rows: Iterable[Criterion]) -> str:
+    """Mark of a verdict on criteria: `close` for a pass with close values."""
+    return CLOSE if verdict == "pass" and any(row.verdict == "pass" and row.is_close for row in rows) else verdict
+
+
+def mark_case(case: CaseResult) -> str:
+    """Mark of the verdict of a case."""
+    return mark_rows(case.verdict, case.criteria)
+
+
 def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
     """The verdicts of a run side by side; empty if there is one only."""
     names = _list_names(results)
@@ -108,7 +118,8 @@ def _run_verdict(results: Results, name: str) -> Verdict:
 def _verdict_row(results: Results, name: str) -> tuple[doc.RichText, ...]:
     verdict = _run_verdict(results, name)
     part = "decides" if name == "baseline" or name in results.requested else "for information"
-    return NAMES[name], doc.VerdictMark(verdict), part, " ".join(_describe_basis(results, name))
+    mark = mark_rows(verdict, (row for case in results.cases for row in list_criteria(case, name)))
+    return NAMES[name], doc.VerdictMark(mark), part, " ".join(_describe_basis(results, name))
 
 
 def _describe_basis(results: Results, name: str) -> Iterator[str]:
@@ -181,7 +192,8 @@ def verification_blocks(case: CaseResult, anchor: str) -> tuple[doc.Block, ...]:
     if verification is None:
         return ()
     basis = f"\N{EN SPACE}Converged values of the reference simulator, confirmed by {verification.confirmed_by}."
-    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(verification.verdict), basis))]
+    mark = doc.VerdictMark(mark_rows(verification.verdict, verification.criteria))
+    blocks: list[doc.Block] = [doc.Paragraph((mark, basis))]
     if verification.reason and verification.reason != case.reason:
         blocks.append(doc.Paragraph(verification.reason))
     if verification.criteria:

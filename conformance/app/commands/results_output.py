@@ -25,7 +25,7 @@ from pantocheck.conformance.pages.condition_sections import BAND_MARK, describe_
 from pantocheck.conformance.pages.criteria_table import describe_close
 from pantocheck.conformance.pages.document_facts import list_administration
 from pantocheck.conformance.pages.scope_page import describe_changes
-from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_results
+from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_case, mark_results
 from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record, state_decision
 from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
@@ -79,7 +79,7 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
     """Verdict, remarks, criteria and values of a case."""
     marks = mark_footnotes(case, footnotes)
     title = f" {name_case(case.id, case.library)}  {case.title}{f' {marks}' if marks else ''}"
-    yield style_verdict(case.verdict) + escape_text(title)
+    yield style_verdict(mark_case(case)) + escape_text(title)
     record = None if case.record is None or case.reason else describe_record(case)
     changes = [describe_changes(case)]
     changes += [f"limits file: {'; '.join(case.limit_changes)}"] if case.limit_changes else []
