@@ -28,7 +28,7 @@ OTHER = {"name": "example line", "file": "line.toml"}
         ({"line.1": OTHER}, "line[2].name", "occurs 2 times"),
         ({"pair.0.measured.line": "exampel line"}, "pair[1].measured.line", "there is no line"),
         ({"validity.pantographs": ["other"]}, "validity.pantographs[1]", "there is no pantograph"),
-        ({"validity.speed_km_h": [200.0, 160.0]}, "validity.speed_km_h", "is above the second"),
+        ({"validity.speed_km_h": [200.0, 160.0]}, "validity.speed_km_h", "value, 200, is above the second, 160"),
         ({"line.0.tolerance.source": None}, "line[1].tolerance.source", "missing, although the trust"),
         ({"line.0.tolerance.elasticity_pct": 1e6}, "line[1].tolerance.elasticity_pct", "10000"),
         ({"pantograph.0.limit.0.source": None}, "pantograph[1].limit[1].source", "missing, although the trust"),

@@ -104,7 +104,7 @@ def test_spacing_follows_from_positions_that_were_sampled_together() -> None:
         record: Any = SimpleNamespace(
             header=SimpleNamespace(spacing_m=stated),
             pantographs=tuple(positions),
-            prepared=SimpleNamespace(pantographs=pantographs),
+            prepared=SimpleNamespace(pantographs=pantographs) if len(positions) > 1 else None,
         )
         assert measure_spacing(record) == expected
 
