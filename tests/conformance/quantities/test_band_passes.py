@@ -1,5 +1,7 @@
 """Edges of a filter and bands behind band-passes: closed forms of the gain, and the sum of the squares."""
 
+import csv
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -8,6 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.signal import butter, sosfiltfilt
 
 from pantocheck.conformance.quantities.filters import Filter
+from pantocheck.conformance.quantities.force_quantities import BAND_PASS_CHANGE
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
 
@@ -21,6 +24,14 @@ BANDS = ((0.0, 5.0), (5.0, 20.0))
 def read(force: np.ndarray, low_pass: Filter, applied: float | None = None) -> PantographSignals:
     """Signals over 8 s in the middle of 16 s: whole periods of 0.125 Hz, transients far outside."""
     return PantographSignals(TIME, ForceChannel(force, RATE, low_pass, applied), (4.0, 12.0))
+
+
+def test_stated_change_of_a_band_is_the_largest_of_the_computed_ones() -> None:
+    table = Path(__file__).parents[3] / "docs" / "tables" / "bands.csv"
+    rows = csv.DictReader(table.read_text("utf-8").splitlines())
+    changes = [(row["band"], abs(float(row["band-pass"].removesuffix(" %")))) for row in rows]
+    largest = {name: max(change for band, change in changes if band == name) for name, _ in changes}
+    assert largest == BAND_PASS_CHANGE
 
 
 @pytest.mark.parametrize("phase", ["zero", "causal"])

@@ -270,6 +270,7 @@ def test_truncated_empty_or_changed_table_is_refused(written: Writer) -> None:
         ({"file": "b.csv"}, "record 'b.csv': cannot be read"),
         ({"speed_km_h": None, "speed_m_s": 69.4}, "key speed_m_s: unknown key"),
         ({"support_position_m": []}, r"found \[\], which is empty\.\n  Remove the key, or fill it in"),
+        ({"pantographs": 2, "spacing_m": [100.0]}, r": has 1 row of force_N, expected 2\.\n  Store one row"),
         ({"pantographs": 2}, "spacing_m is missing from the sidecar, and the table has 1 row of position_m"),
     ],
 )

@@ -55,6 +55,9 @@ def test_pulses_and_marks_give_the_distance_between_them() -> None:
     known = np.isfinite(distance)
     assert known.mean() > 0.998
     assert np.ptp((distance - DISTANCE)[known]) < 0.1
+    # Edges of a triangle lie on straight lines between two samples, which are exact up to the acceleration.
+    exact = pulse_distance(np.abs(2 * (DISTANCE % 1) - 1), 1.0) - DISTANCE
+    assert np.ptp(exact[np.isfinite(exact)]) < 1e-3
     # Marks of 100 m at a nearly constant speed: monotone cubics leave 1 cm of 1.2 km.
     places = np.arange(100.0, 1200.0, 100.0)
     passing = np.interp(places, DISTANCE, TIME)
