@@ -1,6 +1,6 @@
 """Profiles: rules for the assessment of a record without a case, for example for the acceptance of a line."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -200,10 +200,14 @@ def list_profiles() -> dict[str, Path]:
     return {path.stem: path for path in sorted((library_folder() / "profiles").glob("*.toml"))}
 
 
-def _own_rule(rule: Rule, published: Sequence[Rule]) -> Rule:
-    """Rule of a user with the trust `own`, whatever it claims; one that the library states remains as it is."""
-    same = any(rule == other.model_copy(update={"note": rule.note}) for other in published)
-    return rule if same else rule.model_copy(update={"trust": "own", "source": own_source(rule.source)})
+def own_rules(rules: Iterable[Rule], published: Sequence[Rule]) -> tuple[Rule, ...]:
+    """Rules of a user with the trust `own`, whatever they claim; one that the library states remains as it is."""
+    return tuple(
+        rule
+        if any(rule == other.model_copy(update={"note": rule.note}) for other in published)
+        else rule.model_copy(update={"trust": "own", "source": own_source(rule.source)})
+        for rule in rules
+    )
 
 
 def load_profile(name: str) -> Profile:
@@ -216,7 +220,7 @@ def load_profile(name: str) -> Profile:
     if name.endswith(".toml"):
         profile = read_model(Path(name), Profile, "profile")
         published = load_profile(profile.name).rule if profile.name in known else ()
-        return profile.model_copy(update={"rule": tuple(_own_rule(rule, published) for rule in profile.rule)})
+        return profile.model_copy(update={"rule": own_rules(profile.rule, published)})
     if name not in known:
         raise InputError(f"profile '{name}'", "there is no profile with this name", suggest_names(name, list(known)))
     return read_model(known[name], Profile, "profile")

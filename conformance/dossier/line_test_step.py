@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pantocheck.conformance.cases.profile_file import Profile, load_profile
+from pantocheck.conformance.cases.profile_file import Profile, load_profile, own_rules
 from pantocheck.conformance.comparison.measured_run import compare_measured_run
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
@@ -41,7 +41,8 @@ RECORDS_FOLDER = "records"
 
 
 def build_line_test_profile(table: LineTestTable) -> Profile:
-    """Rules of the pairs: the tolerances of the user, or those of the library."""
+    """Rules of the pairs: the tolerances of the user, which are `own`, or those of the library."""
+    published = load_profile(LINE_TEST_PROFILE).rule
     return Profile.model_validate(
         {
             "schema": "pantocheck.profile/1",
@@ -50,7 +51,7 @@ def build_line_test_profile(table: LineTestTable) -> Profile:
             "speed_tolerance_pct": table.speed_tolerance_pct,
             "verification": "demanded",
             "filter": table.filter,
-            "rule": table.tolerance or load_profile(LINE_TEST_PROFILE).rule,
+            "rule": own_rules(table.tolerance, published) or published,
         }
     )
 

@@ -69,26 +69,37 @@ class StepResult:
         )
 
 
-def grade_again(row: Criterion, changes: Mapping[str, object], lowest_trust: Trust) -> Criterion:
+def grade_again(
+    row: Criterion, changes: Mapping[str, object], lowest_trust: Trust, measured: float | None = None
+) -> Criterion:
     """Grade the criterion of a comparison again, as a criterion of the procedure.
 
     Args:
         row: Criterion of the comparison. A value of an incomplete record is left out, because it must not be graded.
         changes: Name, owner, trust and source of the limits in the procedure.
         lowest_trust: Lowest trust of the limits that count.
+        measured: Largest measured value, in the unit of the criterion; default: the criterion is in per cent.
     """
     requirement = row.model_copy(update={"where": EVERYWHERE, **changes})
     if row.verdict == "skip":
         return build_criterion(requirement, None, row.reason, lowest_trust)
     errors = ValueErrors(components=row.components, limit_uncertainty=row.limit_uncertainty or 0.0)
-    return build_criterion(requirement, row.value, None, lowest_trust, errors, doubt=_doubt_share(row))
+    return build_criterion(
+        requirement,
+        row.value,
+        None,
+        lowest_trust,
+        errors,
+        doubt=_doubt_width(row, 100.0 if row.unit == "%" else measured),
+    )
 
 
-def _doubt_share(row: Criterion) -> str | None:
-    """Reason why a pass by a tolerance in per cent does not count; None: it counts."""
-    if row.unit != "%" or row.upper is None or row.upper <= 100 * LARGEST_TOLERANCE:
+def _doubt_width(row: Criterion, measured: float | None) -> str | None:
+    """Reason why a pass by a tolerance does not count beside the measured value; None: it counts."""
+    if measured is None or row.upper is None or row.upper <= LARGEST_TOLERANCE * measured:
         return None
-    return f"the own tolerance of {row.upper:.4g} % is more than {100 * LARGEST_TOLERANCE:g} % of the measured value"
+    share = f"{100 * LARGEST_TOLERANCE:g} % of the measured value"
+    return f"the own tolerance of {row.upper:.4g} {row.unit} is more than {share}"
 
 
 class StepInterrupted(Exception):

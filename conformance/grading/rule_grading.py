@@ -125,12 +125,17 @@ class RuleGrading:
 LARGEST_TOLERANCE = 0.5
 """Largest tolerance of a user relative to the measured value: a wider one tests nothing."""
 
+LEAST_SHARE_PCT = 1.0
+"""Share that stands for a smaller measured one, such as no contact loss [%]: no tolerance is half of zero."""
+
 
 def _doubt_tolerance(rule: Rule, limit: Limit) -> str | None:
     """Reason why a pass by a tolerance does not count: it is the user's own and too wide. None: it counts."""
     if not rule.compares or rule.trust != "own" or limit.lower is None or limit.upper is None:
         return None
     width, value = (limit.upper - limit.lower) / 2, abs(limit.upper + limit.lower) / 2
+    if unit_of(rule.quantity) == "%":
+        value = max(value, LEAST_SHARE_PCT)
     if width <= LARGEST_TOLERANCE * value or _is_published(rule):
         return None
     share = f"{100 * width / value:.3g} %" if value else "more than any share"

@@ -134,7 +134,7 @@ def test_pass_by_a_wide_own_tolerance_does_not_count() -> None:
 @pytest.mark.parametrize("step", ["pantograph", "line"])
 def test_entry_without_a_measurement_is_named_beside_others(step: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The second of three entries has none."""
-    found = SimpleNamespace(criteria=())
+    found = SimpleNamespace(criteria=(), values=())
     for name in ("_compare", "_compare_statics"):
         monkeypatch.setattr(model_steps, name, lambda *_: found)
     monkeypatch.setattr(model_steps, "_skip_unlimited", lambda *_: ())

@@ -127,17 +127,24 @@ def test_curves_of_a_record_show_its_supports(tmp_path: Path) -> None:
 
 
 def test_pass_by_a_wide_own_tolerance_is_information(tmp_path: Path) -> None:
-    """Wider than half of the measured value, unless the library states as much: 20 mm for the range of heights."""
+    """Wider than half of the measured value, unless the library states as much: 20 mm for the range of heights.
+
+    No contact loss has no half: 1 % stands for it.
+    """
     profile = load_profile("line-test")
     (published,) = (rule for rule in profile.rule if rule.quantity == "contact_height_range_mm")
-    for value, tolerance, verdict, reason in (
-        (30.0, 15.0, "pass", ""),
-        (30.0, 20.0, "pass", ""),
-        (30.0, 21.0, "info", "the own tolerance of 21 mm is 70 % of the measured value"),
-        (0.0, 21.0, "info", "is more than any share of the measured value"),
+    for quantity, value, tolerance, verdict, reason in (
+        ("contact_height_range_mm", 30.0, 15.0, "pass", ""),
+        ("contact_height_range_mm", 30.0, 20.0, "pass", ""),
+        ("contact_height_range_mm", 30.0, 21.0, "info", "the own tolerance of 21 mm is 70 % of the measured value"),
+        ("contact_height_range_mm", 0.0, 21.0, "info", "is more than any share of the measured value"),
+        ("contact_loss_pct", 0.0, 0.5, "pass", ""),
+        ("contact_loss_pct", 0.0, 0.6, "info", "the own tolerance of 0.6 % is 60 % of the measured value"),
+        ("contact_loss_pct", 4.0, 2.1, "info", "the own tolerance of 2.1 % is 52.5 % of the measured value"),
     ):
-        rule = published.model_copy(update={"tolerance": tolerance, "trust": "own", "source": "plan 3"})
-        pair = [summary(tmp_path / f"{name}.toml", {"contact_height_range_mm": value}) for name in ("own", "measured")]
-        graded = assess_record(pair[0], profile.model_copy(update={"rule": (rule,)}), "secondary", pair[1])
+        changes = {"quantity": quantity, "tolerance": tolerance, "trust": "own", "source": "plan 3"}
+        pair = [summary(tmp_path / f"{name}.toml", {quantity: value}) for name in ("own", "measured")]
+        rules = (published.model_copy(update=changes),)
+        graded = assess_record(pair[0], profile.model_copy(update={"rule": rules}), "secondary", pair[1])
         (row,) = graded.cases[0].criteria
         assert (row.verdict, reason in (row.reason or "")) == (verdict, True), row
