@@ -1,6 +1,7 @@
 """Events of the line: an exclusion needs a reason, a kind that the profile permits, and a bounded share."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.assessed_record import apply_exclusions, load_assessed_record
 from pantocheck.conformance.pages.certificate_page import build_certificate
-from pantocheck.conformance.records.events import RecordEvent, covered_share
+from pantocheck.conformance.records.events import RecordEvent, covered_share, list_events
 from pantocheck.conformance.records.sidecar_tables import EventKind, LineTable
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -83,6 +84,13 @@ def test_permitted_exclusion_leaves_the_overlap_out_and_is_stated(sidecar: Path,
     page = str(build_certificate(results).blocks)
     assert "stretches of the analysis section are left out" in page
     assert "Events of the line" in page
+
+
+def test_event_of_a_channel_ends_at_its_last_marked_sample() -> None:
+    channel = SimpleNamespace(kind="overlap", above=0.5, ahead_m=0.0, exclude=None, column="overlap")
+    sidecar: Any = SimpleNamespace(event=(), event_channel=[channel])
+    events = list_events(sidecar, np.arange(0.0, 60.0, 10.0), np.array([[1.0, 0.0, 1.0, 1.0, 0.0, 1.0]]))
+    assert [(event.start, event.end) for event in events] == [(0.0, 0.0), (20.0, 30.0), (50.0, 50.0)]
 
 
 def test_library_profile_permits_no_exclusion(sidecar: Path) -> None:

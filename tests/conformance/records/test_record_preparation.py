@@ -232,7 +232,10 @@ NOT_GREATER = "the value of sample 2 is not greater than that of sample 1"
             lambda s: RecordSamples(s.force, speed=np.zeros(s.time.size), position=s.position),
             "fewer than two samples have a positive speed",
         ),
-        (lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position), "give more than"),
+        (
+            lambda s: RecordSamples(s.force, np.r_[s.time[:-1], 1e8], position=s.position),
+            r"1e\+08 s at 500 Hz give more than",
+        ),
     ],
 )
 def test_impossible_axes_are_rejected(change: Callable[[RecordSamples], RecordSamples], message: str) -> None:

@@ -155,6 +155,10 @@ PULSES = {"kind": "counter", "column": "v", "metres_per_pulse": 1.0, "start_m": 
             {"columns": {**COLUMNS, "position_1_m": {"column": "km", "unit": "km"}}},
             "gives the position as well",
         ),
+        (
+            {"position": {"kind": "marks", "mark": [{"time_s": 1.0, "km": 0.1}, {"time_s": 1.0, "km": 0.2}]}},
+            "the times do not increase",
+        ),
         ({"position": PULSES | {"column": "x"}}, "no column 'x'"),
         ({"position": PULSES, "track": None}, None),
         ({"position": PULSES | {"kind": "pulses"}, "track": None}, "has 1 rising edges"),
