@@ -79,6 +79,13 @@ def test_same_values_do_not_drift_and_results_round_trip(results: Results, tmp_p
     assert json.loads(results.to_json())["cases"][0]["criteria"][0]["baseline"] is None
 
 
+def test_case_without_values_in_the_baseline_is_not_compared(results: Results) -> None:
+    ended = results.cases[0].model_copy(update={"quantities": {}, "verdict": "error"})
+    baseline = results.model_copy(update={"cases": [ended, *results.cases[1:]]})
+    (row,) = (row for row in compare_with_baseline(results, baseline, 1.0, "b.json").cases[0].criteria if row.is_drift)
+    assert (row.verdict, "has no values of this case: its verdict was error" in str(row.reason)) == ("skip", True)
+
+
 @pytest.mark.parametrize(("was", "drifts"), [(0.230, False), (0.236, True)])
 def test_ratio_drifts_relative_to_itself(results: Results, was: float, drifts: bool) -> None:
     """A ratio of 0.23 may drift by 2 % of itself, 0.0046, not by 2 % of 1."""
