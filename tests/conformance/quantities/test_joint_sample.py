@@ -26,6 +26,8 @@ def test_quantities_share_their_draw() -> None:
     a, b = column(parts, "a"), column(parts, "b")
     assert np.corrcoef(a, b)[0, 1] == pytest.approx(-1.0, abs=1e-6)
     assert b.std() == pytest.approx(2 * deviation.std(), rel=1e-4)  # six digits
+    small = SampleParts(VALUES, deviations={1: {"a": 0.01 * deviation}})  # such as a coefficient of variation
+    assert column(small, "a").std() == pytest.approx(0.01 * deviation.std(), rel=1e-3)
     both = SampleParts(
         VALUES, deviations={1: {"a": 0 * deviation, "b": 0 * deviation}}, mesh_changes={1: {"a": 1.959964}}
     )

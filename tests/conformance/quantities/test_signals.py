@@ -144,7 +144,7 @@ def test_support_is_recognised_within_half_a_metre(shift: float, found: bool) ->
     ("missing", "places"), [(5, "0 m, 60 m, 120 m, 180 m, 240 m"), (6, "0 m, 60 m, 120 m, 180 m, 240 m, ...")]
 )
 def test_first_five_missing_supports_are_named(missing: int, places: str) -> None:
-    """Uplift at the last support only."""
+    """Uplift at the last support only; a missing sample at all others."""
     supports = tuple(60.0 * n for n in range(missing + 1))
     signals = LineSignals((0.0, supports[-1]), np.array([supports[-1]]), np.array([[0.0, 0.05]]), supports)
     with pytest.raises(SupportsMissing) as caught:
@@ -152,6 +152,11 @@ def test_first_five_missing_supports_are_named(missing: int, places: str) -> Non
     assert str(caught.value) == (
         f"the record has no uplift at {missing} of {missing + 1} supports of the analysis section: {places}"
     )
+    uplift = np.tile([0.0, np.nan, 0.05], (missing + 1, 1))
+    uplift[-1, 1] = 0.0
+    signals = LineSignals((0.0, supports[-1]), np.array(supports), uplift, supports, last_position=np.zeros(3))
+    with pytest.raises(SupportsMissing, match=f"incomplete at {missing} of {missing + 1} .*: {places}; it must"):
+        _ = signals.supports
 
 
 @pytest.mark.parametrize(("end", "complete"), [(365.0, True), (364.9, False), (np.nan, False)])
