@@ -12,6 +12,7 @@ from pantocheck.conformance.core.sourced_table import (
     Problems,
     SourcedTable,
     cross_check,
+    is_absent,
     validation_problem,
 )
 
@@ -42,6 +43,19 @@ class DropTest(InputTable):
     """Time in which the weight decreases linearly to zero [s]; 0: at once."""
 
 
+class DropStatements(SourcedTable):
+    """Inputs of single findings on mass drops."""
+
+    repeat_release_s: Annotated[NonNegative, Field(le=5)]
+    """Release of the first drop when it is repeated, with other noise [s]."""
+    half_power_points: Annotated[int, Field(ge=1, le=100)]
+    half_power_frequency_Hz: Annotated[Positive, Field(le=200)]
+    half_power_damping_ratio: Annotated[Positive, Field(lt=1)]
+    """Spectral lines in the half-power band, and frequency [Hz] and damping ratio [-] of a mode: record length."""
+    stagger_m: Annotated[Positive, Field(le=1)]
+    """Stagger of the contact wire for the computed lateral modes; the drops are on the line without it [m]."""
+
+
 class MassDrop(SourcedTable):
     """Mass drops on a line with one set of sensors, and the frequency range of their identification."""
 
@@ -62,6 +76,8 @@ class MassDrop(SourcedTable):
     highest_Hz: Annotated[Positive, Field(le=200)] = 10.0
     """Highest frequency of the identified modes [Hz]."""
     compared: Annotated[DampingModels, Field(default_factory=dict)]
+    statements: Annotated[DropStatements | None, Field(exclude_if=is_absent)] = None
+    """Inputs of findings that need more than the drops."""
 
     @cross_check
     def _observable(self) -> Problems:

@@ -10,19 +10,25 @@ from pantocheck.conformance.core.results_part import ResultsPart
 from pantocheck.conformance.core.sourced_table import InputTable
 from pantocheck.conformance.core.verdicts import Verdict
 
-Role = Literal["imposed", "held_out"]
-"""`imposed`: the inputs of the case were chosen with the finding; `held_out`: they were chosen without it."""
+Role = Literal["imposed", "held_out", "inferred"]
+"""`imposed`: the inputs of the case were chosen with the finding; `held_out`: they were chosen without it; `inferred`:
+the publication does not state it.
+"""
 
 
 class PublishedFinding(InputTable):
-    """Finding of a publication: its sentence, its role, and the choices behind the bounds of its limit."""
+    """Finding of a publication: its place, our reading of it, and the choices behind the bounds of its limit."""
 
     section: Annotated[str, Field(max_length=40)]
-    """Section, table or figure of the publication."""
+    """Section of the publication, and the figure or table."""
+    statement: Annotated[str, Field(max_length=500)] = ""
+    """Statement of the publication at this place, in our words."""
     sentence: Annotated[str, Field(max_length=500)]
-    """Statement of the publication in one sentence."""
+    """Our reading of the statement in one sentence."""
     role: Role
-    """imposed: the search for the inputs used the finding; held_out: it did not."""
+    """imposed: the search for the inputs used the finding; held_out: it did not; inferred: the publication does not
+    state it, we infer it from the statement.
+    """
     printed: Annotated[str, Field(max_length=100)] = "none"
     """Number in the publication; none: it states no number."""
     tolerance: Annotated[str, Field(max_length=500)]
@@ -32,7 +38,7 @@ class PublishedFinding(InputTable):
 
 
 # Findings of publications in results.json: their outcomes and the numbers of each outcome.
-FindingOutcome = Literal["imposed", "reproduced", "not_reproduced", "not_evaluated"]
+FindingOutcome = Literal["imposed", "reproduced", "not_reproduced", "not_evaluated", "inferred_met", "inferred_not_met"]
 
 IMPOSED_REASON = "imposed: the inputs were chosen to meet this finding, so meeting it does not count"
 
@@ -42,7 +48,7 @@ class GradedFinding(PublishedFinding):
 
     outcome: FindingOutcome
     """reproduced: held out and inside its limits; imposed: imposed and inside; not_reproduced: outside;
-    not_evaluated: no value.
+    not_evaluated: no value; inferred_met and inferred_not_met: inferred, inside or outside.
     """
 
 
@@ -53,14 +59,18 @@ class FindingCounts(ResultsPart):
     reproduced: int = 0
     not_reproduced: int = 0
     not_evaluated: int = 0
+    inferred_met: int = 0
+    inferred_not_met: int = 0
 
 
 def judge_finding(role: Role, verdict: Verdict) -> FindingOutcome:
     """Outcome of a finding by the verdict of its value against the limits, whether or not these count."""
+    if verdict not in ("pass", "fail"):
+        return "not_evaluated"
+    if role == "inferred":
+        return "inferred_met" if verdict == "pass" else "inferred_not_met"
     if verdict == "fail":
         return "not_reproduced"
-    if verdict != "pass":
-        return "not_evaluated"
     return "imposed" if role == "imposed" else "reproduced"
 
 

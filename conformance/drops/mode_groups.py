@@ -117,6 +117,11 @@ def half_power_bandwidth(mode: Mode) -> float:
     return 2 * mode.damping_ratio * mode.frequency_Hz
 
 
+def required_duration(points: float, frequency_Hz: float, damping_ratio: float) -> float:
+    """Length of a record whose spectrum has a number of lines in the half-power band of a mode, N / (2 zeta f) [s]."""
+    return points / (2 * damping_ratio * frequency_Hz)
+
+
 def overlaps(frequency: RealArray, i: int, bandwidth: float) -> bool:
     """Whether another frequency is nearer to the i-th one than `OVERLAP` bandwidths [Hz]."""
     return frequency.size > 1 and bool(abs(frequency[nearest_other(frequency, i)] - frequency[i]) < OVERLAP * bandwidth)

@@ -254,7 +254,8 @@ def _remark_limit(criterion: Criterion) -> str | None:
 # Table of the findings of publications that the cases of a run grade.
 FINDING_MEANING = (
     "Imposed: the inputs were chosen with this finding, so meeting it shows nothing. Held out: they were chosen "
-    "without it. Only held-out findings inside their bounds count as reproduced."
+    "without it. Only held-out findings inside their bounds count as reproduced. Inferred: the publication does not "
+    "state it; counted apart."
 )
 
 
@@ -288,7 +289,8 @@ def describe_counts(results: Results) -> list[str]:
     if results.findings is None:
         return []
     counts = {name.replace("_", " "): number for name, number in results.findings}
-    shown = [f"{number} {name}" for name, number in counts.items() if number or name != "not evaluated"]
+    always = ("imposed", "reproduced", "not reproduced")
+    shown = [f"{number} {name}" for name, number in counts.items() if number or name in always]
     return [f"Findings: {', '.join(shown)}."]
 
 

@@ -117,6 +117,19 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
          "with the group of span modes: -1, if it always decreases"),
         ("outliers_above_pct", "Outliers of damping over tests that overestimate", "%",
          "share of the outliers of the damping ratios of all tests that lie above the box of their group"),
+        ("identification_scatter_correlation", "Scatter of the identification against frequency", "",
+         "rank correlation of the standard deviation of the damping ratio, median of each group over all tests, with "
+         "the group of span modes: -1, if it always decreases"),
+        ("smallest_phase_collinearity", "Smallest modal phase collinearity", "",
+         "modal phase collinearity of the certain modes, 1 for a normal mode; the smallest"),
+        ("repeat_correlation", "Correlation of repeated drops", "",
+         "correlation of a drop with its repeat, smallest of all channels: at the start, and a minute later"),
+        ("half_power_record_s", "Record length for points in a half-power band", "s",
+         "record length that gives a number of spectral lines inside the half-power band of a mode, N / (2 zeta f)"),
+        ("group_merging_Hz", "Frequency above which groups are not separate", "Hz",
+         "middle of the lowest gap between two groups of span modes that is smaller than the mean of their widths"),
+        ("lateral_modes_in_group", "Lateral modes in a group", "",
+         "number of computed lateral modes in a group, on the line with a stagger"),
         ("observable_wire_coefficients", "Observable coefficients of the wires", "",
          "number of Rayleigh coefficients of contact and messenger wire that the identified modes determine"),
         ("observable_other_coefficients", "Observable coefficients of other components", "",
@@ -128,8 +141,14 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
         "study", "modes identified from mass drops",
         ("damping_gain_pct", "Gain of damping by a damper at the steady arms", "%",
          "gain of the median damping ratio by dampers at the steady-arm clamps, one value per frequency band"),
-        ("damping_gain_fading_pct", "Fading of that gain with frequency", "%",
-         "gain of damping in the second group minus the gain in the last band"),
+        ("damping_gain_ratio", "Gain of damping over that of the first group", "",
+         "gain of damping in a frequency band over the gain in the first band; it does not depend on the damper"),
+        ("damping_gain_step", "Growth of that gain over the first three groups", "",
+         "gain of damping in a group over that in the group before; the smaller of groups 2 and 3"),
+        ("damping_gain_correlation", "Gain of damping against frequency", "",
+         "rank correlation of the gain with the number of the band from the second one on: -1, if it always decreases"),
+        ("damping_gain_end_Hz", "End of the gain of damping", "Hz",
+         "frequency above which 10 % of the largest gain of damping remain, interpolated between the bands"),
     ),
     *_define(
         "pantograph", "two runs of a train",
@@ -145,20 +164,26 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
              "from the previous damping model to the damping of the case")
             for band in BANDS
         ),
+        ("earlier_rms_20_50_N", "RMS, 20–50 Hz, previous damping", "N",
+         "RMS of the contact force in 20-50 Hz under the previous damping model"),
     ),
     *_define(
         "study", "two runs of a train",
         ("rear_over_front_change_20_50_pct", "Change of RMS, 20–50 Hz, rear less front", "%",
          "change of the RMS in 20-50 Hz of the last pantograph minus the change of the first [points]"),
-        ("front_over_rear_cov_20", "Coefficient of variation, 0–20 Hz, front over rear", "",
-         "coefficient of variation in 0-20 Hz of the first pantograph over that of the last, "
-         "in the run with the smaller ratio"),
+        *(
+            (f"{end}_rear_over_front_{band.quantity.removesuffix('_N')}",
+             f"RMS, {band.low:g}–{band.high:g} Hz, rear over front, {end}", "",
+             f"RMS in {band.low:g}-{band.high:g} Hz of the last pantograph over that of the first, "
+             f"in the run with the {order} ratio")
+            for band in BANDS for end, order in (("largest", "larger"), ("smallest", "smaller"))
+        ),
     ),
     *_define(
         "study", "drops under several damping models",
         ("modal_velocity_difference_pct", "Velocity with modal damping against Rayleigh damping", "%",
-         "RMS of the difference between the velocities with Rayleigh damping and with modal damping besides, in the "
-         "first window, over the RMS of the former"),
+         "RMS of the difference between the velocities with Rayleigh damping and with modal damping besides, "
+         "over the RMS of the former; one value per window"),
         ("reference_residual_velocity_ratio", "Residual velocity of the reference model", "",
          "RMS of the velocity in the last window under the reference model, over that of the record"),
         ("medium_frequency_velocity_ratio", "Velocity in 5–20 Hz against the reference model", "",
@@ -168,8 +193,6 @@ DELIVERED_QUANTITIES: tuple[Quantity, ...] = (
         "study", "runs with several coefficients",
         ("dropper_transition_start_s", "Onset of the dropper transition", "s",
          "smallest stiffness coefficient that changes the largest compensation force of a dropper by 10 %"),
-        ("dropper_transition_middle_s", "Middle of the dropper transition", "s",
-         "stiffness coefficient above which half of the largest compensation force of a dropper remains"),
         ("dropper_transition_end_s", "End of the dropper transition", "s",
          "stiffness coefficient above which 10 % of the largest compensation force of a dropper remains"),
         ("dropper_oscillation_pct", "High-frequency oscillation of an undamped dropper", "%",

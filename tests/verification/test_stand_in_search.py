@@ -29,7 +29,7 @@ def test_search_is_repeatable_without_findings_that_are_held_out(line: stand_in_
     ]
     assert min(margins) > max(map(min, others))
     assert {limit.finding.role for limit in limits} == {"imposed"}
-    assert len(limits) == 8
+    assert len(limits) == 7
 
 
 def test_damping_of_groups_by_hand(line: stand_in_search.GroupedLine) -> None:

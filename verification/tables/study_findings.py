@@ -6,26 +6,27 @@ python -m verification.tables.study_findings study/results.json
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from pantocheck.conformance.pages.criteria_table import describe_counts, list_findings
 from pantocheck.conformance.quantities.limit_text import format_bounds
+from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 
-HEADINGS = ("section", "finding", "printed", "computed", "bounds", "role", "outcome", "sensitivity")
+HEADINGS = (
+    "section", "statement", "finding", "printed", "computed", "bounds", "role", "outcome", "sensitivity"
+)  # fmt: skip
 
 
-def build_table(results: dict[str, Any]) -> str:
+def build_table(results: Results) -> str:
     """Markdown table of the findings; those that are not reproduced state their sensitivity."""
     cells = [HEADINGS, ("---",) * len(HEADINGS)]
-    for _, row in list_findings(results):
-        finding = row["finding"]
-        value = "-" if row["value"] is None else f"{row['value']:.3g}"
-        bounds = format_bounds(row["lower"], row["upper"])
-        texts = (finding["section"], finding["sentence"], finding["printed"], f"{value} {row['unit']}".strip(), bounds)
-        sensitivity = finding["sensitivity"] if finding["outcome"] == "not_reproduced" else ""
-        words = (finding["role"].replace("_", " "), finding["outcome"].replace("_", " "), sensitivity or "")
-        cells.append((*texts, *words))
+    for _, row, finding in list_findings(results):
+        value = "-" if row.value is None else f"{row.value:.3g}"
+        words = (finding.role.replace("_", " "), finding.outcome.replace("_", " "))
+        fails = finding.outcome in ("not_reproduced", "inferred_not_met")
+        texts = (finding.section, finding.statement, finding.sentence, finding.printed)
+        numbers = (f"{value} {row.unit}".strip(), format_bounds(row.lower, row.upper))
+        cells.append((*texts, *numbers, *words, finding.sensitivity if fails else ""))
     return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
@@ -33,7 +34,7 @@ def main() -> None:
     """Print the numbers by outcome and the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, help="results.json of the study")
-    results = read_results(parser.parse_args().results).to_dict()
+    results = read_results(parser.parse_args().results)
     print(" ".join(describe_counts(results)))
     print(build_table(results))
 

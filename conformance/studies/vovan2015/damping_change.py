@@ -36,6 +36,9 @@ COMPARED_QUANTITIES = ("cov_20", "cov_50", *BAND_QUANTITIES)
 CHANGES = {quantity: f"change_{quantity.removesuffix('_N')}_pct" for quantity in COMPARED_QUANTITIES}
 """Name of the change of each quantity."""
 
+EARLIER_LEVEL = "earlier_rms_20_50_N"
+"""Name of the RMS in 20-50 Hz of the run before the change."""
+
 
 @dataclass(frozen=True)
 class ForceChanges:
@@ -82,6 +85,8 @@ def compare_force(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict
             old, new = before[pantograph].get(quantity), after[pantograph].get(quantity)
             if isinstance(old, float) and isinstance(new, float) and old > 0:
                 findings[pantograph][name] = 100 * (new / old - 1)
+                if quantity == "rms_20_50_N":
+                    findings[pantograph][EARLIER_LEVEL] = old
     line = _compare_pantographs(findings, (before, after), last=max(findings, default=1))
     return {**findings, LINE: line} if line else findings
 
@@ -89,21 +94,23 @@ def compare_force(before: ValuesByOwner, after: ValuesByOwner) -> dict[int, dict
 def _compare_pantographs(
     changes: Mapping[int, Mapping[str, Value]], runs: Sequence[ValuesByOwner], last: int
 ) -> dict[str, Value]:
-    """First and last pantograph: difference of the changes in 20-50 Hz, smallest ratio of the variations."""
+    """First and last pantograph: difference of the changes in 20-50 Hz, and order of the levels in each band."""
     if last == 1:
         return {}
     line: dict[str, Value] = {}
     rear, front = (changes.get(pantograph, {}).get(CHANGES["rms_20_50_N"]) for pantograph in (last, 1))
     if isinstance(rear, float) and isinstance(front, float):
         line["rear_over_front_change_20_50_pct"] = rear - front
-    variations = [[run.get(pantograph, {}).get("cov_20") for pantograph in (1, last)] for run in runs]
-    ratios = [
-        first / other
-        for first, other in variations
-        if isinstance(first, float) and isinstance(other, float) and other > 0
-    ]
-    if len(ratios) == len(runs):
-        line["front_over_rear_cov_20"] = min(ratios)
+    for band in BAND_QUANTITIES:
+        levels = [(run.get(last, {}).get(band), run.get(1, {}).get(band)) for run in runs]
+        ratios = [
+            float(other / first)
+            for other, first in levels
+            if isinstance(other, float) and isinstance(first, float) and first > 0
+        ]
+        if len(ratios) == len(runs):
+            line[f"largest_rear_over_front_{band.removesuffix('_N')}"] = max(ratios)
+            line[f"smallest_rear_over_front_{band.removesuffix('_N')}"] = min(ratios)
     return line
 
 
@@ -137,8 +144,8 @@ def build_changes_table(changes: ForceChanges, printed: ValuesByOwner) -> TextTa
             rows.append([QUANTITIES[name].label, "both" if owner == LINE else str(owner), *cells])
     sections = len(changes.shifted)
     return TextTable(
-        caption="Changes by the damping [%], comparison of the two pantographs, and their range over "
-        f"{sections} positions of the analysis section.",
+        caption="Changes by the damping [%], level before it [N], comparison of the two pantographs, and their range "
+        f"over {sections} positions of the analysis section.",
         columns=["Quantity", "Pantograph", "Printed", "Computed", "Smallest", "Largest"],
         rows=rows,
     )

@@ -31,12 +31,19 @@ from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import build_passage, build_run_table, integrate_passage, record_passage
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 from pantocheck.conformance.studies.vovan2015.line_damping import build_drop_run_table
-from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, draw_curve, rms
+from pantocheck.conformance.studies.vovan2015.study_report import (
+    build_provenance_table,
+    draw_curve,
+    find_crossing,
+    rms,
+)
 from pantocheck.model import Catenary, DiscretisedLine, Kind, Passage, Rayleigh, discretise
 from pantocheck.model.discretisation.discretised_line import keep_viscous_part, with_damping
 
 TRANSITION_SHARE = 0.1
 """Relative change of the force at the onset of the transition, and remaining share of the force at its end."""
+OTHER_SHARES = (0.02, 0.05, 0.1, 0.2, 0.5)
+"""Levels of the onset and of the end in the table of both."""
 KEPT_MARGIN_M = 5.0
 """Distance beyond the dropper to the end of the recorded motion, which a wave from the cut has reached [m]."""
 SMALLEST_DRAWN_FORCE = 1.0
@@ -85,7 +92,10 @@ def run_dropper_damping(case: Case, study: DropperDamping) -> Delivered:
         study=StudyResult(
             findings=findings,
             charts=(_draw_forces(case, study, force),),
-            tables=(build_provenance_table(case),),
+            tables=(
+                *([_tabulate_levels(coefficients, force[GRADED])] if force[GRADED][0] > 0 else []),
+                build_provenance_table(case),
+            ),
         ),
         notes=(
             "The paper does not print its compensation law. The graded law compensates only the elastic force: a "
@@ -103,20 +113,36 @@ def find_transition(coefficient: RealArray, force: RealArray) -> dict[str, Value
         force: Largest compensation force at each coefficient, (n,) [N].
 
     Returns:
-        Onset, middle and end of the transition [s] if reached, and force that remains at the largest coefficient [%],
+        Onset and end of the transition [s] if reached, and force that remains at the largest coefficient [%],
         by name of quantity; empty if the first force is zero.
     """
     if force[0] == 0:
         return {}
-    share = force / force[0]
-    findings: dict[str, Value] = {"dropper_locked_force_pct": float(100 * share[-1])}
-    change = np.abs(share - 1)
-    levels = (("start", change, TRANSITION_SHARE, 1), ("middle", share, 0.5, -1), ("end", share, TRANSITION_SHARE, -1))
-    for name, curve, level, sign in levels:
-        crossing = _find_crossing(np.log(coefficient), sign * curve, sign * level)
-        if crossing is not None:
-            findings[f"dropper_transition_{name}_s"] = float(np.exp(crossing))
+    findings: dict[str, Value] = {"dropper_locked_force_pct": float(100 * force[-1] / force[0])}
+    for name, value in locate_transition(coefficient, force, TRANSITION_SHARE).items():
+        if value is not None:
+            findings[f"dropper_transition_{name}_s"] = value
     return findings
+
+
+def locate_transition(coefficient: RealArray, force: RealArray, level: float) -> dict[str, float | None]:
+    """Onset, where a force has changed by a level, and end, where this share of it remains [s]; None if not reached.
+
+    Coefficients and force as in `find_transition`.
+    """
+    share, x = force / force[0], np.log(coefficient)
+    found = {"start": find_crossing(x, np.abs(share - 1), level), "end": find_crossing(x, -share, -level)}
+    return {name: None if crossing is None else float(np.exp(crossing)) for name, crossing in found.items()}
+
+
+def _tabulate_levels(coefficient: RealArray, force: RealArray) -> TextTable:
+    """Onset and end of the transition at other levels of their definition."""
+    rows = []
+    for level in OTHER_SHARES:
+        places = locate_transition(coefficient, force, level).values()
+        rows.append([f"{100 * level:g} %", *("-" if place is None else f"{place:.2g} s" for place in places)])
+    columns = ["Level", "Onset: force changed by the level", "End: share of the force that remains"]
+    return TextTable(caption="Transition of the graded law by the level of its definition", columns=columns, rows=rows)
 
 
 def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Value]:
@@ -135,14 +161,6 @@ def compare_bands(chosen: ValuesByOwner, least: ValuesByOwner) -> dict[str, Valu
 
 def _band_values(case: Case, record: Record) -> ValuesByOwner:
     return evaluate_record(record, case.file.filter, case.line.geometry.supports).values
-
-
-def _find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:
-    """Abscissa at which a curve that begins below a level reaches it, interpolated; None if it never does."""
-    i = int(np.argmax(y >= level))
-    if y[i] < level:
-        return None
-    return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
 
 
 def _find_dropper(line: Catenary, study: DropperDamping, name: str) -> int:
@@ -174,9 +192,10 @@ def _largest_force(mesh: DiscretisedLine, passage: Passage, number: int, coeffic
 
 def _draw_forces(case: Case, study: DropperDamping, force: dict[str, RealArray]) -> Chart:
     marks = [
-        Mark(label="printed: transition", axis="x", low=limit.lower, high=limit.upper)
+        Mark(label=f"printed {name}, times or divided by three", axis="x", low=limit.lower, high=limit.upper)
         for limit in case.limits
-        if limit.quantity == "dropper_transition_middle_s" and limit.lower is not None
+        for name, quantity in (("onset", "dropper_transition_start_s"), ("end", "dropper_transition_end_s"))
+        if limit.quantity == quantity and limit.lower is not None
     ]
     coefficient = case.line.damping.droppers.stiffness_coefficient_s
     if coefficient > 0:

@@ -20,6 +20,7 @@ from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
+from pantocheck.conformance.studies.vovan2015.drop_statements import compute_statements, describe_identification
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,
     build_drop_run_table,
@@ -126,7 +127,11 @@ def run_mass_drop_study(case: Case) -> Delivered:
         findings["reference_over_identified_damping"] = compare_reference(modes, frequency, ratios[next(iter(ratios))])
         population = identify_tests(identified, require_mass_drop(case).highest_Hz)
         findings |= compute_population_findings(analyse_population(population))
+        findings |= describe_identification(modes, population)
         tests = [test.single for test in population.tests]
+    statements = require_mass_drop(case).statements
+    if statements is not None:
+        findings |= compute_statements(case, statements, identified.drops[0].record, frequency)
     bound = [
         Mark(label=f"printed: all below {100 * limit.upper:g} %", axis="y", low=100 * limit.upper)
         for limit in case.limits

@@ -105,7 +105,7 @@ def compare_velocities(
     rayleigh: Sequence[VelocityWindow],
     modal: Sequence[VelocityWindow],
 ) -> dict[str, Value]:
-    """Findings on the velocity in the first and in the last window.
+    """Findings on the velocity in all windows, in the first and in the last.
 
     Args:
         record, reference, rayleigh, modal: Velocity of the record, under the reference model, with the fitted Rayleigh
@@ -113,7 +113,10 @@ def compare_velocities(
     """
     first = rayleigh[0]
     return {
-        "modal_velocity_difference_pct": 100 * rms(modal[0].velocity - first.velocity) / rms(first.velocity),
+        "modal_velocity_difference_pct": tuple(
+            100 * rms(with_modal.velocity - without.velocity) / rms(without.velocity)
+            for with_modal, without in zip(modal, rayleigh, strict=True)
+        ),
         "reference_residual_velocity_ratio": rms(reference[-1].velocity) / rms(record[-1].velocity),
         "medium_frequency_velocity_ratio": rms(first.medium) / rms(reference[0].medium),
     }

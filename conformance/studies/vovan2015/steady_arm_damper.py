@@ -4,13 +4,14 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import takewhile
+from itertools import pairwise, takewhile
 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import SteadyArmDamper
 from pantocheck.conformance.core.figure_data import Chart, Mark, TextTable
+from pantocheck.conformance.drops.population_analysis import rank_correlation
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.identified_modes import Mode
@@ -20,7 +21,10 @@ from pantocheck.conformance.studies.vovan2015.line_damping import (
     draw_damping_ratios,
     identify_drops,
 )
-from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table
+from pantocheck.conformance.studies.vovan2015.study_report import build_provenance_table, find_crossing
+
+END_SHARE = 0.1
+"""Share of the largest gain at which the effect of the dampers ends [-]."""
 
 FrequencyBands = tuple[tuple[float, float], ...]
 
@@ -36,7 +40,7 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     }
     modes = {name: drops.certain_modes for name, drops in identified.items()}
     without, damped = (_band_medians(certain, study.bands_Hz) for certain in modes.values())
-    findings = {LINE: damping_gains(without, damped)}
+    findings = {LINE: damping_gains(without, damped, [(low + high) / 2 for low, high in study.bands_Hz])}
     warnings = [text for drops in identified.values() for text in drops.identification.warnings]
     return Delivered(
         run=build_drop_run_table(case, sum(len(drops.drops) for drops in identified.values()), begin),
@@ -49,20 +53,33 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     )
 
 
-def damping_gains(without: list[float], damped: list[float]) -> dict[str, Value]:
-    """Gains of the median damping ratio by the dampers, band by band [%].
+def damping_gains(without: Sequence[float], damped: Sequence[float], centres: Sequence[float]) -> dict[str, Value]:
+    """Gains of the median damping ratio by the dampers, band by band, and their course over the frequency.
+
+    The gain is proportional to the damper, so that ratios of gains do not depend on its size.
 
     Args:
         without, damped: Median damping ratio of every band without and with the dampers; NaN for a band without modes.
+        centres: Frequency of every band [Hz].
 
     Returns:
-        Values by name of quantity. The list of gains ends before the first band without modes.
+        Values by name of quantity. The list of gains ends before the first band without modes; the other quantities
+        need all bands, at least four, and a gain in the first.
     """
     gain = [100 * (z / z0 - 1) for z0, z in zip(without, damped, strict=True)]
     known = tuple(takewhile(math.isfinite, gain))
     findings: dict[str, Value] = {"damping_gain_pct": known}
-    if len(known) == len(gain) > 2:
-        findings["damping_gain_fading_pct"] = known[1] - known[-1]
+    if len(known) < len(gain) or len(known) < 4 or known[0] <= 0:
+        return findings
+    findings["damping_gain_ratio"] = tuple(value / known[0] for value in known)
+    findings["damping_gain_step"] = min(b / a for a, b in pairwise(known[:3]))
+    correlation = rank_correlation(np.array(known[1:]))
+    if correlation is not None:
+        findings["damping_gain_correlation"] = correlation
+    largest = int(np.argmax(known))
+    end = find_crossing(np.array(centres[largest:]), -np.array(known[largest:]), -END_SHARE * known[largest])
+    if end is not None:
+        findings["damping_gain_end_Hz"] = end
     return findings
 
 

@@ -58,6 +58,14 @@ def build_provenance_table(case: Case) -> TextTable:
     return TextTable(caption="Origin of inputs, limits and quantities", columns=["Item", "Origin", "Source"], rows=rows)
 
 
+def find_crossing(x: RealArray, y: RealArray, level: float) -> float | None:
+    """Abscissa at which a curve that begins below a level reaches it, interpolated; None if it never does."""
+    i = int(np.argmax(y >= level))
+    if y[i] < level:
+        return None
+    return float(x[i - 1] + (level - y[i - 1]) / (y[i] - y[i - 1]) * (x[i] - x[i - 1]))
+
+
 def rms(signal: RealArray) -> float:
     """Root mean square of a signal, in its unit."""
     return float(np.sqrt(np.mean(signal**2)))

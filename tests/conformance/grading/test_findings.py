@@ -21,7 +21,7 @@ from pantocheck.conformance.results.results_format import CaseResult, Results, S
 from pantocheck.conformance.runs.system import Delivered, StudyResult
 
 SYSTEM = SystemIdentity(name="test", version="1", kind="builtin")
-QUANTITIES = ("damping_gain_fading_pct", "dropper_locked_force_pct", "damping_rise_pct", "damping_decrease_pct")
+QUANTITIES = ("damping_gain_step", "dropper_locked_force_pct", "damping_rise_pct", "damping_decrease_pct")
 
 
 def build_limit(quantity: str, role: Role, trust: Any = "primary") -> Limit:
@@ -46,6 +46,8 @@ def grade(values: dict[str, float], *limits: Limit) -> CaseResult:
         ("imposed", 9.0, "imposed", "info"),
         ("imposed", 11.0, "not_reproduced", "fail"),
         ("imposed", None, "not_evaluated", "skip"),
+        ("inferred", 9.0, "inferred_met", "pass"),
+        ("inferred", 11.0, "inferred_not_met", "fail"),
     ],
 )
 def test_outcome_of_a_finding(role: Role, value: float | None, outcome: str, verdict: str) -> None:
@@ -70,7 +72,8 @@ def results() -> dict[str, Any]:
 
 
 def test_findings_are_counted_and_listed_with_the_reason_of_a_contradiction(results: dict[str, Any]) -> None:
-    assert results["findings"] == {"imposed": 1, "reproduced": 1, "not_reproduced": 1, "not_evaluated": 1}
+    counts = {"imposed": 1, "reproduced": 1, "not_reproduced": 1, "not_evaluated": 1}
+    assert results["findings"] == counts | {"inferred_met": 0, "inferred_not_met": 0}
     sentence = "Findings: 1 imposed, 1 reproduced, 1 not reproduced, 1 not evaluated."
     assert sentence in build_headline(Results.model_validate(results))
     assert find_discrepancies(Results.model_validate(results)) == []

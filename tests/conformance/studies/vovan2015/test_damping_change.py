@@ -16,7 +16,12 @@ from pantocheck.conformance.line.elements.damping import Damping
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.runs.system import Delivered, Outcome, Skipped, StudyResult
 from pantocheck.conformance.studies.damping_sensitivity import draw_band_bars
-from pantocheck.conformance.studies.vovan2015.damping_change import CHANGES, _compare_runs, compare_force
+from pantocheck.conformance.studies.vovan2015.damping_change import (
+    CHANGES,
+    EARLIER_LEVEL,
+    _compare_runs,
+    compare_force,
+)
 
 
 @dataclass(frozen=True)
@@ -94,15 +99,17 @@ def test_changes_need_a_value_on_both_sides_and_the_order_both_runs() -> None:
     """Values of the line, of a pantograph on one side alone, and zeros before the change give no change."""
     before = {0: {"rms_0_5_N": 1.0}, 1: {"rms_0_5_N": 20.0, "rms_5_20_N": 0.0, "rms_20_50_N": 10.0}, 2: {}}
     after = {0: {"rms_0_5_N": 2.0}, 1: {"rms_0_5_N": 30.0, "rms_5_20_N": 5.0, "rms_20_50_N": 9.0}, 3: {}}
-    assert compare_force(before, after) == {1: {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10)}}
+    changes = {"change_rms_0_5_pct": 50.0, "change_rms_20_50_pct": pytest.approx(-10), EARLIER_LEVEL: 10.0}
+    assert compare_force(before, after) == {1: changes}
     assert compare_force(after, {}) == {}
     # Without values of the front pantograph there is no difference between rear and front.
     values = [{2: {"rms_20_50_N": value}} for value in (32.0, 40.0)]
-    assert compare_force(*values) == {2: {"change_rms_20_50_pct": 25.0}}
-    # The smaller ratio counts: 0.30 over 0.26 under the updated damping, not 0.33 over 0.23 under the initial one.
-    before, after = ({1: {"cov_20": front}, 2: {"cov_20": rear}} for front, rear in ((0.33, 0.23), (0.3, 0.26)))
-    assert compare_force(before, after)[0] == {"front_over_rear_cov_20": pytest.approx(0.3 / 0.26)}
-    assert 0 not in compare_force(before, {1: {"cov_20": 0.3}, 2: {}})
+    assert compare_force(*values) == {2: {"change_rms_20_50_pct": 25.0, EARLIER_LEVEL: 32.0}}
+    # Ratios of rear to front by hand: 0.5 and 2; a pantograph without the band gives none.
+    before, after = ({1: {"rms_0_5_N": front}, 2: {"rms_0_5_N": rear}} for front, rear in ((20.0, 10.0), (5.0, 10.0)))
+    ratios = {"smallest_rear_over_front_rms_0_5": 0.5, "largest_rear_over_front_rms_0_5": 2.0}
+    assert compare_force(before, after)[0] == ratios
+    assert 0 not in compare_force(before, {1: {"rms_0_5_N": 5.0}, 2: {}})
     assert 0 not in compare_force({1: before[1]}, {1: after[1]})
 
 
@@ -121,7 +128,7 @@ def test_updated_damping_raises_the_force_above_20_hz_in_table_and_chart(case: C
     assert pair[0].series[1].y == pytest.approx(force, rel=1e-3)
     assert _compare_runs(case, None, delivered) is None
     same = _compare_runs(case, delivered, delivered)
-    assert set(same.study.findings[1].values()) == {0.0}
+    assert {same.study.findings[1][name] for name in CHANGES.values()} == {0.0}
     assert all([series.label for series in chart.series] == ["initial", "updated"] for chart in pair)
     # The limits express the findings of the paper.
     static = replace(case, file=case.file.model_copy(update={"speed_km_h": None, "study": None}))

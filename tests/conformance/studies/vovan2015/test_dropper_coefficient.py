@@ -21,6 +21,7 @@ from pantocheck.conformance.studies.vovan2015.dropper_coefficient import (
     compare_oscillations,
     find_oscillation,
     find_transition,
+    locate_transition,
     run_dropper_damping,
     run_dropper_oscillation,
 )
@@ -40,7 +41,8 @@ def test_levels_and_changes_of_known_curves() -> None:
     # The coefficients lie 26 % apart.
     findings = find_transition(COEFFICIENTS, low_pass_curve(2e-3))
     assert_allclose(findings["dropper_transition_start_s"], 2e-3 / 3, rtol=0.03)
-    assert_allclose(findings["dropper_transition_middle_s"], 2e-3, rtol=0.01)
+    half = locate_transition(COEFFICIENTS, low_pass_curve(2e-3), 0.5)
+    assert_allclose(list(half.values()), [2e-3, 2e-3], rtol=0.01)
     assert_allclose(findings["dropper_transition_end_s"], 6e-3, rtol=0.03)
     assert_allclose(findings["dropper_locked_force_pct"], 100 / (1 + 50**2), rtol=1e-3)
     # By hand: 2 % of the rear in 5-20 Hz, 1 % of the front; other quantities and missing bands do not count.
@@ -58,15 +60,13 @@ def grade_force(force: RealArray) -> dict[str, str]:
 
 
 def test_wrong_or_missing_transition_is_detected() -> None:
-    start, middle, end, locked = "transition_start_s", "transition_middle_s", "transition_end_s", "locked_force_pct"
-    assert grade_force(low_pass_curve(2e-3)) == dict.fromkeys((start, middle, end, locked), "pass")
-    assert grade_force(low_pass_curve(2e-4))[start] == "fail"
-    late = grade_force(low_pass_curve(0.06))
-    assert late == {start: "fail", middle: "fail", end: "skip", locked: "fail"}  # the end is not reached
-    # The missing transition is skipped, and the remaining force exceeds its limit.
+    """Onset and end are a factor of nine apart in this curve, a factor of 100 in the paper: one of them can fit."""
+    start, end, locked = "transition_start_s", "transition_end_s", "locked_force_pct"
+    assert grade_force(low_pass_curve(3e-4)) == {start: "pass", end: "fail", locked: "info"}
+    assert grade_force(low_pass_curve(3e-3)) == {start: "fail", end: "pass", locked: "info"}
+    assert grade_force(low_pass_curve(0.06)) == {start: "fail", end: "skip", locked: "info"}  # the end is not reached
     verdicts = grade_force(np.full(COEFFICIENTS.size, 1000.0))
-    assert verdicts["transition_middle_s"] == "skip"
-    assert verdicts["locked_force_pct"] == "fail"
+    assert verdicts[start] == verdicts[end] == "skip"
     with np.errstate(all="raise"):
         assert find_transition(COEFFICIENTS, np.zeros(COEFFICIENTS.size)) == {}
 
@@ -78,7 +78,7 @@ def test_only_compensation_of_the_elastic_force_locks_a_dropper() -> None:
     outcome = run_dropper_damping(coarse, study)
     (chart,) = outcome.study.charts
     nothing, elastic = (series.y for series in chart.series)
-    assert [(mark.low, mark.high) for mark in chart.marks] == [(1e-4, 1e-2), (1e-5, None)]
+    assert [(mark.low, mark.high) for mark in chart.marks] == [(3.3e-5, 3e-4), (3.3e-3, 3e-2), (1e-5, None)]
     # Without damping the laws are the same. A dropper slackens within a time step: 4 % at 2 ms, 2 % at 1 ms.
     assert_allclose(nothing[0], elastic[0], rtol=0.05)
     assert nothing[-1] > nothing[0]

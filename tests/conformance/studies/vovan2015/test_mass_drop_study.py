@@ -45,12 +45,15 @@ def case() -> Case:
 
 def draw_frequencies(case: Case, monkeypatch: pytest.MonkeyPatch) -> Chart:
     """First chart of the study with drops that are not simulated."""
-    drops = tuple(SimpleNamespace(decay=SimpleNamespace(last_slack=None)) for _ in case.file.mass_drop.drop)
+    drops = tuple(
+        SimpleNamespace(decay=SimpleNamespace(last_slack=None), record=None) for _ in case.file.mass_drop.drop
+    )
     identification = SimpleNamespace(modes=(), warnings=())
     identified = SimpleNamespace(drops=drops, identification=identification, certain_modes=[])
     monkeypatch.setattr(mass_drop_study, "identify_drops", lambda _: identified)
     monkeypatch.setattr(mass_drop_study, "identify_tests", lambda *_: Population((), (), ()))
     monkeypatch.setattr(mass_drop_study, "build_fit_report", lambda *_: StudyResult())
+    monkeypatch.setattr(mass_drop_study, "compute_statements", lambda *_: {})
     study = mass_drop_study.run_mass_drop_study(case).study
     assert ("reference_over_identified_damping" in study.findings[LINE]) == bool(case.dampings)
     return study.charts[0]
