@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 import typer
 from rich.console import RenderableType
 
@@ -16,6 +17,7 @@ from pantocheck.conformance.app.notebook.identified_lines import (
     write_damping_fit,
     write_identification,
 )
+from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS, list_suffixes
@@ -26,6 +28,7 @@ from pantocheck.conformance.drops.damping_results import (
     build_damping_results,
     write_damping_toml,
 )
+from pantocheck.conformance.drops.damping_transfer import transfer_damping
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
@@ -35,9 +38,11 @@ from pantocheck.conformance.drops.population import Population, identify_populat
 from pantocheck.conformance.drops.population_analysis import analyse_population
 from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
+from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
 from pantocheck.conformance.results.identified_modes import ModesFile, read_modes
 from pantocheck.conformance.results.population_format import PooledGroup
@@ -149,6 +154,9 @@ def _format_group(group: PooledGroup) -> str:
 
 
 # `pantocheck drop fit`: damping model of a line from identified modes.
+TRANSFER_FILE = "transfer.csv"
+
+
 def drop_fit_command(
     modes: Annotated[Path, typer.Argument(help="modes.json of `pantocheck drop identify`.")],
     line: LineOption,
@@ -170,6 +178,10 @@ def drop_fit_command(
         bool,
         typer.Option("--other-line", help="Permit a line that differs from that of the record; the result is marked."),
     ] = False,
+    transfer: Annotated[
+        str | None,
+        typer.Option(help="Line of the same wire materials: transfer.csv has its damping ratios with their intervals."),
+    ] = None,
 ) -> CommandOutput:
     """Fit a damping model of a line to identified modes.
 
@@ -179,7 +191,8 @@ def drop_fit_command(
 
     Example: pantocheck drop fit T1/modes.json --line my-line.toml --out T1
     """
-    identified, catenary = read_modes(modes), build_catenary(read_line(line))
+    measured = read_line(line)
+    identified, catenary = read_modes(modes), build_catenary(measured)
     if not other_line:
         refuse_other_modes(identified, catenary, modes.name)
     check_writable(out)
@@ -188,13 +201,29 @@ def drop_fit_command(
         results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
         progress.begin_task("report")
         document, files = write_damping_fit(results, out)
+    transferred = [] if transfer is None else _write_transfer(results, (measured, read_line(transfer)), element, out)
     return CommandOutput(
         escape_text(document.header.headline),
         results,
         [
             *(indent_text(text, "warning: ") for text in results.warnings),
             Unwrapped(escape_text(write_damping_toml(results)).plain),
+            *transferred,
         ],
-        files=files,
+        files=[*files, *([] if transfer is None else [out / TRANSFER_FILE])],
         remarks=remark_missing_formats(),
     )
+
+
+def _write_transfer(
+    results: DampingResults, lines: tuple[LineFile, LineFile], element: float, out: Path
+) -> list[RenderableType]:
+    """Write the damping ratios of the second line by the fit on the first one; returns lines for the terminal."""
+    found = transfer_damping(results, *lines, element)
+    names = ["frequency_Hz", "damping_ratio", "half_width_95"]
+    write_csv_table(out / TRANSFER_FILE, names, np.column_stack([found.frequency, found.ratio, found.half_width]), 6)
+    width = 100 * float(np.median(found.half_width / found.ratio))
+    return [
+        escape_text(f"transfer: {found.frequency.size} modes, 95 % intervals of +-{width:.0f} % (median)"),
+        *(indent_text(text, "the rule does not hold: ") for text in found.violations),
+    ]
