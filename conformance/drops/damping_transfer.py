@@ -1,8 +1,8 @@
 """Damping of another line of the same materials (Vo Van, Balmes and Lorang 2015, last section).
 
-The Rayleigh coefficients of the wires that were fitted on one line are used on another line. The damping ratio of a mode
-follows from the energies of the mode in the wires. The rule holds while material damping dominates: the wires must have
-the same material, the other components must hardly damp, and the frequency must lie in the measured range.
+The Rayleigh coefficients of the wires that were fitted on one line are used on another line. The damping ratio of a
+mode follows from its energies in the wires. The rule holds while material damping dominates: the wires must have the
+same material, the other components must hardly damp, and the frequency must lie in the measured range.
 """
 
 from dataclasses import dataclass

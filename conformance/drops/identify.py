@@ -1,30 +1,48 @@
 """Identification of the modes of a line from mass-drop records."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.line_fit import SAME_LENGTH, LineFit, build_modes, fit_line, group_into_blocks
+from pantocheck.conformance.drops.identification_plan import (
+    IdentificationPlan,
+    choose_poles,
+    exclude_channels,
+    exclude_stretches,
+    near_distance,
+    refine_all,
+    select_reported,
+)
+from pantocheck.conformance.drops.line_fit import (
+    LAST_STEPS,
+    SAME_LENGTH,
+    LineFit,
+    build_modes,
+    fit_line,
+    group_into_blocks,
+)
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
     estimate_block_noise,
     find_hidden_poles,
     select_poles,
 )
-from pantocheck.conformance.drops.pole_refinement import refine_poles
-from pantocheck.conformance.drops.projection import DataBlock, build_block, whiten
+from pantocheck.conformance.drops.projection import DataBlock, build_block
 from pantocheck.conformance.drops.start_poles import BandTrials, join_start_poles, try_orders
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
 SHARED_POLES = 1.5
 """Misfit above which the line is not linear, or its records have different poles [-]."""
+NO_PLAN = IdentificationPlan()
+"""Plan that changes nothing."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +75,7 @@ def identify_modes(
     highest: float = 10.0,
     poles: ComplexArray | None = None,
     progress: Callable[[str], None] = lambda text: None,
+    plan: IdentificationPlan = NO_PLAN,
 ) -> tuple[Identification, ...]:
     """Identify the modes of each line in the records.
 
@@ -68,11 +87,13 @@ def identify_modes(
         poles: Start poles placed by hand, (m,) [1/s], whose number is kept; None: start poles are searched in the
             records.
         progress: Function that receives the name of each step.
+        plan: Choices of the user.
 
     Raises:
-        InputError: A record cannot be used.
+        InputError: A record cannot be used, or does not fit the plan.
     """
-    return tuple(_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records))
+    used = exclude_channels(records, plan)
+    return tuple(_identify_line(line_records, highest, poles, progress, plan) for line_records in group_by_line(used))
 
 
 def group_by_line(records: tuple[DropRecord, ...]) -> list[list[DropRecord]]:
@@ -96,28 +117,48 @@ def _line_key(record: DropRecord) -> object:
 
 
 def _identify_line(
-    records: list[DropRecord], highest: float, start: ComplexArray | None, progress: Callable[[str], None]
+    records: list[DropRecord],
+    highest: float,
+    start: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan,
 ) -> Identification:
-    band = choose_band(records, highest)
+    band = choose_band(records, plan.highest_Hz or highest)
     decays = []
     for record in records:
         progress(f"{record.name}: release and linear decay")
-        decays.append(prepare_decay(record, band))
-    return identify_decays(decays, band, start, progress)
+        decays.append(exclude_stretches(prepare_decay(record, band), plan))
+    return identify_decays(decays, band, start, progress, plan)
 
 
 def identify_decays(
-    decays: list[PreparedDecay], band: FrequencyBand, start: ComplexArray | None, progress: Callable[[str], None]
+    decays: list[PreparedDecay],
+    band: FrequencyBand,
+    start: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan = NO_PLAN,
 ) -> Identification:
-    """Identify the modes of a line from decays in one band; start poles and progress as in `identify_modes`."""
+    """Identify the modes of a line from decays in one band; further parameters as in `identify_modes`."""
     name, spans = decays[0].record.name, decays[0].record.line.spans_m
     samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
     progress(f"{name}: poles")
-    selection, search = _search_poles(decays, samples, data, band) if start is None else _use_poles(start, data)
+    is_classical = plan.method == "classical"
+    if is_classical:
+        selection, search = _find_peaks(data)
+    elif start is not None:
+        selection, search = _use_poles(start, data)
+    else:
+        selection, search = _search_poles(decays, samples, data, band, plan)
+    if plan.changes_poles:
+        selection = choose_poles(selection, data, plan)
+        search = replace(search, steps=(*search.steps, ("chosen by the plan", selection.poles)))
     progress(f"{name}: uncertainty")
-    fit = fit_line(decays, places, data, selection.poles, selection.noise, band)
-    return Identification(fit, build_modes(fit, len(spans) or None), _list_warnings(fit), search)
+    # A classical pole stays where its peak puts it; the residual then shows what the method leaves.
+    last_steps = 0 if is_classical else LAST_STEPS
+    fit = fit_line(decays, places, data, selection.poles, selection.noise, band, last_steps)
+    modes = select_reported(build_modes(fit, len(spans) or None), plan, near_distance(data))
+    return Identification(fit, modes, _list_warnings(fit), search)
 
 
 def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
@@ -138,10 +179,15 @@ def choose_band(records: list[DropRecord], highest: float) -> FrequencyBand:
 
 
 def _search_poles(
-    decays: list[PreparedDecay], samples: list[tuple[RealArray, float]], data: list[DataBlock], band: FrequencyBand
+    decays: list[PreparedDecay],
+    samples: list[tuple[RealArray, float]],
+    data: list[DataBlock],
+    band: FrequencyBand,
+    plan: IdentificationPlan,
 ) -> tuple[PoleSelection, PoleSearch]:
-    trials = _try_start_orders(samples, band)
-    start = join_start_poles(trials) if trials else _find_longest(decays).poles
+    placed = plan.list_poles("start")
+    trials = () if placed.size else _try_start_orders(samples, band)
+    start = join_start_poles(trials) if trials else placed if placed.size else _find_longest(decays).poles
     selected = select_poles(start, data)
     complete = find_hidden_poles(selected, data)
     steps = (
@@ -168,11 +214,14 @@ def _try_start_orders(samples: list[tuple[RealArray, float]], band: FrequencyBan
 
 def _use_poles(start: ComplexArray, data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
     """Refine poles placed by hand, whose number is kept."""
-    poles = start
-    for _ in range(3):
-        poles = refine_poles(poles, whiten(data, estimate_block_noise(poles, data))).poles
-    steps = (("placed by hand", start), ("refined", poles))
-    return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), steps)
+    refined = refine_all(start, data)
+    return refined, PoleSearch((), (("placed by hand", start), ("refined", refined.poles)))
+
+
+def _find_peaks(data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
+    """Poles of the classical method, and the noise that they leave."""
+    poles = find_classical_poles(data)
+    return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), (("peaks of the spectrum", poles),))
 
 
 def _list_warnings(fit: LineFit) -> tuple[str, ...]:

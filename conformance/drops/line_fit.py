@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_gain
@@ -22,6 +23,9 @@ from pantocheck.conformance.results.identified_modes import Mode, SensorShape
 
 SAME_LENGTH = 0.02
 """Largest relative difference in length of repeats that are cut to the shortest one and put into one block [-]."""
+
+LAST_STEPS = 10
+"""Largest number of steps of the last refinement of the poles."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,7 @@ def fit_line(
     poles: ComplexArray,
     noise: list[RealArray],
     band: FrequencyBand,
+    last_steps: int = LAST_STEPS,
 ) -> LineFit:
     """Refine the poles once more and solve for the residues of every record.
 
@@ -114,9 +119,10 @@ def fit_line(
         poles: Selected poles, (m,) [1/s].
         noise: Noise of the channels of each block, each (c,) [unit of the spectrum].
         band: Band of the identification.
+        last_steps: Largest number of steps of the last refinement; 0: the poles stay as they are.
     """
     white = whiten(data, noise)
-    refined = refine_poles(poles, white, iterations=10)
+    refined = refine_poles(poles, white, iterations=last_steps)
     poles = refined.poles
     blocks = tuple(
         FittedBlock(block, solve_residues(poles, block), sigma, residue_deviation(poles, block))
@@ -172,7 +178,7 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         frequency_std_Hz=_finite(omega_std / (2 * np.pi)),
         damping_ratio=damping,
         damping_ratio_std=_finite(damping_std),
-        sensor_shape=_sensor_shape(best, residues, spread, scale),
+        sensor_shape=_sensor_shape(best, residues, spread, scale, _sensor_errors(best, pole)),
         error=_band_error(fit.blocks, pole),
         record=decay.record.name,
         line=decay.record.line,
@@ -236,7 +242,7 @@ def _shared_shape(repeats: list[RecordFit], best: RecordFit, j: int) -> tuple[Co
 
 
 def _sensor_shape(
-    record: RecordFit, residues: ComplexArray, spread: RealArray, scale: complex
+    record: RecordFit, residues: ComplexArray, spread: RealArray, scale: complex, errors: RealArray
 ) -> tuple[SensorShape, ...]:
     shape, std = (residues / scale, spread / np.abs(scale)) if np.abs(scale) > 0 else (residues, spread)
     return tuple(
@@ -247,16 +253,33 @@ def _sensor_shape(
             re=float(value.real),
             im=float(value.imag),
             std=_finite(deviation),
+            error=_finite(error),
         )
-        for channel, value, deviation in zip(record.decay.channels, shape, std, strict=True)
+        for channel, value, deviation, error in zip(record.decay.channels, shape, std, errors, strict=True)
     )
+
+
+def _sensor_errors(record: RecordFit, pole: complex) -> RealArray:
+    """Residual over measured signal in the half-power band of a mode at each sensor of a record, (c,) [-]."""
+    block = record.block
+    near = _select_band(block, pole)
+    residual, measured = (
+        np.linalg.norm(spectrum[near][:, record.columns], axis=0)
+        for spectrum in (block.fit.residual, block.data.spectrum)
+    )
+    return np.asarray(residual / np.maximum(measured, np.finfo(float).tiny))
+
+
+def _select_band(block: FittedBlock, pole: complex) -> NDArray[np.bool_]:
+    """Mask of the spectral lines in the half-power band of a pole, one line at least on each side."""
+    return np.asarray(np.abs(block.data.omega - pole.imag) <= max(-pole.real, 2 * np.pi / block.data.duration))
 
 
 def _band_error(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
     """Residual over measured signal in the half-power band of a mode."""
     residual = measured = 0.0
     for block in blocks:
-        near = np.abs(block.data.omega - pole.imag) <= max(-pole.real, 2 * np.pi / block.data.duration)
+        near = _select_band(block, pole)
         residual += float(np.sum(np.abs(block.fit.residual[near] / block.noise) ** 2))
         measured += float(np.sum(np.abs(block.data.spectrum[near] / block.noise) ** 2))
     return float(np.sqrt(residual / measured)) if measured > 0 else 1.0

@@ -8,7 +8,14 @@ from pantocheck.conformance.core.array_types import ComplexArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
-from pantocheck.conformance.drops.identify import Identification, choose_band, group_by_line, identify_decays
+from pantocheck.conformance.drops.identification_plan import IdentificationPlan, exclude_channels, exclude_stretches
+from pantocheck.conformance.drops.identify import (
+    NO_PLAN,
+    Identification,
+    choose_band,
+    group_by_line,
+    identify_decays,
+)
 from pantocheck.model.description.one_thread import use_one_thread
 
 
@@ -44,6 +51,7 @@ def identify_population(
     highest: float = 10.0,
     poles: ComplexArray | None = None,
     progress: Callable[[str], None] = lambda text: None,
+    plan: IdentificationPlan = NO_PLAN,
 ) -> Population:
     """Identify every record on its own, and the records of each line together.
 
@@ -56,7 +64,8 @@ def identify_population(
         InputError: No record can be identified; the error is that of the first one. Or the sampling rate of one record
             is too low for any mode, so that its line has no band.
     """
-    lines = [_identify_line(line_records, highest, poles, progress) for line_records in group_by_line(records)]
+    used = exclude_channels(records, plan)
+    lines = [_identify_line(line_records, highest, poles, progress, plan) for line_records in group_by_line(used)]
     population = Population(*(tuple(chain.from_iterable(parts)) for parts in zip(*lines, strict=True)))
     if not population.tests:
         raise population.unusable[0].error
@@ -64,22 +73,26 @@ def identify_population(
 
 
 def _identify_line(
-    records: list[DropRecord], highest: float, poles: ComplexArray | None, progress: Callable[[str], None]
+    records: list[DropRecord],
+    highest: float,
+    poles: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan,
 ) -> tuple[list[PopulationTest], list[Identification], list[UnusableRecord]]:
     """Tests, joint identification and unusable records of one line; every record is prepared once."""
-    band = choose_band(records, highest)
+    band = choose_band(records, plan.highest_Hz or highest)
     usable: list[tuple[PreparedDecay, Identification]] = []
     unusable = []
     for record in records:
         progress(f"{record.name} on its own")
         try:
-            decay = prepare_decay(record, band)
-            usable.append((decay, identify_decays([decay], band, poles, progress)))
+            decay = exclude_stretches(prepare_decay(record, band), plan)
+            usable.append((decay, identify_decays([decay], band, poles, progress, plan)))
         except InputError as error:
             unusable.append(UnusableRecord(record, error))
     if not usable:
         return [], [], unusable
     (_, joint), *others = usable
     if others:
-        joint = identify_decays([decay for decay, _ in usable], band, poles, progress)
+        joint = identify_decays([decay for decay, _ in usable], band, poles, progress, plan)
     return [PopulationTest(decay.record, single, joint) for decay, single in usable], [joint], unusable

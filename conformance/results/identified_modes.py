@@ -28,6 +28,8 @@ class SensorShape(RoundedModel):
     """Imaginary part [-]."""
     std: Rounded | None = None
     """Standard deviation of real and imaginary part [-]."""
+    error: Rounded | None = None
+    """Residual over measured signal in the half-power band at this sensor [-]."""
 
 
 class MeasuredLine(RoundedModel):

@@ -32,6 +32,7 @@ from pantocheck.conformance.drops.damping_transfer import transfer_damping
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
+from pantocheck.conformance.drops.identification_plan import IdentificationPlan, Method, read_identification_plan
 from pantocheck.conformance.drops.identify import group_by_line, identify_modes
 from pantocheck.conformance.drops.mode_export import MODE_FORMATS, select_mode_writer
 from pantocheck.conformance.drops.population import Population, identify_population
@@ -68,6 +69,16 @@ def drop_identify_command(
     each: Annotated[
         bool, typer.Option("--each", help="Also identify every record on its own, and compare the tests: population.*")
     ] = False,
+    method: Annotated[
+        Method | None,
+        typer.Option(help="finite-record (default): all poles together; classical: one pole for each spectral peak."),
+    ] = None,
+    plan: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML with bands and their orders, excluded channels and stretches, poles to start from, keep or drop."
+        ),
+    ] = None,
 ) -> CommandOutput:
     """Identify the modes of a line from mass-drop records.
 
@@ -82,7 +93,11 @@ def drop_identify_command(
     pantocheck drop identify T1.h5 --out T1 --export modes.csv --export modes.uff
 
     pantocheck drop identify T1.h5 T2.csv T3.uff --out all --each
+
+    pantocheck drop identify T1.h5 --plan plan.toml --out T1
     """
+    choices = IdentificationPlan() if plan is None else read_identification_plan(plan)
+    choices = choices if method is None else choices.model_copy(update={"method": method})
     exports = [(path, select_mode_writer(path)) for path in export or ()]
     start_poles = None if poles is None else read_poles(poles)
     drop_records = tuple(record for path in records for record in read_drop_records(path))
@@ -90,7 +105,7 @@ def drop_identify_command(
         check_writable(folder)
     tasks = count_tasks(drop_records, "each" if each else "joint")
     with follow_steps("identification", tasks) as progress:
-        inputs = (drop_records, highest, start_poles, progress.begin_task)
+        inputs = (drop_records, highest, start_poles, progress.begin_task, choices)
         population = identify_population(*inputs) if each else None
         identifications = identify_modes(*inputs) if population is None else population.joint
         progress.begin_task("report")
