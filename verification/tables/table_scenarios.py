@@ -1,6 +1,6 @@
 """Scenarios of Table 1 of Vo Van, Balmes and Lorang (2015): line, speed, pantograph and spacing, and their runs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.elements.damping import Damping
+from pantocheck.conformance.line.elements.damping import ComponentDamping, Damping
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
@@ -146,12 +146,58 @@ def build_case(scenario: Scenario, run_in_spans: int = RUN_IN_SPANS) -> Case:
     )
 
 
-def run_initial(scenario: Scenario, mean_forces: Sequence[float] = MEAN_FORCES) -> InitialRun | None:
-    """Run a scenario with the initial damping; None if it has no initial state or no solution.
+CaseChange = Callable[[Case], Case]
+"""Change of the case of a scenario: its initial damping or its pantographs."""
+
+
+def keep_case(case: Case) -> Case:
+    """The case itself: no change."""
+    return case
+
+
+def change_initial_damping(**parts: tuple[float, float]) -> CaseChange:
+    """Initial damping with other coefficients of some kinds of component, by their keys in a damping file [1/s, s]."""
+    tables = {
+        key: ComponentDamping(mass_coefficient_1_s=mass, stiffness_coefficient_s=stiffness)
+        for key, (mass, stiffness) in parts.items()
+    }
+    return lambda case: replace(
+        case, dampings={name: damping.model_copy(update=tables) for name, damping in case.dampings.items()}
+    )
+
+
+def change_contact(stiffness_N_m: float) -> CaseChange:
+    """Contact spring of every pantograph with another stiffness [N/m]."""
+    return _change_pantographs(
+        lambda file: file.model_copy(
+            update={"contact": file.contact.model_copy(update={"stiffness_N_m": stiffness_N_m})}
+        )
+    )
+
+
+def change_head(share: float) -> CaseChange:
+    """Head of every pantograph, the last mass of its chain, times a factor [-]."""
+
+    def change_mass(file: PantographFile) -> PantographFile:
+        assert file.chain is not None
+        masses = (*file.chain.masses_kg[:-1], share * file.chain.masses_kg[-1])
+        return file.model_copy(update={"chain": file.chain.model_copy(update={"masses_kg": masses})})
+
+    return _change_pantographs(change_mass)
+
+
+def _change_pantographs(change: Callable[[PantographFile], PantographFile]) -> CaseChange:
+    return lambda case: replace(case, pantographs=tuple(map(change, case.pantographs)))
+
+
+def run_initial(
+    scenario: Scenario, mean_forces: Sequence[float] = MEAN_FORCES, change: CaseChange = keep_case
+) -> InitialRun | None:
+    """Run a changed scenario with the initial damping; None if it has no initial state or no solution.
 
     The uplift forces are corrected once, so that the mean contact forces are near the given ones [N].
     """
-    case = build_case(scenario)
+    case = change(build_case(scenario))
     ((_, initial),) = case.dampings.items()
     targets = np.array(mean_forces[: len(case.pantographs)])
     spring = 0.0 if case.pantographs[0].chain is None else case.pantographs[0].chain.stiffness_N_m[0]
@@ -167,12 +213,12 @@ def run_initial(scenario: Scenario, mean_forces: Sequence[float] = MEAN_FORCES) 
     return InitialRun(scenario, values, tuple(map(float, forces)))
 
 
-def run_settled_changes(run: InitialRun) -> ForceChanges:
+def run_settled_changes(run: InitialRun, change: CaseChange = keep_case) -> ForceChanges:
     """Changes by the updated damping after a long run-in, with the uplift forces of a run, and their spread.
 
     The analysis section is shifted back by up to `SHIFTED_SPANS` spans.
     """
-    case = build_case(run.scenario, SETTLED_RUN_IN_SPANS)
+    case = change(build_case(run.scenario, SETTLED_RUN_IN_SPANS))
     geometry, first = case.line.geometry, SETTLED_RUN_IN_SPANS + 1
     sections = [geometry.section(i, i + EVALUATED_SPANS - 1) for i in range(first - SHIFTED_SPANS, first + 1)]
     ((_, initial),) = case.dampings.items()

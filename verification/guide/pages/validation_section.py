@@ -33,7 +33,7 @@ FAMILIES = {
 FEWEST_RANGES = 3
 """Fewest points of a figure: fewer are read from the table."""
 
-ROLES = {"imposed": ", imposed", "held_out": ", held out"}
+ROLES = {"imposed": ", imposed", "held_out": ", held out", "inferred": ", inferred"}
 
 
 def build_validation_section(library: list[dict[str, Any]]) -> doc.Section:
