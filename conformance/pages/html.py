@@ -69,6 +69,9 @@ PLOT_LICENCE = "uplot/LICENSE"
 TABLE_SCRIPTS = ("elements", "folding", "tables")
 """Parts of the script of every page."""
 
+CHOICE_SCRIPTS = ("pole_choice",)
+"""Further parts of the script of a page without results; each acts on the tables that it knows."""
+
 CURVE_SCRIPTS = (
     *("results", "download", "spectrum", "spans"),
     *("plot_style", "legend", "plot_lines", "plot_keys", "touch", "plot"),
@@ -97,7 +100,7 @@ class PageCode:
 @cache
 def read_plain_code() -> PageCode:
     """Styles and scripts of a page without results."""
-    return PageCode((_read(PAGE_STYLE),), (_join_parts(TABLE_SCRIPTS),))
+    return PageCode((_read(PAGE_STYLE),), (_join_parts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS)),))
 
 
 @cache

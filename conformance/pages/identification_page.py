@@ -75,7 +75,7 @@ def _order_figure(search: OrderSearch) -> doc.Figure:
 MODES_TEXT = (
     "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, "
     "widened where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, "
-    "relative to the measured spectrum."
+    "relative to the measured spectrum; by sensor in the order of modes.json."
 )
 
 
@@ -130,6 +130,7 @@ def _mode_table(modes: Sequence[Mode]) -> doc.Table:
         "Group": lambda mode: "–" if mode.group is None else str(mode.group),
         "Collinearity": lambda mode: format_value(mode.phase_collinearity, 4),
         "Error [%]": lambda mode: format_percent(mode.error, 2),
+        "by sensor [%]": lambda mode: ", ".join(format_percent(sensor.error, 2) for sensor in mode.sensor_shape),
         "Warnings": lambda mode: "; ".join(mode.warnings) or "–",
     }
     return doc.make_grid("Modes by frequency", modes, cells)

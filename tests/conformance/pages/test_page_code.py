@@ -2,11 +2,17 @@
 
 import hashlib
 import re
+import shutil
+import subprocess
 import tomllib
 from pathlib import Path
 
+import pytest
+
+from pantocheck.conformance.drops.identification_plan import read_identification_plan
 from pantocheck.conformance.pages.document import Document, PlainHeader
 from pantocheck.conformance.pages.html import (
+    CHOICE_SCRIPTS,
     CURVE_SCRIPTS,
     TABLE_SCRIPTS,
     read_plain_code,
@@ -34,7 +40,7 @@ def test_library_for_plots_is_the_released_one_with_its_licence(page_text: str) 
 
 
 def test_every_part_of_the_script_is_used_once_and_packed() -> None:
-    parts = [f"{name}.js" for name in (*TABLE_SCRIPTS, *CURVE_SCRIPTS)]
+    parts = [f"{name}.js" for name in (*TABLE_SCRIPTS, *CHOICE_SCRIPTS, *CURVE_SCRIPTS)]
     assert sorted(parts) == sorted(path.name for path in (TEMPLATES / "scripts").iterdir())
     project = tomllib.loads((TEMPLATES.parent / "pyproject.toml").read_text("utf-8"))
     patterns = project["tool"]["setuptools"]["package-data"]["pantocheck.templates"]
@@ -50,3 +56,20 @@ def test_script_cannot_end_its_element_and_makes_no_markup_from_text() -> None:
     own = read_results_code().scripts[-1]
     assert not re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|srcdoc", own)
     assert not re.findall(r"\bfetch\(|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bimport\(", own)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node.js")
+def test_plan_of_accepted_modes_is_a_plan(tmp_path: Path) -> None:
+    """The function that writes the plan, without the page around it."""
+    script = (TEMPLATES / "scripts" / "pole_choice.js").read_text("utf-8").partition("for (const table")[0]
+    choices = (
+        "[{ frequency: 0.873, ratio: 0.00201, accepted: true }, { frequency: 1.6, ratio: 0.002, accepted: false }]"
+    )
+    command = ["node", "-e", f"{script}; process.stdout.write(planText({choices}));"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
+    poles = read_identification_plan(tmp_path / "plan.toml").pole
+    assert [(pole.frequency_Hz, pole.damping_ratio, pole.action) for pole in poles] == [
+        (0.873, 0.00201, "keep"),
+        (1.6, 0.002, "drop"),
+    ]
