@@ -10,7 +10,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.measured_table import MeasuredTable, parse_direction, read_tables
+from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn, parse_direction, read_tables
 from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.units import MotionQuantity, convert_unit
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord, find_sampling_rate
@@ -39,6 +39,8 @@ def read_drop_records(path: Path) -> tuple[DropRecord, ...]:
 
 
 # Mass-drop record from a measured table and its sidecar: contradictions are refused, signals are converted to SI.
+FORCE_UNITS = {"N": 1.0, "kN": 1e3}
+"""Units of a force channel, in newtons."""
 LEAST_SAMPLES = 16
 """Smallest number of samples of a record."""
 LARGEST_ACCELERATION = 500.0
@@ -56,8 +58,8 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
         raise InputError(
             table.where, f"holds only {n} samples", "Export the whole record, from rest to the end of the decay."
         )
-    described = describe_columns(table, sidecar)
     rate = find_sampling_rate(table, sidecar)
+    described, force = _separate_force(describe_columns(table, sidecar), table, rate)
     signals = np.empty((n, len(described)))
     channels, quantities, warnings = [], set[MotionQuantity](), list[str]()
     for c, (number, column) in enumerate(described):
@@ -82,7 +84,30 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
         drop=build_drop(attributes, table.where, n / rate),
         line=build_line(attributes, table.where),
         warnings=tuple(warnings),
+        force=force,
     )
+
+
+def _separate_force(
+    described: list[tuple[int, TableColumn]], table: MeasuredTable, rate: float
+) -> tuple[list[tuple[int, TableColumn]], RealArray | None]:
+    """Columns of motion, and the force of a hammer or shaker [N], positive upward; None without a column of force.
+
+    Raises:
+        InputError: There are several forces, or nothing but forces.
+    """
+    forces = [(number, column) for number, column in described if (column.unit or "").strip() in FORCE_UNITS]
+    motions = [(number, column) for number, column in described if (number, column) not in forces]
+    if len(forces) > 1 or not motions:
+        fault = f"has {len(forces)} channels of force and {len(motions)} of motion"
+        raise InputError(table.where, fault, "Give one force at most, and the motion of the line.")
+    if not forces:
+        return motions, None
+    (number, column), where = forces[0], f"{table.where}, channel '{forces[0][1].name}'"
+    values = table.values[:, number - 1]
+    _check_finite(values, rate, where)
+    _, sign = parse_direction(column.direction or "", where)
+    return motions, values * (FORCE_UNITS[(column.unit or "").strip()] * sign)
 
 
 def _check_finite(values: RealArray, rate: float, where: str) -> None:

@@ -71,6 +71,8 @@ class DropRecord:
     """Caveats on the record."""
     file: str = ""
     """Path of the file, which distinguishes files of the same name; empty if the record was not read."""
+    force: RealArray | None = None
+    """Measured force of a hammer or shaker, (n,) [N]; None: the line is not driven."""
 
     def __post_init__(self) -> None:
         self.signals.flags.writeable = False

@@ -185,14 +185,14 @@ def _build_mode(fit: LineFit, j: int, lateral_share: float | None) -> Mode:
         certain=damping_std < UNCERTAIN * damping,
         lateral=lateral_share is not None and lateral_share > LATERAL,
         amplitude_at_release=_finite(amplitude),
-        phase_collinearity=_phase_collinearity(residues),
+        phase_collinearity=phase_collinearity(residues),
         lateral_over_vertical=lateral_share,
         half_power_points=2 * damping * frequency * linear.duration,
     )
     return mode.model_copy(update={"warnings": _list_warnings(mode, linear.duration, nearest)})
 
 
-def _phase_collinearity(shape: ComplexArray) -> float | None:
+def phase_collinearity(shape: ComplexArray) -> float | None:
     """Modal phase collinearity (Juang and Pappa 1985): 1 for a normal mode; None with fewer than two sensors."""
     if shape.size < 2:
         return None

@@ -19,8 +19,10 @@ from pantocheck.conformance.app.notebook.identified_lines import (
 )
 from pantocheck.conformance.core.csv_table import write_csv_table
 from pantocheck.conformance.core.files import check_writable
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model
 from pantocheck.conformance.core.measured_table import TABLE_FORMATS, list_suffixes
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.drops.damping_model import MODAL_GROUPS
 from pantocheck.conformance.drops.damping_results import (
     FitOptions,
@@ -31,8 +33,14 @@ from pantocheck.conformance.drops.damping_results import (
 from pantocheck.conformance.drops.damping_transfer import transfer_damping
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.forced_response import identify_forced
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
-from pantocheck.conformance.drops.identification_plan import IdentificationPlan, Method, read_identification_plan
+from pantocheck.conformance.drops.identification_plan import (
+    IdentificationPlan,
+    Method,
+    exclude_channels,
+    read_identification_plan,
+)
 from pantocheck.conformance.drops.identify import group_by_line, identify_modes
 from pantocheck.conformance.drops.mode_export import MODE_FORMATS, select_mode_writer
 from pantocheck.conformance.drops.population import Population, identify_population
@@ -45,7 +53,7 @@ from pantocheck.conformance.pages.population_page import build_population_docume
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
 from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
-from pantocheck.conformance.results.identified_modes import ModesFile, read_modes
+from pantocheck.conformance.results.identified_modes import Mode, ModesFile, read_modes
 from pantocheck.conformance.results.population_format import PooledGroup
 
 
@@ -82,7 +90,8 @@ def drop_identify_command(
 ) -> CommandOutput:
     """Identify the modes of a line from mass-drop records.
 
-    Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared.
+    Records of one line (same spans and tensions) share their poles. Repeats of one drop are compared. A record with a
+    channel in N or kN (hammer, shaker) gives modes.json and frequency responses with their coherence.
 
     Examples:
 
@@ -103,6 +112,12 @@ def drop_identify_command(
     drop_records = tuple(record for path in records for record in read_drop_records(path))
     for folder in (out, *(path.parent for path, _ in exports)):
         check_writable(folder)
+    if any(record.force is not None for record in drop_records):
+        unused = choices.model_dump(exclude={"highest_Hz", "exclude_channels"}, exclude_defaults=True)
+        if unused or poles or each or exports:
+            hint = "Leave out --poles, --each, --export and --method, and all keys but highest_Hz and exclude_channels."
+            raise InputError("a record with a measured force", "does not use these options", hint)
+        return _identify_driven(exclude_channels(drop_records, choices), choices.highest_Hz or highest, out)
     tasks = count_tasks(drop_records, "each" if each else "joint")
     with follow_steps("identification", tasks) as progress:
         inputs = (drop_records, highest, start_poles, progress.begin_task, choices)
@@ -127,6 +142,29 @@ def drop_identify_command(
         files=[out / "modes.json", *files, *(path for path, _ in exports), *population_files],
         remarks=remark_missing_formats(),
     )
+
+
+def _identify_driven(records: Sequence[DropRecord], highest: float, out: Path) -> CommandOutput:
+    """Identify records with a measured force; writes modes.json and the frequency responses of each record."""
+    modes: list[Mode] = []
+    files, lines = [out / "modes.json"], []
+    with follow_steps("identification", len(records)) as progress:
+        for number, record in enumerate(records, 1):
+            progress.begin_task(record.name)
+            found = identify_forced(record, highest)
+            modes += found.modes
+            files.append(out / f"responses-{number}.csv")
+            names, values = found.responses.tabulate([record.channels[c].name for c in record.along("z")])
+            write_csv_table(files[-1], names, values, 6)
+            at_modes = found.responses.coherence_at([mode.frequency_Hz for mode in found.modes])
+            certain = sum(mode.certain for mode in found.modes)
+            lines.append(
+                f"{record.name}: {certain} of {len(found.modes)} modes certain, squared residual "
+                f"{found.misfit:.2f} times noise, coherence at the modes {at_modes.min():.2f} to {at_modes.max():.2f}"
+            )
+    write_model(out / "modes.json", ModesFile(tuple(modes)))
+    headline = f"{len(modes)} modes identified from {count_noun(len(records), 'record')} with a measured force"
+    return CommandOutput(escape_text(headline), ModesFile(tuple(modes)), [*map(escape_text, lines)], files=files)
 
 
 def count_tasks(records: Sequence[DropRecord], extent: Literal["each", "joint"]) -> int:
