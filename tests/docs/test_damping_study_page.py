@@ -35,7 +35,8 @@ def test_table_and_counts_hold_every_finding_of_the_library_once() -> None:
     assert sorted(rows) == sorted(map(describe, list_limits()))
     assert len({row[1] for row in rows}) == len(rows)
     outcomes = [row["outcome"] for row in read_rows()]
-    numbers = ", ".join(f"{outcomes.count(name)} {name}" for name in ("imposed", "reproduced", "not reproduced"))
+    names = ("imposed", "reproduced", "not reproduced", "inferred met", "inferred not met")
+    numbers = ", ".join(f"{outcomes.count(name)} {name}" for name in names)
     assert f"Findings: {numbers}." in PAGE
 
 

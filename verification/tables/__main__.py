@@ -81,6 +81,14 @@ PROGRAMS = {
         "{folder}/results.json",
         "run vovan2015/* --formats json --out {folder}",
     ),
+    "null-model": Program(
+        "tables.null_model",
+        ("null-model", "null-findings"),
+        "{folder}/results.json",
+        "run vovan2015/* --formats json --out {folder}",
+    ),
+    "printed-table": Program("tables.printed_table", ("printed-table",)),
+    "scatter": Program("tables.scatter_experiment", ("scatter",)),
     "self-test": Program("tables.self_test_tables", ("self-test-mutants", "self-test-numerical", "self-test-mild")),
     "forgeries": Program(
         "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"

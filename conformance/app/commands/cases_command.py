@@ -50,7 +50,7 @@ def _build_table(listed: list[tuple[CaseEntry, Case]]) -> FittedTable:
     columns = ("case", "title", "limits", *(("source",) if has_sources else ()))
     table = build_table(*columns, unbroken=("case",))
     for entry, case in listed:
-        counts = ", ".join(f"{count} {level}" for level, count in _count_limits(case).items())
+        counts = ",\n".join(f"{count} {level}" for level, count in _count_limits(case).items())
         source = "library" if entry.origin is None else entry.origin.text
         cells = (escape_text(case.id), escape_text(case.file.title), counts or "none", escape_text(source))
         table.add_row(*cells[: len(columns)])

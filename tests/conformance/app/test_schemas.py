@@ -18,7 +18,7 @@ COMPUTED = {library_folder() / name for name in ("converged", "resolving-power",
 LIBRARY = [
     path
     for path in library_folder().rglob("*.toml")
-    if path.name not in ("sources.toml", "model_uncertainty.toml") and COMPUTED.isdisjoint(path.parents)
+    if path.name not in ("sources.toml", "model_uncertainty.toml", "places.toml") and COMPUTED.isdisjoint(path.parents)
 ]
 
 
