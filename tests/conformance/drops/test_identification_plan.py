@@ -1,5 +1,6 @@
 """Plan of an identification: poles, bands, channels and stretches of the user, and the classical method."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -121,3 +122,15 @@ def test_classical_poles_are_right_alone_and_merge_close_modes(synthetic: Synthe
     pair = drop(np.random.default_rng(4), -0.001 * omega + 1j * omega, duration=120.0, rate=20.0, noise=0.002)
     assert len(identify(build_record(pair))) == 2
     assert len(identify(build_record(pair), method="classical")) == 1
+
+
+def test_plan_of_the_documentation_is_valid(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "identification.md").read_text(encoding="utf-8")
+    (block,) = (
+        part for part in re.findall(r"```toml\n(.*?)```", page, re.DOTALL) if "[[pole]]" in part and "[[band]]" in part
+    )
+    (tmp_path / "plan.toml").write_text(block, encoding="utf-8")
+    plan = read_identification_plan(tmp_path / "plan.toml")
+    assert (plan.highest_Hz, plan.band[0].order, plan.pole[0].action) == (7.0, 6, "start")
+    assert plan.exclude_channels == ("S3_z",)
+    assert plan.exclude[0].to_s == 92.0
