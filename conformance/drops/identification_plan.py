@@ -162,30 +162,38 @@ def _cut_decay(linear: LinearDecay, begin: int, end: int, half: float) -> Linear
     return replace(linear, samples=linear.samples[begin:end], first=first, start=first - half, end=last + half)
 
 
-def choose_poles(selection: PoleSelection, data: list[DataBlock], plan: IdentificationPlan) -> PoleSelection:
+def choose_poles(
+    selection: PoleSelection, data: list[DataBlock], plan: IdentificationPlan
+) -> tuple[PoleSelection, ComplexArray]:
     """Drop, keep and count poles as the plan says, and refine all; their number no longer changes.
+
+    Returns:
+        The poles, and the dropped ones among them, which the data need: their modes are not reported.
 
     Raises:
         InputError: There is no pole near one that is to be dropped, or a band has too few lines for its order.
     """
-    poles, reach = selection.poles, near_distance(data)
+    poles, reach, hidden = selection.poles, near_distance(data), list[complex]()
     for pole in plan.list_poles("drop"):
-        distance = np.abs(poles.imag - pole.imag)
-        if not poles.size or distance.min() > reach:
+        if not poles.size or np.abs(poles.imag - pole.imag).min() > reach:
             raise InputError(
                 f"plan, pole at {pole.imag / 2 / np.pi:.4g} Hz", "no pole is there to drop", "Leave the table out."
             )
-        rest = np.delete(poles, int(np.argmin(distance)))
+        nearest = int(np.argmin(np.abs(poles - pole)))
+        rest = np.delete(poles, nearest)
         refined = refine_all(rest, data).poles
         # Without the pole of a strong peak, another pole would move to it: such a pole stays, and is not reported.
-        poles = rest if np.all(np.abs(refined.imag - np.sort(rest.imag)) < reach) else poles
+        if np.all(np.abs(refined.imag - np.sort(rest.imag)) < reach):
+            poles = rest
+        else:
+            hidden.append(poles[nearest])
     for pole in plan.list_poles("keep"):
         if not poles.size or np.abs(poles.imag - pole.imag).min() > reach:
             poles = np.append(poles, pole)
     white = whiten(data, selection.noise)
     for band in plan.band:
         poles = _fit_order(poles, white, band)
-    return refine_all(poles, data)
+    return refine_all(poles, data), np.array(hidden, dtype=np.complex128)
 
 
 def near_distance(data: list[DataBlock]) -> float:
@@ -236,14 +244,13 @@ def _find_strongest(poles: ComplexArray, white: list[DataBlock], edges: tuple[fl
     raise InputError(where, "too few spectral lines for its order", "Lower the order, or widen the band.")
 
 
-def select_reported(modes: tuple[Mode, ...], plan: IdentificationPlan, near: float) -> tuple[Mode, ...]:
-    """Modes inside a band of the plan, by default all, without those near a dropped pole [rad/s]."""
-    dropped = [pole.frequency_Hz for pole in plan.pole if pole.action == "drop"]
-    inside = (
-        mode
-        for mode in modes
-        if not plan.band or any(band.from_Hz <= mode.frequency_Hz < band.to_Hz for band in plan.band)
-    )
+def select_reported(modes: tuple[Mode, ...], plan: IdentificationPlan, hidden: ComplexArray) -> tuple[Mode, ...]:
+    """Modes inside a band of the plan, by default all, without the nearest one to each hidden pole [1/s]."""
+    omega = np.array([2 * np.pi * mode.frequency_Hz for mode in modes])
+    excluded = {int(np.argmin(np.abs(omega - abs(pole)))) for pole in hidden if omega.size}
     return tuple(
-        mode for mode in inside if all(abs(mode.frequency_Hz - frequency) > near / (2 * np.pi) for frequency in dropped)
+        mode
+        for number, mode in enumerate(modes)
+        if number not in excluded
+        and (not plan.band or any(band.from_Hz <= mode.frequency_Hz < band.to_Hz for band in plan.band))
     )

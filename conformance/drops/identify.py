@@ -16,7 +16,6 @@ from pantocheck.conformance.drops.identification_plan import (
     choose_poles,
     exclude_channels,
     exclude_stretches,
-    near_distance,
     refine_all,
     select_reported,
 )
@@ -150,14 +149,15 @@ def identify_decays(
         selection, search = _use_poles(start, data)
     else:
         selection, search = _search_poles(decays, samples, data, band, plan)
+    hidden = np.zeros(0, dtype=np.complex128)
     if plan.changes_poles:
-        selection = choose_poles(selection, data, plan)
+        selection, hidden = choose_poles(selection, data, plan)
         search = replace(search, steps=(*search.steps, ("chosen by the plan", selection.poles)))
     progress(f"{name}: uncertainty")
     # A classical pole stays where its peak puts it; the residual then shows what the method leaves.
     last_steps = 0 if is_classical else LAST_STEPS
     fit = fit_line(decays, places, data, selection.poles, selection.noise, band, last_steps)
-    modes = select_reported(build_modes(fit, len(spans) or None), plan, near_distance(data))
+    modes = select_reported(build_modes(fit, len(spans) or None), plan, hidden)
     return Identification(fit, modes, _list_warnings(fit), search)
 
 

@@ -122,6 +122,8 @@ def test_classical_poles_are_right_alone_and_merge_close_modes(synthetic: Synthe
     pair = drop(np.random.default_rng(4), -0.001 * omega + 1j * omega, duration=120.0, rate=20.0, noise=0.002)
     assert len(identify(build_record(pair))) == 2
     assert len(identify(build_record(pair), method="classical")) == 1
+    (left,) = identify(build_record(pair), pole=[{"frequency_Hz": 0.915, "action": "drop"}])
+    assert left.frequency_Hz == pytest.approx(0.9, abs=1e-3)
 
 
 def test_plan_of_the_documentation_is_valid(tmp_path: Path) -> None:
