@@ -209,10 +209,10 @@ def check_statics(dossier: Dossier) -> StepResult:
         except InputError as error:
             return StepResult("static_check", "error", " ".join(str(error).split()), statics=tuple(statics))
         stated = {"item": item, "trust": "own", "source": source_text(own_source(entry.tolerance.source))}
-        largest = {values.name: max(map(abs, values.measured), default=None) for values in statics[-1].values}
+        sizes = {values.name: max(map(abs, values.measured), default=None) for values in statics[-1].values}
+        largest: dict[str, float | None] = {quantity: sizes.get(kind) for quantity, kind in CRITERIA.items()}
         criteria += [
-            grade_again(row, stated, dossier.file.trust, largest.get(CRITERIA[row.quantity]))
-            for row in statics[-1].criteria
+            grade_again(row, stated, dossier.file.trust, largest[row.quantity]) for row in statics[-1].criteria
         ]
         criteria += _skip_ungraded(entry.tolerance, item)
     notes = ("A table of static values is unconfirmed: it has no second channel that could confirm it.",)

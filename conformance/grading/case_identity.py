@@ -13,7 +13,7 @@ from pantocheck.conformance.core.trust import LEVELS
 from pantocheck.conformance.quantities.limit_text import format_bounds, name_value
 from pantocheck.conformance.results.results_format import LibraryIdentity
 
-_FINDING_TEXTS = {"section", "sentence", "printed", "tolerance", "sensitivity"}
+_FINDING_TEXTS = {"section", "statement", "sentence", "printed", "tolerance", "sensitivity"}
 _REMARKS: dict[str, bool | set[str]] = {"note": True, "case": True, "finding": _FINDING_TEXTS}
 """Texts of a limit, which do not change its grade."""
 
