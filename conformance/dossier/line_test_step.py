@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.cases.profile_file import Profile, load_profile, own_rules
+from pantocheck.conformance.comparison.force_likeness import compare_likeness
 from pantocheck.conformance.comparison.measured_run import compare_measured_run
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
@@ -76,7 +77,7 @@ class LineTests:
         if not self.dossier.file.pair:
             return StepResult("line_test", "not done", "the dossier names no pair of runs (table pair)")
         finished: list[tuple[CaseResult, Evidence | None]] = []
-        used: set[tuple[str, str]] = set()
+        used: list[tuple[RunSide, RunSide]] = []
         try:
             for pair in self.dossier.file.pair:
                 finished.append(self._compare(pair, used))
@@ -87,17 +88,17 @@ class LineTests:
             raise StepInterrupted(_collect(finished, reason), interruption_exit_code(interruption)) from None
         return _collect(finished, None)
 
-    def _compare(self, pair: PairTable, used: set[tuple[str, str]]) -> tuple[CaseResult, Evidence | None]:
+    def _compare(self, pair: PairTable, used: list[tuple[RunSide, RunSide]]) -> tuple[CaseResult, Evidence | None]:
         """Result of a pair, and the conditions that it verifies if it passes."""
         profile = build_line_test_profile(self.dossier.file.line_test)
         try:
             simulated, measured = self._simulate(pair, profile), read_run(pair.measured, self.dossier, profile)
         except InputError as error:
             return self._refuse(pair, "error", " ".join(str(error).split())), None
-        digests = (_identify(simulated), _identify(measured))
-        if (copied := self._find_dependence(simulated, measured)) is not None or digests in used:
+        repeated = any(_repeats(simulated, one) and _repeats(measured, other) for one, other in used)
+        if (copied := self._find_dependence(simulated, measured)) is not None or repeated:
             return self._refuse(pair, "error", copied or "both runs are those of another pair"), None
-        used.add(digests)
+        used.append((simulated, measured))
         if mismatches := list(list_mismatches(simulated, measured, profile)):
             return self._refuse(pair, "skip", f"not compared: {'; '.join(mismatches)}"), None
         return self._grade(pair, simulated, measured, profile), self._describe(pair, simulated)
@@ -134,6 +135,7 @@ class LineTests:
                 "verdict": judge_case([judge_criteria(criteria)], facts),
                 "criteria": criteria,
                 "record": facts,
+                "notes": [*case.notes, _describe_likeness(simulated, measured)],
                 "comparison": compare_measured_run(simulated.record, measured.record, simulated.supports),
             }
         )
@@ -205,9 +207,23 @@ class LineTests:
         )
 
 
+def _repeats(side: RunSide, other: RunSide) -> bool:
+    """Whether a run is another one, in any format of file, or that with small changes."""
+    likeness = compare_likeness(side.record, other.record)
+    return _identify(side) == _identify(other) or (likeness is not None and likeness.is_copy)
+
+
 def _identify(side: RunSide) -> str:
     """Digest of the samples, in any format of file; of a summary, that of the file."""
     return side.record.force_digest or side.record.record_digest
+
+
+def _describe_likeness(simulated: RunSide, measured: RunSide) -> str:
+    """Note on the independence of both runs."""
+    likeness = compare_likeness(simulated.record, measured.record)
+    if likeness is None:
+        return "Whether the measured run is a copy was not compared: no force of both runs is known up to 50 Hz."
+    return f"Of simulated and measured run, {likeness.describe()}."
 
 
 def _name_result(pair: PairTable) -> str:

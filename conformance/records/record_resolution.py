@@ -34,7 +34,7 @@ CANDIDATES, ROUNDED_SHARE = 5, 0.8
 CUBIC, STRAIGHT = (9 / 16, -1 / 16), (1 / 2, 0.0)
 """Weights of the two nearer and of the two farther neighbours at equal distances, for values halfway between them."""
 
-EXTREMES = frozenset(quantity.name for quantity in PANTOGRAPH_QUANTITIES if quantity.extreme) | frozenset(
+SINGLE_EXTREMES = frozenset(quantity.name for quantity in PANTOGRAPH_QUANTITIES if quantity.extreme) | frozenset(
     quantity.name for quantity in LINE_QUANTITIES
 )
 """Quantities that are the value of one sample."""
@@ -85,7 +85,7 @@ def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> C
     moved = [signals.evaluate_section(section) for section in sections]
     values, groups = signals.evaluation.values, [thinned, moved, later]
     extremes = {
-        owner: {name: value for name, value in quantities.items() if name in EXTREMES}
+        owner: {name: value for name, value in quantities.items() if name in SINGLE_EXTREMES}
         for owner, quantities in values.items()
     }
     widths, wider = _find_changes(values, groups), _find_changes(extremes, [*groups, straight])

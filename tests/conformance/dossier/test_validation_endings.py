@@ -1,10 +1,11 @@
 """Interrupted validation, steps for information, and systems whose runs are records without a case."""
 
 import shutil
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 import pytest
 
 from helpers.example_dossier import EXAMPLE, CachedSimulator, copy_example, list_verdicts, validate_example
@@ -116,3 +117,19 @@ def test_same_samples_in_another_file_are_refused(system: CachedSimulator, tmp_p
     results = Validation(read_dossier(dossier), ForeignSystem(), tmp_path / "out").run()
     assert results.cases[0].verdict == results.verdict == "error"
     assert "copy" in results.cases[0].reason
+
+
+def test_measurement_that_is_the_simulation_with_noise_is_refused(system: CachedSimulator, tmp_path: Path) -> None:
+    """Noise of 0.5 N changes every statistic, and leaves the correlation from 20 to 50 Hz above 0.999."""
+    dossier = tmp_path / "in" / "dossier.toml"
+    validate_record(tmp_path, system, accepted=True)
+    (case,) = select_cases([str(EXAMPLE / "run-160.toml")])
+    record = system.run(case).record
+    assert record is not None
+    force = record.force + 0.5 * np.random.default_rng(1).standard_normal(record.force.shape)
+    noisy = tmp_path / "in" / "measured" / "noisy.h5"
+    write_record(noisy, replace(record, force=force), system={"name": "Measuring train", "version": "1"})
+    edit_toml(dossier, {"pair.0.measured.record": "measured/noisy.toml"})
+    results = Validation(read_dossier(dossier), ForeignSystem(), tmp_path / "out").run()
+    assert results.verdict == "error"
+    assert "with small changes" in results.cases[0].reason
