@@ -160,6 +160,7 @@ def test_negative_minimum_of_the_filtered_force(case_250: Case, wave: type[Wave]
     (text,) = [text for text in result.warnings if text.startswith("contact loss: ")]
     values = result.quantities["1"]
     assert values["min_force_N"] < 0 < values["contact_loss_pct"]
+    assert max(loss.duration_s for loss in result.contact_losses["1"]) == pytest.approx(0.1, abs=0.002)
     assert f"pantograph 1 is {values['min_force_N']:.3g} N, lost for {values['contact_loss_pct']:.3g} %" in text
     sound = grade_case(case_250, Delivered(wave().record(case_250)), "secondary")
     assert not [text for text in sound.warnings if text.startswith("contact loss: ")]

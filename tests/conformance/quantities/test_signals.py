@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pantocheck.conformance.quantities.filters import Filter
+from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.unavailable import (
@@ -109,6 +110,8 @@ def test_supports_and_uplift_of_the_section_or_the_reason_without_them() -> None
     assert_allclose(line().supports, [240.0, 300.0, 360.0])
     assert_allclose(line().uplift.max(axis=1), [0.02, 0.03, 0.04])
     line().check_supports()
+    (uplift,) = LINE_QUANTITIES  # in millimetres
+    assert uplift.support_values(line()).max() == uplift.compute(line()) == pytest.approx(40.0)
     supports = np.array([199.4, 199.5, 200.0, 300.0, 400.5, 400.6])
     assert supports_inside(supports, (200.0, 400.0)).tolist() == [False, True, True, True, True, False]
     with pytest.raises(SupportsMissing, match="does not state span_m"):

@@ -13,13 +13,15 @@ from pantocheck.conformance.quantities.statistics import (
     force_histogram,
     statistical_extremes,
 )
-from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, NoMeanForce
 
 
 def test_extremes_variation_and_contact_loss_by_hand() -> None:
     """Published figures of one code at 250 km/h: 118.2 N and 27.6 N give 35.4 and 201.0 (printed 35.5 and 201.1)."""
     assert_allclose(statistical_extremes(118.2, 27.6), (35.4, 201.0), rtol=1e-12)
     assert coefficient_of_variation(120.0, 36.0) == 0.3
+    with pytest.raises(NoMeanForce, match="is 0 N"):
+        coefficient_of_variation(0.0, 36.0)
     force = np.array([10.0, 0.0, 0.0, 5.0, 20.0, 0.0, 1e-6, 3.0])
     assert contact_loss(force, None, WHOLE_RECORD) == 37.5
     with pytest.raises(AlreadyFiltered, match="unfiltered"):
