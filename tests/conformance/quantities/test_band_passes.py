@@ -12,7 +12,7 @@ from scipy.signal import butter, sosfiltfilt
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.force_quantities import BAND_PASS_CHANGE
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
-from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
+from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 RATE = 500.0
 TIME = np.arange(8000) / RATE
@@ -84,6 +84,9 @@ def test_band_pass_needs_the_unfiltered_force_and_room_to_settle() -> None:
     assert read(force, TWICE, applied=50.0).band(5, 20) >= 0
     with pytest.raises(AlreadyFiltered, match="a band-pass up to 20 Hz needs the unfiltered force"):
         read(force, TWICE, applied=20.0).band(5, 20)
+    short = PantographSignals(TIME, ForceChannel(force, RATE, TWICE, None), (4.0, 4.1))
+    with pytest.raises(BandNotObservable, match="s; a band of 15 Hz needs"):
+        short.band(5, 20)
     # Two periods of 5 Hz, the lowest edge, at 20 m/s are 8 m; the record begins 4 m before the section.
     assert edge_warnings({1: read(force, TWICE)}, 20.0) != []
     assert edge_warnings({1: read(force, Filter())}, 20.0) == []

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from helpers.example_results import example
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
-from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.results.results_format import CaseConformity, Results
 
 
 @pytest.mark.parametrize("key", ["limits_digest", "stated_limits_digest", "criteria_verdict", "library", "verdict"])
@@ -24,7 +24,8 @@ def test_case_without_a_fact_of_its_run_is_refused(key: str) -> None:
     """An unknown fact is null. An assessed record without a usable sample has 0 s; a simulation has not."""
     results: dict[str, Any] = Results.model_validate(example()).to_dict()
     results["cases"][0]["run"] |= {"simulated_s": 0.0, "wall_s": None}
-    assert Results.model_validate(results).cases[0].run.simulated_s == 0.0
+    assert Results.model_validate(results | {"conformity": 0.0}).cases[0].run.simulated_s == 0.0
+    assert CaseConformity(probability=0.0, starts=0, passing_starts=0).starts == 0
     with pytest.raises(ValidationError, match="greater than 0"):
         RunTable.model_validate({"simulated_s": 0.0})
     del results["cases"][0]["run"][key]
