@@ -150,7 +150,7 @@ def test_skewed_influences_widen_the_interval_up_to_a_fifth(power: float, wideni
     assert found["mean_force_N"].half_width == pytest.approx(half_width_of(influence), rel=1e-9)
 
 
-@pytest.mark.parametrize("shape", [0.0, 0.2, -0.1])
+@pytest.mark.parametrize("shape", [0.0, 0.2, 0.5, -0.1])
 def test_scale_of_an_extreme_is_that_of_its_distribution(shape: float) -> None:
     """Largest of 50 variates: scale 3 x 50^-shape. Plotting positions replace random numbers; they leave 2 %."""
     levels = (np.arange(200_000) + 0.5) / 200_000
