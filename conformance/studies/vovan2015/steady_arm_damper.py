@@ -26,6 +26,9 @@ from pantocheck.conformance.studies.vovan2015.study_report import build_provenan
 END_SHARE = 0.1
 """Share of the largest gain at which the effect of the dampers ends [-]."""
 
+OTHER_SHARES = (0.05, 0.1, 0.2, 0.3)
+"""Shares of the table that shows how the end depends on its definition [-]."""
+
 FrequencyBands = tuple[tuple[float, float], ...]
 
 
@@ -40,7 +43,10 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
     }
     modes = {name: drops.certain_modes for name, drops in identified.items()}
     without, damped = (_band_medians(certain, study.bands_Hz) for certain in modes.values())
-    findings = {LINE: damping_gains(without, damped, [(low + high) / 2 for low, high in study.bands_Hz])}
+    centres = [(low + high) / 2 for low, high in study.bands_Hz]
+    findings = {LINE: damping_gains(without, damped, centres)}
+    gains = findings[LINE]["damping_gain_pct"]
+    assert isinstance(gains, tuple)
     warnings = [text for drops in identified.values() for text in drops.identification.warnings]
     return Delivered(
         run=build_drop_run_table(case, sum(len(drops.drops) for drops in identified.values()), begin),
@@ -48,7 +54,11 @@ def run_steady_arm_damper(case: Case, study: SteadyArmDamper) -> Delivered:
         study=StudyResult(
             findings=findings,
             charts=(_draw_damping(modes, study.bands_Hz[-1][0]),),
-            tables=(_band_table(study.bands_Hz, without, damped), build_provenance_table(case)),
+            tables=(
+                _band_table(study.bands_Hz, without, damped),
+                *([_tabulate_ends(gains, centres)] if gains else []),
+                build_provenance_table(case),
+            ),
         ),
     )
 
@@ -76,11 +86,32 @@ def damping_gains(without: Sequence[float], damped: Sequence[float], centres: Se
     correlation = rank_correlation(np.array(known[1:]))
     if correlation is not None:
         findings["damping_gain_correlation"] = correlation
-    largest = int(np.argmax(known))
-    end = find_crossing(np.array(centres[largest:]), -np.array(known[largest:]), -END_SHARE * known[largest])
-    if end is not None:
+    if (end := locate_end(known, centres, END_SHARE)) is not None:
         findings["damping_gain_end_Hz"] = end
     return findings
+
+
+def locate_end(gains: Sequence[float], centres: Sequence[float], share: float) -> float | None:
+    """Frequency [Hz] behind the largest gain where a share of it remains; None if the gains stay above.
+
+    Args:
+        gains: Gain of every band.
+        centres: Frequency of every band [Hz].
+        share: Remaining share [-].
+    """
+    largest, size = int(np.argmax(gains)), len(gains)
+    return find_crossing(np.array(centres[largest:size]), -np.array(gains[largest:]), -share * gains[largest])
+
+
+def _tabulate_ends(gains: Sequence[float], centres: Sequence[float]) -> TextTable:
+    """End of the effect at other levels of its definition."""
+    ends = {share: locate_end(gains, centres, share) for share in OTHER_SHARES}
+    rows = [[f"{100 * share:g} %", "-" if end is None else f"{end:.3g} Hz"] for share, end in ends.items()]
+    return TextTable(
+        caption="End of the effect by the level of its definition",
+        columns=["Share of the largest gain", "End"],
+        rows=rows,
+    )
 
 
 def _band_medians(modes: Sequence[Mode], bands: FrequencyBands) -> list[float]:

@@ -14,7 +14,7 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.quantities.evaluation import LINE
 from pantocheck.conformance.results.identified_modes import Mode
-from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains, run_steady_arm_damper
+from pantocheck.conformance.studies.vovan2015.steady_arm_damper import damping_gains, locate_end, run_steady_arm_damper
 from pantocheck.model import Catenary, Kind, Rayleigh, discretise
 from pantocheck.model.modal.modes import compute_modes_below, damping_ratios
 
@@ -62,6 +62,8 @@ def test_gains_by_hand_fade_from_the_second_to_the_last_band() -> None:
     assert_allclose(findings["damping_gain_step"], 2 / 3)
     assert_allclose(findings["damping_gain_correlation"], -1)
     assert_allclose(findings["damping_gain_end_Hz"], 3 + 34 / 38)
+    assert_allclose(locate_end([20, 60, 40, 2], [1.0, 2.0, 3.0, 4.0], 0.3), 3 + 22 / 38)  # 18 % remain
+    assert locate_end([20, 60, 40, 2], [1.0, 2.0, 3.0, 4.0], 0.03) is None
     assert "damping_gain_end_Hz" not in damping_gains([0.002] * 4, [0.0024, 0.0032, 0.0028, 0.0022], [1.0, 2, 3, 4])
     findings = damping_gains([0.002, np.nan, 0.003, 0.003], [0.003, 0.006, 0.003, 0.003], [1.0, 2, 3, 4])
     assert_allclose(findings.pop("damping_gain_pct"), [50])
