@@ -14,7 +14,7 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 68_570,
+    ("model", "conformance"): 69_700,
     ("templates",): 1_550,
     ("verification",): 14_900,
     ("tests",): 49_050,

@@ -9,6 +9,7 @@ from pantocheck.conformance.comparison.measured_run import compare_measured_run,
 from pantocheck.conformance.core.criterion import judge_criteria
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, find_equal_pantograph, join_digests
@@ -25,6 +26,7 @@ from pantocheck.conformance.grading.results_building import (
 )
 from pantocheck.conformance.grading.rule_grading import RuleGrading
 from pantocheck.conformance.grading.validity_warnings import warn_of_unvalidated_band
+from pantocheck.conformance.records.evaluated_signals import pack_signals
 from pantocheck.conformance.records.traces import build_pantograph_traces
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts, SystemIdentity
@@ -116,9 +118,18 @@ def grade_record(
             subject.prepared.pantographs, getattr(subject.header, "support_position_m", None) or ()
         ),
         uplift=[],
+        signals=_pack(subject),
         comparison=None if measured is None else compare_measured_run(subject, measured, list_run_supports(subject)),
         places={} if subject.prepared is None else find_force_places(subject.prepared.pantographs),
     )
+
+
+def _pack(subject: AssessedRecord) -> SignalSamples | None:
+    """Signals of the quantities; None for a summary, and for a record without quantities."""
+    prepared = subject.prepared
+    if prepared is None or not any(subject.values.values.get(number) for number in prepared.pantographs):
+        return None
+    return pack_signals(prepared.pantographs, prepared.line, None, excluded=prepared.excluded)
 
 
 def check_pair(subject: AssessedRecord, measured: AssessedRecord | None, profile: Profile) -> None:

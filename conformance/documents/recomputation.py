@@ -17,6 +17,7 @@ from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
+from pantocheck.conformance.documents.signal_check import check_signals
 from pantocheck.conformance.documents.state_check import check_state
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
@@ -87,14 +88,14 @@ def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -
         yield f"{case.id}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
     if verification is not None:
         yield from _check_verification(case, verification, record)
-    yield from (f"{case.id}: {text}" for text in (*check_uplift(case), *_check_line(case)))
+    yield from (f"{case.id}: {text}" for text in (*check_uplift(case), *check_signals(case), *_check_line(case)))
     for key, reported in case.quantities.items():
         quantities = select_first(reported)
-        trace = case.traces.get(key)
+        trace, drawn = case.traces.get(key), case.traces.get(key) if case.signals is None else None
         # Statistics delivered as numbers are rounded, and printed tables are not always consistent.
         computed = trace is not None or case.run.rate_Hz is not None
         statistics = (*_check_order(quantities), *(_check_statistics(quantities) if computed else ()))
-        for text in (*statistics, *(check_trace(quantities, trace) if trace else ())):
+        for text in (*statistics, *(check_trace(quantities, drawn) if drawn else ())):
             yield f"{case.id}, pantograph {key}: {text}"
 
 

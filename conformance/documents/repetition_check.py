@@ -14,6 +14,7 @@ from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.packed_samples import list_numbers
 from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.core.table_sidecar import record_digest
 from pantocheck.conformance.documents.authenticity_check import (
@@ -282,7 +283,8 @@ def _rerun(
 def _select_parts(result: CaseResult, keys: Sequence[str]) -> NumberTree:
     """Parts of a result that a new run repeats; the computing time is left out."""
     untimed = result.model_copy(update={"run": result.run.model_copy(update={"wall_s": None})})
-    return {key: untimed.model_dump(mode="json", include={key}).get(key) for key in keys}
+    parts: dict[str, NumberTree] = {key: untimed.model_dump(mode="json", include={key}).get(key) for key in keys}
+    return parts if result.signals is None else {**parts, "signals": list_numbers(result.signals)}
 
 
 def _judge(results: Results, reruns: dict[str, NumberComparison], tolerance: float) -> Iterator[DocumentCheck]:

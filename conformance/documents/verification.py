@@ -21,6 +21,7 @@ from pantocheck.conformance.documents.document_reading import (
 from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.documents.signal_check import find_signal_gaps
 from pantocheck.conformance.documents.signature_check import is_signed_pdf
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
@@ -182,6 +183,7 @@ def _find_case_gaps(case: CaseResult) -> Iterator[str]:
     yield from _find_start_gap(case)
     if case.quantities:
         yield from _find_uncertainty_gaps(case)
+    yield from find_signal_gaps(case)
     if case.run.rate_Hz is not None and case.run.evaluated_m is not None:
         yield from _find_trace_gaps(case)
 

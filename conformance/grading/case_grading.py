@@ -8,6 +8,7 @@ from pantocheck.conformance.cases.study_tables import DampingSensitivity
 from pantocheck.conformance.core.criterion import judge_criteria
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
 from pantocheck.conformance.core.figure_data import ExtremePlace
+from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.grading.case_conformity import count_passing_starts, find_case_conformity
@@ -21,6 +22,7 @@ from pantocheck.conformance.grading.input_sensitivity import describe_studies, l
 from pantocheck.conformance.grading.reading_grades import evaluate_readings, mark_readings
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.grading.validity_warnings import extended_band_warnings, validity_warnings
+from pantocheck.conformance.records.evaluated_signals import pack_signals
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.traces import build_pantograph_traces, build_uplift_traces
 from pantocheck.conformance.results.results_format import (
@@ -106,12 +108,20 @@ def grade_evaluation(evaluation: CaseEvaluation, lowest_trust: Trust, rule: Deci
         uncertainty_components=list_components(values.uncertainty),
         uncertainty_basis=values.uncertainty.basis,
         traces={} if signals is None else build_pantograph_traces(signals.pantographs, supports),
-        uplift=[] if signals is None else build_uplift_traces(signals),
+        uplift=[] if signals is None else build_uplift_traces(signals.line, signals.record.time),
+        signals=None if signals is None else _pack(case, signals),
         contact_losses=None if signals is None else build_contact_losses(signals.pantographs),
         places={} if signals is None else _find_places(signals),
         charts=list(delivered.study.charts),
         tables=list(delivered.study.tables),
     )
+
+
+def _pack(case: Case, signals: RecordSignals) -> SignalSamples | None:
+    """Signals of the evaluation and of its further readings."""
+    others = map(case.with_reading, case.file.reading)
+    readings = [(other.file.filter, other.analysis_section) for other in others]
+    return pack_signals(signals.pantographs, signals.line, signals.record.time, readings, signals.overlaps)
 
 
 def _find_places(signals: RecordSignals) -> dict[str, dict[str, ExtremePlace]]:

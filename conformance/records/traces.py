@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Histogram, Spectrum, Traces, UpliftTrace
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
-from pantocheck.conformance.quantities.line_signals import supports_inside
+from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.statistics import force_histogram
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
-from pantocheck.conformance.records.record_signals import RecordSignals
 
 MAX_POINTS = 1500
 """Approximate number of points in a curve."""
@@ -41,16 +40,21 @@ def build_pantograph_traces(
     return traces
 
 
-def build_uplift_traces(signals: RecordSignals) -> list[UpliftTrace]:
-    """Uplift at every support of the analysis section, over the whole record where it is known."""
+def build_uplift_traces(line: LineSignals, time: RealArray) -> list[UpliftTrace]:
+    """Uplift at every support of the analysis section, over the whole record where it is known.
+
+    Args:
+        line: Uplift at the supports.
+        time: Times of the record, (n,) [s].
+    """
     try:
-        supports, uplift = signals.line.supports, signals.line.uplift
+        supports, uplift = line.supports, line.uplift
     except QuantityUnavailable:
         return []
     return [
         UpliftTrace(
             support_m=float(x),
-            time_s=thin_series(signals.record.time[known]),
+            time_s=thin_series(time[known]),
             uplift_mm=thin_series(1e3 * trace[known]),
         )
         for x, trace, known in zip(supports, uplift, np.isfinite(uplift), strict=True)

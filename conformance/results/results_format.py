@@ -13,6 +13,7 @@ from pantocheck.conformance.core.criterion import CaseVerification, ComponentNam
 from pantocheck.conformance.core.decision import DecisionText
 from pantocheck.conformance.core.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
 from pantocheck.conformance.core.findings import FindingCounts
+from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
 from pantocheck.conformance.core.sourced_table import (
     NonNegative,
@@ -230,6 +231,8 @@ class CaseResult(ResultsPart):
     run: RunFacts
     traces: dict[Owner, Traces]
     uplift: list[UpliftTrace]
+    signals: Annotated[SignalSamples | None, Field(exclude_if=is_absent)] = None
+    """Evaluated signals at their full rate; missing: no record with samples, or more than can be embedded."""
     charts: list[Chart] = []
     tables: list[TextTable] = []
     events: Annotated[list[EventFacts] | None, Field(exclude_if=is_absent)] = None

@@ -42,14 +42,16 @@ def test_filtered_force_or_uncovered_section_has_less_to_draw() -> None:
     traces = build_pantograph_traces(signals(filter_applied_Hz=20.0).pantographs, [])["1"]
     assert max(traces.spectrum.frequency_Hz) <= 20
     assert build_pantograph_traces(signals(evaluated=(0.0, 9000.0)).pantographs, []) == {}
-    assert build_uplift_traces(signals()) == []
+    item = signals()
+    assert build_uplift_traces(item.line, item.record.time) == []
 
 
 def test_uplift_is_drawn_in_millimetres_at_each_support() -> None:
     """Uplifts of 40 mm and 50 mm at the supports of the section, 90 mm outside it."""
     supports, time = np.array([60.0, 120.0, 300.0]), np.arange(20_000) / RATE
     bumps = np.array([[0.04], [0.05], [0.09]]) * np.exp(-(((SPEED * time - supports[:, None]) / 5) ** 2))
-    traces = build_uplift_traces(signals(evaluated=(50.0, 150.0), support_position=supports, support_uplift=bumps))
+    item = signals(evaluated=(50.0, 150.0), support_position=supports, support_uplift=bumps)
+    traces = build_uplift_traces(item.line, item.record.time)
     assert [trace.support_m for trace in traces] == [60.0, 120.0]
     # The bump is sampled every 0.25 m and drawn every fourteenth time, so that the peak is met within 1.75 m: 12 %.
     assert [max(trace.uplift_mm) for trace in traces] == pytest.approx([40.0, 50.0], rel=0.12)
