@@ -3,6 +3,7 @@
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.pages.document import Facts, Section
 from pantocheck.conformance.pages.scope_page import list_sources
+from pantocheck.conformance.pages.verifier_file import describe_verifier
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.results_format import CaseResult, Results, RunFacts
@@ -37,6 +38,7 @@ def build_document_section(results: Results, digest: str, date: int) -> Section:
         *list_sources(results),
         ("Signature", SIGNATURE),
         ("Verification", VERIFICATION),
+        ("Verifier", describe_verifier(results.suite)),
     )
     return Section("Document", (Facts(tuple(pair for pair in pairs if pair[1])),), anchor="document")
 

@@ -100,13 +100,13 @@ class PageCode:
 @cache
 def read_plain_code() -> PageCode:
     """Styles and scripts of a page without results."""
-    return PageCode((_read(PAGE_STYLE),), (_join_parts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS)),))
+    return PageCode((_read(PAGE_STYLE),), (join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS))),))
 
 
 @cache
 def read_results_code() -> PageCode:
     """Styles and scripts of a page with results, whose curves the library for plots draws."""
-    scripts = (_read(PLOT_LIBRARY), _join_parts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)))
+    scripts = (_read(PLOT_LIBRARY), join_scripts(name_scripts((*TABLE_SCRIPTS, *CURVE_SCRIPTS))))
     return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts, f"uPlot: {_read(PLOT_LICENCE)}")
 
 
@@ -114,9 +114,14 @@ def _read(name: str) -> str:
     return (TEMPLATES / name).read_text("utf-8")
 
 
-def _join_parts(names: tuple[str, ...]) -> str:
-    """Parts of a script in one scope, so that their names do not reach the page."""
-    parts = (_read(f"scripts/{name}.js") for name in names)
+def name_scripts(parts: tuple[str, ...]) -> tuple[str, ...]:
+    """Files of the parts of a page script."""
+    return tuple(f"scripts/{part}.js" for part in parts)
+
+
+def join_scripts(names: tuple[str, ...]) -> str:
+    """Files of templates as one script in one scope, so that their names do not reach the page."""
+    parts = map(_read, names)
     return "\n".join(("(() => {", '"use strict";', *parts, "})();"))
 
 

@@ -11,12 +11,16 @@ from typing import Any
 from pantocheck.conformance.cases.library import list_library, load_case
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.packed_samples import PackedSamples, SignalSamples, pack_samples
 from pantocheck.conformance.core.trust import decides_verdict
 from pantocheck.conformance.core.verdicts import judge, margin
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
 from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.quantities.filters import Filter
+from pantocheck.conformance.records.evaluated_signals import unpack_signals
+from pantocheck.conformance.records.traces import build_pantograph_traces
 from pantocheck.conformance.results.case_facts_format import ReadingFacts, RecordFacts
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.scope import build_scope
@@ -233,8 +237,20 @@ def lower_uplift(results: Tree, _: random.Random) -> None:
     regrade(results)
 
 
+def scale_signals(case: Tree, factor: float) -> None:
+    """Scale the force of the embedded signals, and draw its curves again."""
+    for part in case["signals"]["pantographs"].values():
+        force = PackedSamples.model_validate(part["force_N"]).unpack()
+        part["force_N"] = pack_samples(factor * force).model_dump()
+    samples = SignalSamples.model_validate(case["signals"])
+    signals = unpack_signals(samples, Filter.model_validate(case["run"]["filter"]))
+    supports = [support for trace in case["traces"].values() for support in trace["supports_m"]]
+    traces = build_pantograph_traces(signals.pantographs, sorted(set(supports)))
+    case["traces"] = {key: trace.model_dump(mode="json") for key, trace in traces.items()}
+
+
 def invent(results: Tree, chance: random.Random) -> None:
-    """Scale every force of quantities and curves, so that all numbers stay consistent."""
+    """Scale every force of quantities, signals and curves, so that all numbers stay consistent."""
     factor = 1 - 1e-3 * chance.random()
     case = case_of(results)
     names = [
@@ -247,11 +263,7 @@ def invent(results: Tree, chance: random.Random) -> None:
         if row["quantity"] in names:
             row["value"] *= factor
             row["draws"] = [factor * draw for draw in row.get("draws", ())]
-    for trace in case["traces"].values():
-        for key in ("force_N", "force_20_N"):
-            trace[key] = [float(f"{factor * x:.6g}") for x in trace[key]]
-        trace["spectrum"]["amplitude_N"] = [float(f"{factor * x:.6g}") for x in trace["spectrum"]["amplitude_N"]]
-        trace.update(mean_N=trace["mean_N"] * factor, std_N=trace["std_N"] * factor)
+    scale_signals(case, factor)
     regrade(results)
     adopt_widths(case_of(results))
 
@@ -324,6 +336,7 @@ CHANGES: dict[str, Change] = {
     "remarks on close limits deleted": lambda r, _: [row.update(close=[]) for row in case_of(r)["criteria"]],
     "curves deleted": of_case(traces={}),
     "curves of the uplift deleted": of_case(uplift=[]),
+    "signals deleted": lambda r, _: case_of(r).pop("signals"),
     "curves flattened": flatten_curves,
     "20 Hz curve damped": damp_curves,
     "20 Hz curve deleted": lambda r, _: [t.update(force_20_N=None) for t in case_of(r)["traces"].values()],

@@ -14,9 +14,13 @@ from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
 from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
+from pantocheck.conformance.core.files import file_digest, write_atomically
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.documents.authenticity_check import CheckOutcome
 from pantocheck.conformance.documents.verification import Verification
+from pantocheck.conformance.grading.results_building import build_suite
+from pantocheck.conformance.pages.verifier_file import build_verifier
 
 HEADINGS: dict[CheckOutcome, str] = {
     "contradicted": "Contradictions",
@@ -29,8 +33,8 @@ HEADINGS: dict[CheckOutcome, str] = {
 
 def verify_command(
     document: Annotated[
-        Path, typer.Argument(metavar="FILE", help="certificate.pdf, certificate.html or results.json.")
-    ],
+        Path | None, typer.Argument(metavar="FILE", help="certificate.pdf, certificate.html or results.json.")
+    ] = None,
     trust_roots: Annotated[
         Path | None, typer.Option(help="PEM file of the authorities whose signatures are trusted.")
     ] = None,
@@ -47,6 +51,9 @@ def verify_command(
     any_verdict: Annotated[
         bool, typer.Option("--any-verdict", help="Exit code 0 for a document of any verdict.")
     ] = False,
+    write_verifier: Annotated[
+        Path | None, typer.Option(help="Write the verifier for a browser to this file; without FILE, do no more.")
+    ] = None,
 ) -> CommandOutput:
     """Verify a document: verdicts, pages, cases, signatures.
 
@@ -66,7 +73,17 @@ def verify_command(
     pantocheck verify report/certificate.pdf --trust-roots authority.pem
 
     pantocheck verify report/results.json --record run.csv
+
+    pantocheck verify --write-verifier verifier.html
     """
+    if write_verifier is not None:
+        write_atomically(write_verifier, build_verifier(build_suite().version))
+        if document is None:
+            digest = file_digest(write_verifier)
+            conclusion = escape_text(f"Verifier for a browser, {digest}: open it, and drop a certificate on it.")
+            return CommandOutput(conclusion, {"digest": digest}, files=[write_verifier])
+    if document is None:
+        raise InputError("argument FILE", "missing", "Name a certificate or a results.json.")
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
     verification = report.verification
     facts = {name: getattr(verification, name) for name in ("state", "verdict", "cases", "criteria")}

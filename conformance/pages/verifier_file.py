@@ -1,0 +1,33 @@
+"""Verifier for a browser: one HTML file that checks certificates without a network and without an installation."""
+
+from functools import cache
+from hashlib import sha256
+
+from pantocheck.conformance.core.results_part import Suite
+from pantocheck.conformance.core.texts import TEMPLATES
+from pantocheck.conformance.pages.html import PageCode, join_scripts
+
+VERIFIER_NAME = "pantocheck-verifier.html"
+
+FOLDER = TEMPLATES / "verifier"
+
+VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "documents", "show")
+"""Parts of its script, in the order of their use."""
+
+
+@cache
+def build_verifier(version: str) -> bytes:
+    """The verifier of a version of the suite; equal versions give equal bytes."""
+    script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
+    style = (FOLDER / "verifier.css").read_text("utf-8")
+    page = (FOLDER / "verifier.html").read_text("utf-8")
+    parts = {"policy": PageCode((style,), (script,)).policy, "version": version, "style": style, "script": script}
+    for name, text in parts.items():
+        page = page.replace(f"@{name}@", text)
+    return page.encode()
+
+
+def describe_verifier(suite: Suite) -> str:
+    """Line of page 1: the file that checks this document in a browser, and its digest."""
+    digest = sha256(build_verifier(suite.version)).hexdigest()
+    return f"{VERIFIER_NAME} in any browser, SHA-256 {digest} (pantocheck verify --write-verifier FILE)"

@@ -1,0 +1,128 @@
+// Documents of unknown origin: results.json, HTML page with a data block, PDF with an attachment.
+const latin = (bytes) => {
+  let text = "";
+  for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+  return text;
+};
+
+// Attachment of the first revision of a PDF, and the number of bytes behind this revision.
+async function readPdf(bytes) {
+  const text = latin(bytes), end = /startxref\s+\d+\s+%%EOF(\r\n|\n|\r)?/.exec(text);
+  const length = end ? end.index + end[0].length : text.length, original = text.slice(0, length);
+  const streams = [...original.matchAll(/\/Type\s*\/EmbeddedFile\b[^]*?stream\r?\n/g)];
+  const names = [...original.matchAll(/\/UF\s*\(results\.json\)/g)];
+  if (streams.length !== 1 || names.length !== 1) {
+    throw new Error(`the PDF holds ${streams.length || "no"} attachments that can be read; a certificate holds one results.json`);
+  }
+  const head = original.slice(original.lastIndexOf("obj", streams[0].index), streams[0].index + streams[0][0].length);
+  const size = /\/Length\s+(\d+)(?!\s+\d+\s+R)/.exec(head), from = streams[0].index + streams[0][0].length;
+  if (!size) throw new Error("the attachment of the PDF cannot be read");
+  const raw = bytes.slice(from, from + Number(size[1]));
+  const content = /FlateDecode/.test(head) ? await inflate(raw, 64 * 2 ** 20) : raw;
+  return { content, added: text.slice(length).trim() ? text.length - length : 0, signed: /\/ByteRange/.test(text.slice(length)) };
+}
+
+const BLOCK = /<script type="application\/json" id="pantocheck-results">([^<>]*)<\/script>/g;
+
+async function readDocument(bytes) {
+  const start = latin(bytes.subarray(0, 1024)), beginning = start.replace(/^\xef\xbb\xbf/, "").trimStart().toLowerCase();
+  const decode = (content) => new TextDecoder("utf-8", { fatal: true }).decode(content);
+  if (start.includes("%PDF-")) {
+    const { content, added, signed } = await readPdf(bytes);
+    return { kind: "PDF", text: decode(content), added, signed, digest: await sha256(content) };
+  }
+  if (beginning.startsWith("<!doctype") || beginning.startsWith("<html")) {
+    const page = decode(bytes), blocks = [...page.matchAll(BLOCK)];
+    if (blocks.length !== 1) throw new Error(`the page holds ${blocks.length || "no"} embedded results`);
+    const digest = await sha256(new TextEncoder().encode(writeAttachment(blocks[0][1])));
+    return { kind: "HTML", text: blocks[0][1], page, digest };
+  }
+  if (!beginning.startsWith("{")) throw new Error("the file is neither a PDF nor an HTML page nor JSON");
+  return { kind: "JSON", text: decode(bytes) };
+}
+
+// Numbers printed on an HTML page against the results: title, digest, and the tables of graded values.
+function checkPage(page, digest, results) {
+  const shown = new DOMParser().parseFromString(page, "text/html"), found = [];
+  const word = { pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED" };
+  for (const [place, text] of [["title", shown.title], ["heading", shown.querySelector("h1")?.textContent ?? ""]]) {
+    if (!new RegExp(`\\b${word[results.verdict]}\\b`).test(text)) {
+      found.push(`the ${place} does not print the verdict ${word[results.verdict]}: '${text}'`);
+    }
+  }
+  const facts = [...shown.querySelectorAll("dl div")].map((row) => [...row.children].map((cell) => cell.textContent.trim()));
+  const printed = facts.find(([label]) => label === "Digest of the results")?.[1];
+  if (digest !== null && printed !== digest) found.push(`the digest of the results is ${printed ?? "not printed"}; computed is ${digest}`);
+  let count = 0;
+  const number = (text) => /[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/i.exec(text.replace(/\u2009|\u00a0/g, ""))?.[0].replace("−", "-");
+  const near = (text, value) => {
+    const digits = number(text), places = /e/i.test(digits) ? 0 : (digits.split(".")[1] ?? "").length;
+    const step = /e/i.test(digits) ? Math.abs(Number(digits)) * 0.05 : 10 ** -places;
+    return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
+  };
+  results.cases.forEach((result, i) => {
+    const section = shown.getElementById(`case-${i + 1}`)?.closest("section"), rows = [...(section?.querySelectorAll("tr") ?? [])];
+    for (const line of rows) {
+      const name = line.querySelector("th code")?.textContent.replace(/\[\d+\]$/, ""), cells = {};
+      for (const cell of line.querySelectorAll("td[data-label]")) cells[cell.dataset.label] = cell.textContent.trim();
+      if (!name || cells.Value === undefined || !number(cells.Value)) continue;
+      const owner = cells.Pantograph ?? "", key = /^\d+$/.test(owner) ? owner : "0", item = /\[(\d+)\]$/.exec(line.querySelector("th code").textContent);
+      const known = Object.entries(result.quantities).filter(([k]) => owner === "" || k === key);
+      const values = known.map(([, part]) => part[name]).filter((value) => value !== undefined).flatMap((v) => item ? selectItem(v, Number(item[1])) : v);
+      if (!values.length) continue;
+      count += 1;
+      if (!values.some((value) => value !== null && near(cells.Value, value))) {
+        found.push(`${result.id}, ${name}: '${cells.Value}' is printed, ${values.map(exact).join(" or ")} follows from the results`);
+      }
+      const rowsOf = [...result.criteria, ...(result.verification?.criteria ?? [])].filter((r) => r.quantity === name && (owner === "" || String(r.pantograph) === key));
+      if (cells.Verdict && rowsOf.length && !rowsOf.some((r) => cells.Verdict.toUpperCase().includes(word[r.verdict]))) {
+        found.push(`${result.id}, ${name}: the verdict '${cells.Verdict}' is printed, ${word[rowsOf[0].verdict]} follows from the results`);
+      }
+    }
+  });
+  return { found, count };
+}
+
+// Report on a document: its checks by outcome, as `pantocheck verify` prints them.
+async function verifyDocument(bytes, name = "document", hasSignature = false) {
+  const document = await readDocument(bytes), results = JSON.parse(document.text), checks = [];
+  if (results.schema !== "pantocheck.results/1") throw new Error("the document holds no results of Pantocheck");
+  const add = (outcome, statement, details = []) => checks.push({ outcome, statement, details });
+  const judged = (proved, contradicted, details) => add(details.length ? "contradicted" : "proved", details.length ? contradicted : proved, details);
+  let numbers;
+  try {
+    numbers = await checkNumbers(results);
+  } catch (error) {
+    numbers = { found: [`the results are not in the format of Pantocheck (${error.message})`], evaluated: {} };
+  }
+  const lines = [...new Set(numbers.found)];
+  judged("Verdicts, margins, uncertainties and statistics follow from the embedded numbers.", "The embedded numbers and verdicts contradict each other.", lines);
+  let gaps = [];
+  try { gaps = findGaps(results); } catch (error) { gaps = [error.message]; }
+  if (gaps.length) add("contradicted", "Parts that every run writes are missing.", gaps);
+  if (document.added && !document.signed) {
+    add("contradicted", "The file was changed after it was written.", [`${document.added} bytes were appended after the document was written`]);
+  }
+  if (document.kind === "HTML") {
+    const page = checkPage(document.page, document.digest, results);
+    const texts = `Verdict, digest and ${page.count} values printed on the page are those of the results.`;
+    judged(texts, "The page prints other numbers than its results.", page.found);
+  } else if (document.kind === "PDF") {
+    const digest = document.digest ?? "not computed: this browser offers no digests to a local file";
+    add("open", "The numbers printed on the pages of the PDF. Compare the printed digest of the results.", [digest]);
+  }
+  const signed = document.signed || hasSignature;
+  add("open", signed ? "The origin of the document: it claims to be signed, and signatures are not checked here." : "The origin of the document.", signed ? [] : ["unsigned: nothing shows who made this document."]);
+  const unsampled = results.cases.filter((result) => !result.signals && Object.keys(result.traces ?? {}).length).map((result) => result.id);
+  if (unsampled.length) add("open", "Statistics of records whose signals are not embedded.", unsampled);
+  for (const [check, statement] of ONLY_VERIFY) add("open", `${statement} (verify: ${check})`);
+  const contradictions = checks.filter((check) => check.outcome === "contradicted").flatMap((check) => check.details);
+  const criteria = results.cases?.reduce((sum, r) => sum + r.criteria.length + (r.verification?.criteria.length ?? 0), 0);
+  const noun = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
+  const size = `${noun(results.cases?.length, "case")}, ${noun(criteria, "criterion", "criteria")}`;
+  const origin = signed ? "NOT TRUSTED: the document claims to be signed" : "UNSIGNED: the numbers are consistent, anyone can have written this document";
+  const conclusion = contradictions.length
+    ? `not consistent: ${noun(contradictions.length, "contradiction")} (${size}; stated verdict '${results.verdict}').`
+    : `${origin}; the verdict '${results.verdict}' follows from the embedded numbers (${size}).`;
+  return { name, kind: document.kind, state: contradictions.length ? "contradicted" : "consistent", conclusion, checks, digest: document.digest ?? null, results, evaluated: numbers.evaluated };
+}

@@ -1,0 +1,99 @@
+// Page of the verifier: a document is chosen or dropped, and its report is shown.
+const HEADINGS = { contradicted: "Contradictions", incomplete: "Not compared in full", proved: "Proved", open: "Not proved" };
+const output = document.getElementById("report");
+
+function element(name, text = "", attributes = {}) {
+  const made = document.createElementNS(name === "svg" || attributes.svg ? "http://www.w3.org/2000/svg" : "http://www.w3.org/1999/xhtml", name);
+  for (const [key, value] of Object.entries(attributes)) if (key !== "svg") made.setAttribute(key, value);
+  made.textContent = text;
+  return made;
+}
+
+// Force after the filter of the case over the analysis section, with supports and the limits of its extremes.
+function drawForce(result, key, signals) {
+  const [width, height, left, bottom] = [900, 260, 46, 30], svg = element("svg", "", { viewBox: `0 0 ${width} ${height}`, role: "img" });
+  const trace = result.traces[key], x = signals ? signals.cut(signals.position) : trace.position_m;
+  const y = (signals ? signals.graded : trace.force_20_N) ?? [];
+  const rows = result.criteria.filter((row) => String(row.pantograph) === key && ["max_force_N", "min_force_N"].includes(row.quantity));
+  const limits = rows.flatMap((row) => [row.lower, row.upper]).filter((limit) => limit !== null);
+  const low = Math.min(smallest(y), ...limits), high = Math.max(largest(y), ...limits), span = high - low || 1;
+  const px = (value) => left + ((value - x[0]) / (x[x.length - 1] - x[0])) * (width - left - 10);
+  const py = (value) => 10 + ((high - value) / span) * (height - bottom - 10);
+  const add = (name, text, attributes) => svg.append(element(name, text, { svg: true, ...attributes }));
+  for (const support of trace.supports_m) {
+    add("line", "", { x1: px(support), x2: px(support), y1: 10, y2: height - bottom, class: "support" });
+    add("text", `${support} m`, { x: Math.min(px(support), width - 45), y: height - 10, class: "label" });
+  }
+  for (const row of rows) {
+    for (const limit of [row.lower, row.upper].filter((value) => value !== null)) {
+      add("line", "", { x1: left, x2: width - 10, y1: py(limit), y2: py(limit), class: row.verdict === "fail" ? "limit failed" : "limit" });
+      add("text", `${formatG(limit, 4)} N`, { x: 2, y: py(limit) + 4, class: "label" });
+    }
+  }
+  const step = Math.max(1, Math.floor(x.length / 3000)), points = [];
+  for (let i = 0; i < x.length; i += step) points.push(`${px(x[i]).toFixed(1)},${py(y[i]).toFixed(1)}`);
+  add("polyline", "", { points: points.join(" "), class: "force" });
+  const name = `Force of pantograph ${key} up to ${result.run.filter.cutoff_Hz} Hz, with the limits of its largest and smallest value`;
+  svg.setAttribute("aria-label", name);
+  const figure = element("figure");
+  figure.append(svg, element("figcaption", `${name}${signals ? ", drawn from the embedded signals" : ""}.`));
+  return figure;
+}
+
+function tabulate(result) {
+  const table = element("table"), add = (cells, name) => {
+    const row = element("tr");
+    row.append(...cells.map((cell) => element(name, cell)));
+    table.append(row);
+  };
+  add(["Quantity", "Pantograph", "Value", "Uncertainty", "Limits", "Margin", "Verdict"], "th");
+  for (const row of result.criteria) {
+    const limits = `${row.lower === null ? "" : formatG(row.lower, 6)} … ${row.upper === null ? "" : formatG(row.upper, 6)}`;
+    const texts = [row.value === null ? "—" : `${formatG(row.value, 6)} ${row.unit}`, row.uncertainty === null ? "—" : `± ${formatG(row.uncertainty, 2)}`];
+    add([row.quantity, row.pantograph || "line", ...texts, limits, row.margin === null ? "—" : formatG(row.margin, 2), row.verdict], "td");
+  }
+  return table;
+}
+
+function showReport(report) {
+  output.replaceChildren(element("h2", report.name), element("p", report.conclusion, { class: `conclusion ${report.state}` }));
+  if (report.digest) output.append(element("p", `Digest of the results: ${report.digest}`, { class: "small" }));
+  for (const [outcome, heading] of Object.entries(HEADINGS)) {
+    const checks = report.checks.filter((check) => check.outcome === outcome);
+    if (!checks.length) continue;
+    const list = element("ul");
+    for (const check of checks) {
+      const item = element("li", check.statement), details = element("ul");
+      details.append(...check.details.map((line) => element("li", line)));
+      if (check.details.length) item.append(details);
+      list.append(item);
+    }
+    output.append(element("h3", heading), list);
+  }
+  for (const result of report.results.cases) {
+    output.append(element("h3", `${result.title} (${result.id}): ${result.verdict}`), tabulate(result));
+    for (const key of Object.keys(result.traces)) {
+      if (!result.traces[key].force_20_N?.length) continue;
+      const signals = report.evaluated[result.id]?.[key];
+      try { output.append(drawForce(result, key, signals?.covered ? signals : null)); } catch (error) { output.append(element("p", error.message)); }
+    }
+  }
+}
+
+async function showFiles(files) {
+  const list = [...files], signature = list.some((file) => file.name.endsWith(".p7s"));
+  const chosen = list.find((file) => !file.name.endsWith(".p7s"));
+  if (!chosen) return;
+  output.replaceChildren(element("p", "The document is read and computed again …"));
+  try {
+    showReport(await verifyDocument(new Uint8Array(await chosen.arrayBuffer()), chosen.name, signature));
+  } catch (error) {
+    output.replaceChildren(element("p", `${chosen.name}: ${error.message}. Nothing is proved.`, { class: "conclusion contradicted" }));
+  }
+}
+
+document.getElementById("file").addEventListener("change", (event) => showFiles(event.target.files));
+for (const name of ["dragover", "drop"]) document.addEventListener(name, (event) => event.preventDefault());
+document.addEventListener("drop", (event) => showFiles(event.dataTransfer.files));
+// Tests and other pages call this with the bytes of a document; the numbers of the report can be sent as text.
+globalThis.verifyDocument = verifyDocument;

@@ -1,0 +1,214 @@
+"""Verifier for a browser: it accepts genuine documents, and finds what `pantocheck verify` finds, without a network."""
+
+import ast
+import base64
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.wave_system import Wave
+from pantocheck.conformance import documents
+from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.documents.document_reading import read_certificate
+from pantocheck.conformance.documents.verification import verify_certificate
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pages.verifier_file import FOLDER, build_verifier
+from verification.attacks.forged_results import CHANGES
+from verification.attacks.forgeries import SEED, Genuine, build_genuine, list_result_forgeries
+
+Report = dict[str, Any]
+Verify = Callable[[bytes, str], Report]
+
+NUMBERS = ("The embedded numbers and verdicts contradict each other.", "Parts that every run writes are missing.")
+"""Contradictions of the checks that both verifiers make."""
+
+INSTALLED = {"version of the suite": "suite", "unit of a quantity": "library"}
+"""Kinds that only the installed suite shows, and the part of "Not proved" that names them."""
+
+CALL = """([data, name]) => verifyDocument(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), name).then(
+  ({results, evaluated, ...report}) => report,
+  (error) => ({state: "refused", conclusion: error.message, checks: []}))"""
+
+COMPUTED = """(data) => verifyDocument(Uint8Array.from(atob(data), (c) => c.charCodeAt(0))).then(({evaluated}) =>
+  Object.fromEntries(Object.entries(evaluated).map(([id, parts]) => [id, Object.fromEntries(
+    Object.entries(parts).map(([key, part]) => [key, part.quantities()]))])))"""
+
+
+@pytest.fixture(scope="module")
+def page(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """The verifier, opened from a file without a network."""
+    path = tmp_path_factory.mktemp("verifier") / "verifier.html"
+    path.write_bytes(build_verifier("0.1.0"))
+    context = browser.new_context(offline=True)
+    shown = context.new_page()
+    shown.goto(path.as_uri())
+    yield shown
+    context.close()
+
+
+@pytest.fixture(scope="module")
+def verify(page: Any) -> Verify:
+    """Report of the verifier on the bytes of a document."""
+    return lambda content, name: page.evaluate(CALL, [base64.b64encode(content).decode(), name])
+
+
+@pytest.fixture(scope="module")
+def genuine() -> Genuine:
+    """Documents of a run whose statistical maximum fails, as in the tests of the forgeries."""
+    case = load_case(library_folder() / "en50318-2002" / "250.toml")
+    return build_genuine(run_cases([case], Wave(mean=119.9, sigma=30.9)).to_dict())
+
+
+def list_outcomes(report: Report, outcome: str) -> list[str]:
+    return [check["statement"] for check in report["checks"] if check["outcome"] == outcome]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kind", ["json", "html", "pdf"])
+def test_genuine_document_is_consistent_and_unsigned(
+    genuine: Genuine, page: Any, verify: Verify, tmp_path: Path, kind: str
+) -> None:
+    json = next(list_result_forgeries(genuine, "time of the run", SEED))[1]
+    content = {"json": json, "html": genuine.html.encode(), "pdf": genuine.pdf}[kind]
+    report = verify(content, f"certificate.{kind}")
+    assert report["state"] == "consistent", report["checks"]
+    assert report["conclusion"].startswith("UNSIGNED: the numbers are consistent, anyone can have written")
+    proved = ["Verdicts, margins, uncertainties and statistics follow from the embedded numbers."]
+    printed = "Verdict, digest and [1-9][0-9]* values printed on the page are those of the results."
+    found = list_outcomes(report, "proved")
+    assert found[:1] == proved
+    assert kind != "html" or re.fullmatch(printed, found[1])
+    # The same by hand: the chosen file gives a report with the drawing of the force.
+    path = tmp_path / f"certificate.{kind}"
+    path.write_bytes(content)
+    page.set_input_files("#file", str(path))
+    page.wait_for_selector(".conclusion")
+    assert page.inner_text(".conclusion") == report["conclusion"]
+    assert page.locator("figure polyline").count() == 1
+
+
+@pytest.mark.thorough
+def test_both_verifiers_compute_the_same_statistics(genuine: Genuine, page: Any) -> None:
+    content = base64.b64encode(genuine.pdf).decode()
+    for case in genuine.results["cases"]:
+        computed = page.evaluate(COMPUTED, content)[case["id"]]
+        for owner, values in computed.items():
+            stated = {name: value for name, value in case["quantities"][owner].items() if name in values}
+            assert len(stated) == len(values) >= 13
+            assert values == pytest.approx(stated, rel=1e-10, abs=1e-12)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kind", CHANGES)
+def test_forged_results_have_the_same_outcome(genuine: Genuine, verify: Verify, tmp_path: Path, kind: str) -> None:
+    """Numbers and missing parts: both verifiers find the forgery, or neither of them."""
+    _, content, suffix = next(list_result_forgeries(genuine, kind, SEED))
+    path = tmp_path / f"forged.{suffix}"
+    path.write_bytes(content)
+    found = {check.statement for check in verify_certificate(read_certificate(path)).checks} & set(NUMBERS)
+    report = verify(content, path.name)
+    if kind in INSTALLED:
+        assert any(f"(verify: {INSTALLED[kind]})" in text for text in list_outcomes(report, "open"))
+    else:
+        assert set(list_outcomes(report, "contradicted")) & set(NUMBERS) == found
+
+
+PAGE_CHANGES = {
+    "value": (r"(data-label=\"Value\"[^>]*>)\d+", r"\g<1>7", "is printed"),
+    "digest": ("sha256:[0-9a-f]{64}</dd>", "sha256:0</dd>", "the digest of the results is"),
+    "title": ("<title>[^<]*", "<title>PASS", "the title does not print the verdict FAIL"),
+    "data": (r'"verdict":"fail"', '"verdict":"pass"', "verdict 'pass' stated"),
+}
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("kind", PAGE_CHANGES)
+def test_changed_page_is_found(genuine: Genuine, verify: Verify, kind: str) -> None:
+    pattern, text, message = PAGE_CHANGES[kind]
+    changed = re.sub(pattern, text, genuine.html, count=1)
+    assert changed != genuine.html
+    report = verify(changed.encode(), "certificate.html")
+    assert report["state"] == "contradicted"
+    assert any(message in line for check in report["checks"] for line in check["details"])
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("content", [b"", b"%PDF-1.7", b"{}", b"<!doctype html><p>", b'{"schema": "other"}', bytes(9)])
+def test_other_files_are_refused(verify: Verify, content: bytes) -> None:
+    assert verify(content, "file")["state"] == "refused"
+
+
+@pytest.mark.thorough
+def test_bytes_behind_a_pdf_are_found_and_a_claimed_signature_is_not_trusted(genuine: Genuine, verify: Verify) -> None:
+    report = verify(genuine.pdf + b"\n1 0 obj\n<<>>\nendobj\nstartxref\n1\n%%EOF\n", "certificate.pdf")
+    assert "The file was changed after it was written." in list_outcomes(report, "contradicted")
+    report = verify(genuine.pdf + b"\n1 0 obj\n<</ByteRange [0 1]>>\nendobj\nstartxref\n1\n%%EOF\n", "certificate.pdf")
+    assert report["conclusion"].startswith("NOT TRUSTED: the document claims to be signed")
+
+
+# Statements of `pantocheck verify`, and the part of the verifier that makes the check or names it as not proved.
+COVERED = {
+    "Verdicts, margins, uncertainties and statistics follow": "numbers",
+    "The embedded numbers and verdicts contradict each other.": "numbers",
+    "Parts that every run writes are missing.": "numbers",
+    "The document states less than one of the installed version.": "numbers",
+    "The file was changed after it was written.": "appended bytes",
+    "The file is ": "pages",
+    "Texts, figures and metadata": "pages",
+    "The document is not the one that its embedded results give.": "pages",
+    "The document shows something else than its embedded results.": "pages",
+    "The layout of the file was not compared.": "pages",
+    "The texts are not those of the installed version.": "pages",
+    "All texts are those of the installed version.": "pages",
+    "Other versions made this document": "pages",
+    "The software that made the pages": "pages",
+    "The values of the reference simulator": "static values",
+    "The signatures do not hold": "origin",
+    "The origin of the document.": "origin",
+    "Every signature holds": "origin",
+}
+"""Beginnings of statements outside of the modules of `MODULES`."""
+
+MODULES = {"library_check": "library", "repetition_check": "record"}
+"""Modules all of whose checks the verifier names as one."""
+
+IMPLEMENTED = {"numbers", "appended bytes"}
+
+
+def list_statements(path: Path) -> Iterator[str]:
+    """Sentences in the source of a module of checks: texts that begin with a capital and end a statement."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if not (isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("DocumentCheck", "judge_details")):
+            continue
+        texts = [item.value for item in node.args if isinstance(item, ast.Constant) and isinstance(item.value, str)]
+        yield from (text for text in texts if text[:1].isupper())
+
+
+def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
+    """A new check of `verify` needs a place in the verifier: made by it, or named under "Not proved"."""
+    listed = re.findall(r'^  \["([a-z ]+)", "', (FOLDER / "checks.js").read_text("utf-8"), re.MULTILINE)
+    folder = Path(documents.__path__[0])
+    for path in sorted(folder.glob("*.py")):
+        for text in list_statements(path):
+            place = MODULES.get(path.stem) or next(
+                (to for start, to in COVERED.items() if text.startswith(start)), None
+            )
+            assert place is not None, f"{path.name}: {text}"
+            assert place in IMPLEMENTED or place in listed, place
+    table = (Path(__file__).parents[2] / "docs" / "verify.md").read_text("utf-8")
+    documented = re.findall(r"^\| ([a-z ]+) \| [A-Z]", table, re.MULTILINE)
+    assert {"numbers", "pages", "library", "origin"} <= set(documented)
+    assert set(documented) <= {*listed, *IMPLEMENTED, "missing parts"}
+    assert {"record", "rerun"} <= set(listed)
+
+
+def test_verifier_fetches_nothing_and_is_the_same_file_each_time() -> None:
+    page = build_verifier("0.1.0")
+    assert page == build_verifier.__wrapped__("0.1.0")
+    assert b"default-src 'none'; script-src 'sha256-" in page
+    assert b"@" not in re.sub(rb"@media", b"", page)
+    assert not re.search(rb"https?://(?!www\.w3\.org/)|fetch\(|XMLHttpRequest|eval\(", page)
