@@ -233,7 +233,8 @@ def _find_uncertainty_gaps(case: CaseResult) -> Iterator[str]:
             yield f"the uncertainty '{name}' has a basis, but no value"
     for row in case.criteria:
         known = case.uncertainty_components.get(str(row.pantograph), {}).get(row.quantity, {})
-        if known and row.value is not None and not row.is_drift and not row.components:
+        graded = row.value is not None and not row.is_drift and (row.lower, row.upper) != (None, None)
+        if known and graded and not row.components:
             yield f"{row.quantity} of pantograph {row.pantograph}: the components of its uncertainty are missing"
 
 

@@ -9,7 +9,7 @@ from pantocheck.conformance.pages.html import PageCode, join_scripts
 
 VERIFIER_NAME = "pantocheck-verifier.html"
 
-FOLDER = TEMPLATES / "verifier"
+VERIFIER_FOLDER = TEMPLATES / "verifier"
 
 VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "documents", "show")
 """Parts of its script, in the order of their use."""
@@ -19,8 +19,8 @@ VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "documents", "sho
 def build_verifier(version: str) -> bytes:
     """The verifier of a version of the suite; equal versions give equal bytes."""
     script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
-    style = (FOLDER / "verifier.css").read_text("utf-8")
-    page = (FOLDER / "verifier.html").read_text("utf-8")
+    style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
+    page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
     parts = {"policy": PageCode((style,), (script,)).policy, "version": version, "style": style, "script": script}
     for name, text in parts.items():
         page = page.replace(f"@{name}@", text)

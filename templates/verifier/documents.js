@@ -9,16 +9,19 @@ const latin = (bytes) => {
 async function readPdf(bytes) {
   const text = latin(bytes), end = /startxref\s+\d+\s+%%EOF(\r\n|\n|\r)?/.exec(text);
   const length = end ? end.index + end[0].length : text.length, original = text.slice(0, length);
-  const streams = [...original.matchAll(/\/Type\s*\/EmbeddedFile\b[^]*?stream\r?\n/g)];
-  const names = [...original.matchAll(/\/UF\s*\(results\.json\)/g)];
-  if (streams.length !== 1 || names.length !== 1) {
-    throw new Error(`the PDF holds ${streams.length || "no"} attachments that can be read; a certificate holds one results.json`);
-  }
-  const head = original.slice(original.lastIndexOf("obj", streams[0].index), streams[0].index + streams[0][0].length);
-  const size = /\/Length\s+(\d+)(?!\s+\d+\s+R)/.exec(head), from = streams[0].index + streams[0][0].length;
+  if (!text.startsWith("%PDF-") || !end) throw new Error("the PDF is damaged");
+  const targets = [...original.matchAll(/\/EF\s*<<\s*\/F\s+(\d+)\s+\d+\s+R/g)].filter(({ index }) => {
+    const start = original.lastIndexOf(" obj", index), object = original.slice(start, original.indexOf("endobj", index));
+    const number = /(\d+) \d+$/.exec(original.slice(Math.max(0, start - 20), start))?.[1];
+    const named = new RegExp(`/Names\\s*\\[[^\\]]*[)>]\\s*${number}\\s+\\d+\\s+R`).test(original);  // not removed from the list
+    return named && object.replace(/\\(\d{3})/g, (_, code) => String.fromCharCode(parseInt(code, 8))).includes("(results.json)");
+  });
+  if (targets.length !== 1) throw new Error(`the PDF holds ${targets.length || "no"} attachments named results.json`);
+  const head = new RegExp(`[\r\n]${targets[0][1]} \\d+ obj[^]*?stream\r?\n`).exec(original);
+  const size = /\/Length\s+(\d+)(?!\s+\d+\s+R)/.exec(head?.[0] ?? ""), from = head && head.index + head[0].length;
   if (!size) throw new Error("the attachment of the PDF cannot be read");
   const raw = bytes.slice(from, from + Number(size[1]));
-  const content = /FlateDecode/.test(head) ? await inflate(raw, 64 * 2 ** 20) : raw;
+  const content = /FlateDecode/.test(head[0]) ? await inflate(raw, 64 * 2 ** 20) : raw;
   return { content, added: text.slice(length).trim() ? text.length - length : 0, signed: /\/ByteRange/.test(text.slice(length)) };
 }
 
@@ -105,7 +108,9 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
   }
   if (document.kind === "HTML") {
     const page = checkPage(document.page, document.digest, results);
-    const texts = `Verdict, digest and ${page.count} values printed on the page are those of the results.`;
+    const values = page.count ? `, digest and ${page.count} values` : " and digest";
+    const texts = `Verdict${values} printed on the page are those of the results.`;
+    if (!page.count) add("open", "The values printed in the tables of the page.");
     judged(texts, "The page prints other numbers than its results.", page.found);
   } else if (document.kind === "PDF") {
     const digest = document.digest ?? "not computed: this browser offers no digests to a local file";

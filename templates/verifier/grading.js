@@ -102,9 +102,13 @@ const isDrift = (row) => row.baseline !== null || row.quantity === "baseline";
 // Contradictions of one criterion with its value, limits, errors and trust.
 function checkGrade(row, trust, rule, unknown) {
   const found = [], { value, lower, upper } = row, counts = decides(row.trust, trust);
-  if (lower === null && upper === null) return row.verdict === (counts ? "skip" : "info") ? [] : ["no limit"];
+  const suffix = /_([^_]*)$/.exec(row.quantity)?.[1], unit = { N: "N", mm: "mm", pct: "%", s: "s" }[suffix] ?? "";
+  if (SIGNAL_NAME.test(row.quantity) && row.unit !== unit) {
+    found.push(`unit '${row.unit}' stated, '${unit}' is the unit of this quantity`);
+  }
+  if (lower === null && upper === null) return [...found, ...(row.verdict === (counts ? "skip" : "info") ? [] : ["no limit"])];
   if (lower !== null && upper !== null && lower > upper) {
-    return [`lower limit ${exact(lower)} above upper limit ${exact(upper)}`];
+    return [...found, `lower limit ${exact(lower)} above upper limit ${exact(upper)}`];
   }
   const errors = findErrors(row, unknown), role = row.finding?.role;
   let judged = value === null ? "skip" : judgeByRule(value, row, errors, rule);

@@ -4,6 +4,10 @@ const BANDS = [[0, 5, "rms_0_5_N"], [5, 20, "rms_5_20_N"], [20, 50, "rms_20_50_N
 const OUTSIDE = ["mean_force_N", "std_force_N", "std_force_50_N", "max_force_N", "min_force_N", "contact_loss_pct"];
 const UPLIFT = "max_uplift_at_support_mm", MOST_POINTS = 1500, MOST_SAMPLES = 500000;
 
+const FORCE_NAMES = "mean_force|std_force(_50)?|rms_\\d+_\\d+|statistical_m..|m.._force|contact_loss|longest_contact_loss";
+const SIGNAL_NAME = new RegExp(`^(${FORCE_NAMES}|contact_height_range|long_contact_loss|arc_share|max_uplift_at_support)` +
+  "(_outside_overlaps)?_(N|mm|pct|s)$|^cov_[25]0$|^contact_loss_events$");
+
 class Unavailable extends Error {}
 class Damaged extends Error {}
 

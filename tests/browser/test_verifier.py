@@ -16,7 +16,7 @@ from pantocheck.conformance.documents.document_reading import read_certificate
 from pantocheck.conformance.documents.verification import verify_certificate
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
-from pantocheck.conformance.pages.verifier_file import FOLDER, build_verifier
+from pantocheck.conformance.pages.verifier_file import VERIFIER_FOLDER, build_verifier
 from verification.attacks.forged_results import CHANGES
 from verification.attacks.forgeries import SEED, Genuine, build_genuine, list_result_forgeries
 
@@ -26,7 +26,7 @@ Verify = Callable[[bytes, str], Report]
 NUMBERS = ("The embedded numbers and verdicts contradict each other.", "Parts that every run writes are missing.")
 """Contradictions of the checks that both verifiers make."""
 
-INSTALLED = {"version of the suite": "suite", "unit of a quantity": "library"}
+INSTALLED = {"version of the suite": "suite"}
 """Kinds that only the installed suite shows, and the part of "Not proved" that names them."""
 
 CALL = """([data, name]) => verifyDocument(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), name).then(
@@ -190,7 +190,7 @@ def list_statements(path: Path) -> Iterator[str]:
 
 def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
     """A new check of `verify` needs a place in the verifier: made by it, or named under "Not proved"."""
-    listed = re.findall(r'^  \["([a-z ]+)", "', (FOLDER / "checks.js").read_text("utf-8"), re.MULTILINE)
+    listed = re.findall(r'^  \["([a-z ]+)", "', (VERIFIER_FOLDER / "checks.js").read_text("utf-8"), re.MULTILINE)
     folder = Path(documents.__path__[0])
     for path in sorted(folder.glob("*.py")):
         for text in list_statements(path):

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from helpers.criterion_fixtures import build_requirement
 from pantocheck.conformance.documents.recomputation import check_components, find_discrepancies
 from pantocheck.conformance.documents.verification import find_gaps
 from pantocheck.conformance.results.results_format import Results
@@ -142,6 +143,18 @@ def test_record_of_a_passage_has_a_state(ungraded: dict[str, Any], changes: dict
         (case["run"] if key.startswith("run.") else case)[key.removeprefix("run.")] = value
     gaps = find_gaps(Results.model_validate(ungraded))
     assert any("the state of the record is missing" in text for text in gaps) is found
+
+
+def test_criterion_without_a_limit_needs_no_components(ungraded: dict[str, Any]) -> None:
+    """A rule of a profile whose limit the record does not state: its value has an uncertainty, the criterion none."""
+    case = ungraded["cases"][0]
+    row = build_requirement("mean_force_N", None, None, pantograph=1).model_dump()
+    value = case["quantities"]["1"]["mean_force_N"]
+    case["criteria"] = [
+        row | {"value": value, "verdict": "skip", "margin": None, "discretisation_error": None, "reason": "no limit"}
+    ]
+    gaps = find_gaps(Results.model_validate(ungraded))
+    assert not any("components" in gap for gap in gaps)
 
 
 @pytest.mark.parametrize(("start", "key"), [("differs", "warnings"), ("not stated", "notes")])

@@ -4,6 +4,7 @@ import io
 import json
 import random
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from pypdf.errors import DependencyError, LimitReachedError
 from pypdf.generic import NameObject, StreamObject
 from typer.testing import CliRunner
 
+from helpers.example_results import example
 from helpers.shown_page import print_certificate
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.cases.case import Case
@@ -21,7 +23,10 @@ from pantocheck.conformance.documents import document_reading
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.results_building import build_suite
 from pantocheck.conformance.pages import pdf
+from pantocheck.conformance.pages.certificate_page import build_certificate
+from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.results import results_reading as results_file
 from pantocheck.conformance.results.results_format import Results
 
@@ -300,3 +305,16 @@ def test_every_exception_of_the_parser_is_a_message(
     monkeypatch.setattr("pypdf.PdfReader", fail)
     with pytest.raises(InputError, match="is a damaged PDF"):
         verify_document(certificate_file)
+
+
+def test_verifier_is_written_with_its_digest(tmp_path: Path, certificate_file: Path) -> None:
+    """The printed digest is that of the file, and of the line on page 1 of a certificate."""
+    path = tmp_path / "verifier.html"
+    written = CliRunner().invoke(app, ["verify", "--write-verifier", str(path)])
+    assert written.exit_code == 0
+    digest = sha256(path.read_bytes()).hexdigest()
+    assert digest in "".join(written.output.split())
+    results = Results.model_validate(example())
+    page = render_html(build_certificate(results.model_copy(update={"suite": build_suite()})))
+    assert f"SHA-256 {digest}" in page
+    assert CliRunner().invoke(app, ["verify"]).exit_code == 2
