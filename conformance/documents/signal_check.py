@@ -50,6 +50,8 @@ def check_signals(case: CaseResult) -> Iterator[str]:
     stated = {"sampling rate": case.run.rate_Hz, "analysis section": list(case.run.evaluated_m or ())}
     embedded: NumberTree = {"sampling rate": samples.rate_Hz, "analysis section": list(samples.evaluated_m)}
     yield from _compare(stated, embedded, RATE_DIGITS)
+    if case.profile is None and samples.excluded_m:
+        yield "stretches are left out of the embedded signals, which only a profile can state"
     try:
         signals = unpack_signals(samples, case.run.filter)
         yield from _check_quantities(case.quantities, signals, samples)

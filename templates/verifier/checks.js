@@ -42,6 +42,9 @@ async function checkSignals(result) {
   const samples = result.signals, found = [], { run } = result;
   const facts = { "sampling rate": samples.rate_Hz, "analysis section": samples.evaluated_m };
   found.push(...compareTrees({ "sampling rate": run.rate_Hz, "analysis section": run.evaluated_m }, facts, 1e-8));
+  if (result.profile === null && samples.excluded_m?.length) {
+    found.push("stretches are left out of the embedded signals, which only a profile can state");
+  }
   let signals;
   try {
     signals = await unpackSignals(samples);

@@ -129,6 +129,7 @@ CHANGES: dict[str, tuple[Callable[[Tree], object], str]] = {
     "uplift": (lambda c: _scale(c["uplift"][0]["uplift_mm"], 600), "uplift at 240 m: "),
     "place": (lambda c: c["places"]["1"]["max_force_N"].update(position_m=241.0), "place of an extreme, 1, max_"),
     "section": (lambda c: c["signals"].update(evaluated_m=[240.0, 359.0]), "analysis section, value 2"),
+    "left out": (lambda c: c["signals"].update(excluded_m=[[241.0, 250.0]]), "which only a profile can state"),
     "rate": (lambda c: c["signals"].update(rate_Hz=999.0), "sampling rate"),
     "filter": (lambda c: c["run"]["filter"].update(cutoff_Hz=15.0), "std_force_N"),
     "filter before delivery": (
