@@ -14,8 +14,8 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 69_700,
-    ("templates",): 2_850,
+    ("model", "conformance"): 69_950,
+    ("templates",): 2_910,
     ("verification",): 14_900,
     ("tests",): 49_050,
 }

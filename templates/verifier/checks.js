@@ -2,13 +2,17 @@
 const STATEMENT = "self-declared conformance report, in the style of EN 50318";
 const STEPS = ["pantograph_model", "static_check", "reference_models", "line_test", "limits_of_validity"];
 
+const RECORD_CHECKS = [
+  "coverage", "motion", "support passing", "coincidence", "roll-off", "dynamics", "implied force", "mean force", "content", "copy",
+];
+
 // Facts that only `pantocheck verify` can prove; a test holds this list against its checks.
 const ONLY_VERIFY = [
   ["pages", "Texts, figures and metadata are those that the embedded results give, byte for byte."],
   ["library", "Inputs, limits, units, texts and warnings of a library case are those of the installed library."],
   ["cases from outside", "Inputs, limits and texts of a case from outside are those of its distribution or folder."],
   ["origin", "A holder of a key signed the document; signatures and their revocation are not checked here."],
-  ["record", "The record itself: its consistency checks, its state, and its digest (option --record)."],
+  ["record", "The record itself: the outcomes of its consistency checks, and its digest (option --record)."],
   ["rerun", "A new run of the simulator gives the same values (option --rerun)."],
   ["suite", "The stated version of the suite has the stated digest."],
   ["format", "Every key of results.json belongs to its format."],
@@ -131,11 +135,43 @@ function checkThinned(result) {
   return found;
 }
 
+// The state of a record follows from the outcomes of its checks, and these fit the remarks of the case.
+function checkState({ record, notes, warnings }) {
+  const found = [], rows = record?.checks ?? [], names = rows.map((row) => row.check), texts = rows.map((row) => row.text ?? "");
+  if (!record) return [];
+  if (!rows.length) return record.state === "unconfirmed" ? [] : [`state '${record.state}' of the record stated, but no check of it`];
+  if (names.join() !== RECORD_CHECKS.join()) found.push(`the checks of the record are ${names.join(", ")}`);
+  let contradicted = false;
+  rows.forEach(({ check, outcome }, i) => {
+    if ((outcome === "not reached") !== contradicted) {
+      found.push(`check '${check}': outcome '${outcome}' stated ${contradicted ? "behind" : "without"} a contradiction`);
+    }
+    contradicted ||= outcome === "contradiction";
+    const silent = ["confirmed", "not reached"].includes(outcome), remarks = { doubt: warnings, unchecked: notes }[outcome];
+    if ((texts[i] === "") !== silent) found.push(`check '${check}': outcome '${outcome}' does not fit its text`);
+    if (remarks && !remarks.includes(texts[i])) found.push(`check '${check}': its text is missing among the remarks`);
+    const note = notes.find((text) => text.startsWith(`the ${check} check was not made`) && !texts.includes(text));
+    if (note) found.push(`check '${check}': a note says that it was not made, its row does not`);
+  });
+  const of = (...outcomes) => rows.filter((row) => outcomes.includes(row.outcome)).map((row) => row.text);
+  const [bad, open] = [of("contradiction"), of("doubt", "unchecked")];
+  const state = bad.length ? "contradicted" : open.length ? "unconfirmed" : "consistent";
+  const reason = (bad.length ? bad : open).join("; ") || "every consistency check that applies confirms the record";
+  if (record.state !== state || record.reason !== reason) {
+    found.push(`state '${record.state}' of the record stated (${record.reason}); '${state}' follows from its checks (${reason})`);
+  }
+  return found;
+}
+
 function checkCase(result, results) {
-  const found = checkUncertainties(result), { record, verification: second } = result;
+  const found = [...checkUncertainties(result), ...checkState(result)], { record, verification: second } = result;
   found.push(...checkCriteria(result, result.criteria, results.trust, results.decision));
   const flags = conformingDraws(result.criteria), { conformity } = result;
-  if ((flags === null) !== ((conformity ?? null) === null) || (flags && !sameNumber(conformity.probability, share(flags)))) {
+  const readings = flags === null ? [] : (result.readings ?? []).filter((reading) => reading.reason === null)
+    .map((reading) => [reading.id, share(conformingDraws(result.criteria, reading))]);
+  const follows = flags && { probability: share(flags), readings: Object.fromEntries(readings) };
+  const known = conformity && { probability: conformity.probability, readings: conformity.readings ?? {} };
+  if (flags === null ? conformity : !conformity || compareTrees(known, follows, EXACT).length) {
     found.push("the probability of conformity does not follow from the joint samples of the criteria");
   } else if (conformity && conformity.passing_starts > conformity.starts) {
     found.push(`${conformity.passing_starts} of ${conformity.starts} starts pass`);

@@ -195,11 +195,18 @@ function checkUncertainties(result) {
 }
 
 // Draws with every counted value inside its limits; null if no value has a joint sample.
-function conformingDraws(criteria) {
+// A reading shifts the draws of a value by the difference of its value.
+function conformingDraws(criteria, reading = null) {
   const counted = criteria.filter((r) => ["pass", "undecided", "fail"].includes(r.verdict) && !isDrift(r) && r.value !== null);
   const size = Math.max(0, ...counted.map((row) => (row.draws ?? []).length));
   if (!size) return null;
-  const inside = (row, i) => judge(row.draws?.length ? row.draws[i] : row.value, row.lower, row.upper) === "pass";
+  const shift = (row) => {
+    const value = reading && selectItem(reading.quantities[row.pantograph]?.[row.quantity], row.item);
+    return value === null ? 0 : value - row.value;
+  };
+  const shifts = new Map(counted.map((row) => [row, shift(row)]));
+  const drawn = (row, i) => (row.draws?.length ? row.draws[i] : row.value) + shifts.get(row);
+  const inside = (row, i) => judge(drawn(row, i), row.lower, row.upper) === "pass";
   return Array.from({ length: size }, (_, i) => counted.every((row) => inside(row, i)));
 }
 const share = (flags) => flags.filter(Boolean).length / flags.length;
@@ -223,12 +230,12 @@ function decideRun(results) {
   const accepted = results.accepted_unconfirmed.includes(system);
   const judgeRun = (pairs) => judgeParts(pairs.filter(([id]) => !information.includes(id))
     .map(([, verdict]) => (accepted && verdict === "unconfirmed" ? "pass" : verdict)));
+  const lacks = (result) => requested.includes("verification") && !result.verification && result.record && result.profile === null;
   const cases = results.cases.map((result) => {
     const errors = [result.criteria_verdict, result.verdict].filter((verdict) => verdict === "error");
     const verdicts = [...requested.map((name) => of(name, result)), ...errors].filter((verdict) => verdict !== null);
-    const lacking = requested.includes("verification") && !result.verification && result.record && result.profile === null;
     const drift = result.criteria.filter(isDrift).map((row) => row.verdict);
-    const verdict = worst(verdicts), lowered = verdict === "pass" && lacking ? "unconfirmed" : verdict;
+    const verdict = worst(verdicts), lowered = verdict === "pass" && lacks(result) ? "unconfirmed" : verdict;
     return worst([lowered, ...drift, ...(result.baseline ? [result.baseline.verdict] : [])]);
   });
   const one = (name) => {
@@ -236,8 +243,10 @@ function decideRun(results) {
     return pairs.length ? judgeRun(pairs) : null;
   };
   const named = { criteria: one("criteria"), verification: one("verification") };
-  const overall = judgeRun(results.cases.map((result, i) => [result.id, cases[i]]));
   const shown = results.cases.filter((result) => !information.includes(result.id));
+  // An accepted record does not replace a requested verification that a case lacks.
+  const bounds = results.cases.filter((r, i) => shown.includes(r) && cases[i] === "unconfirmed" && lacks(r)).map(() => "unconfirmed");
+  const overall = judgeParts([judgeRun(results.cases.map((result, i) => [result.id, cases[i]])), ...bounds]);
   const doubted = shown.some((result) => result.criteria.some((row) => (row.doubt ?? null) !== null));
   let verdict = judgeParts([overall, ...requested.map((name) => named[name] ?? "unconfirmed")]);
   if (overall === "info" || doubted) verdict = worst([verdict, "info"]);

@@ -17,6 +17,7 @@ from pantocheck.conformance.documents.verification import verify_certificate
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.pages.verifier_file import VERIFIER_FOLDER, build_verifier
+from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
 from verification.attacks.forged_results import CHANGES
 from verification.attacks.forgeries import SEED, Genuine, build_genuine, list_result_forgeries
 
@@ -204,6 +205,9 @@ def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
     assert {"numbers", "pages", "library", "origin"} <= set(documented)
     assert set(documented) <= {*listed, *IMPLEMENTED, "missing parts"}
     assert {"record", "rerun"} <= set(listed)
+    script = (VERIFIER_FOLDER / "checks.js").read_text("utf-8")
+    names = re.findall('"([^"]+)"', script.partition("RECORD_CHECKS = [")[2].partition("]")[0])
+    assert names == [check.name for check in RECORD_CHECKS]
 
 
 def test_verifier_fetches_nothing_and_is_the_same_file_each_time() -> None:

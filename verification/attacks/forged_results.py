@@ -37,7 +37,7 @@ def regrade(results: Tree) -> None:
             regrade_row(row, results["trust"])
         rows = [Criterion.model_validate(row) for row in case["criteria"]]
         starts = case["conformity"] or {"starts": 0, "passing_starts": 0}
-        readings = [ReadingFacts.model_validate(reading) for reading in case["readings"]]
+        readings = [ReadingFacts.model_validate(reading) for reading in case.get("readings", [])]
         found = find_case_conformity(rows, (starts["starts"], starts["passing_starts"]), readings)
         case["conformity"] = None if found is None else found.model_dump()
         case["criteria_verdict"] = judge_case((row["verdict"] for row in case["criteria"]), record)
