@@ -177,7 +177,8 @@ function checkCase(result, results) {
     found.push(`${conformity.passing_starts} of ${conformity.starts} starts pass`);
   }
   const graded = result.criteria.filter((row) => !isDrift(row)), stated = result.criteria_verdict ?? result.verdict;
-  const verdict = judgeCase([judgeRows(graded)], record), ungraded = !graded.length && result.reason && ["skip", "error"].includes(stated);
+  const verdict = judgeCase([judgeRows(graded)], record);
+  const ungraded = !graded.length && result.reason && ["skip", "error"].includes(stated);
   if (stated !== verdict && !ungraded) {
     found.push(`verdict '${stated}' stated, '${verdict}' follows from the criteria and the record`);
   }
@@ -230,7 +231,8 @@ async function checkNumbers(results) {
     if (stated !== follows) found.push(`${where}verdict '${stated}' stated, '${follows}' follows from the cases`);
   }
   if (!sameNumber(results.conformity, decided.conformity)) {
-    found.push(`probability of conformity ${exact(results.conformity)} stated, ${exact(decided.conformity)} follows from the joint samples`);
+    const texts = [exact(results.conformity), exact(decided.conformity)];
+    found.push(`probability of conformity ${texts[0]} stated, ${texts[1]} follows from the joint samples`);
   }
   if (results.statement !== STATEMENT) found.push(`the report is called '${results.statement}'`);
   if (results.scope.length && JSON.stringify(results.scope) !== JSON.stringify(buildScope(results.cases))) {

@@ -44,46 +44,60 @@ async function readDocument(bytes) {
   return { kind: "JSON", text: decode(bytes) };
 }
 
+const WORDS = {
+  pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED",
+};
+
+const findNumber = (text) => /[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/i.exec(text.replace(/[\u2009\u00a0]/g, ""))?.[0].replace("−", "-");
+
+// Whether a printed number is a value, rounded to its last digit.
+function isRounded(text, value) {
+  const digits = findNumber(text), power = /e/i.test(digits), places = (digits.split(".")[1] ?? "").length;
+  const step = power ? Math.abs(Number(digits)) * 0.05 : 10 ** -places;
+  return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
+}
+
+// Values and verdicts in the tables of a case: rows with the name of a quantity and a cell "Value".
+function checkTables(section, result) {
+  const found = [];
+  let count = 0;
+  for (const line of section?.querySelectorAll("tr") ?? []) {
+    const [, name, item] = /^(.*?)(?:\[(\d+)\])?$/.exec(line.querySelector("th code")?.textContent ?? ""), cells = {};
+    for (const cell of line.querySelectorAll("td[data-label]")) cells[cell.dataset.label] = cell.textContent.trim();
+    if (!name || cells.Value === undefined || !findNumber(cells.Value)) continue;
+    const anyone = cells.Pantograph === undefined, owner = /^\d+$/.test(cells.Pantograph ?? "") ? cells.Pantograph : "0";
+    const stated = Object.keys(result.quantities).filter((key) => anyone || key === owner)
+      .map((key) => result.quantities[key][name]).filter((value) => value !== undefined);
+    const values = stated.flatMap((value) => (item ? selectItem(value, Number(item)) : value));
+    if (!values.length) continue;
+    count += 1;
+    if (!values.some((value) => value !== null && isRounded(cells.Value, value))) {
+      found.push(`${name}: '${cells.Value}' is printed, ${values.map(exact).join(" or ")} follows from the results`);
+    }
+    const rows = [...result.criteria, ...(result.verification?.criteria ?? [])]
+      .filter((row) => row.quantity === name && (anyone || String(row.pantograph) === owner));
+    if (cells.Verdict && rows.length && !rows.some((row) => cells.Verdict.toUpperCase().includes(WORDS[row.verdict]))) {
+      found.push(`${name}: the verdict '${cells.Verdict}' is printed, ${WORDS[rows[0].verdict]} follows from the results`);
+    }
+  }
+  return { found: found.map((text) => `${result.id}, ${text}`), count };
+}
+
 // Numbers printed on an HTML page against the results: title, digest, and the tables of graded values.
 function checkPage(page, digest, results) {
-  const shown = new DOMParser().parseFromString(page, "text/html"), found = [];
-  const word = { pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED" };
+  const shown = new DOMParser().parseFromString(page, "text/html"), found = [], word = WORDS[results.verdict];
   for (const [place, text] of [["title", shown.title], ["heading", shown.querySelector("h1")?.textContent ?? ""]]) {
-    if (!new RegExp(`\\b${word[results.verdict]}\\b`).test(text)) {
-      found.push(`the ${place} does not print the verdict ${word[results.verdict]}: '${text}'`);
-    }
+    if (!new RegExp(`\\b${word}\\b`).test(text)) found.push(`the ${place} does not print the verdict ${word}: '${text}'`);
   }
   const facts = [...shown.querySelectorAll("dl div")].map((row) => [...row.children].map((cell) => cell.textContent.trim()));
   const printed = facts.find(([label]) => label === "Digest of the results")?.[1];
-  if (digest !== null && printed !== digest) found.push(`the digest of the results is ${printed ?? "not printed"}; computed is ${digest}`);
-  let count = 0;
-  const number = (text) => /[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/i.exec(text.replace(/\u2009|\u00a0/g, ""))?.[0].replace("−", "-");
-  const near = (text, value) => {
-    const digits = number(text), places = /e/i.test(digits) ? 0 : (digits.split(".")[1] ?? "").length;
-    const step = /e/i.test(digits) ? Math.abs(Number(digits)) * 0.05 : 10 ** -places;
-    return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
-  };
-  results.cases.forEach((result, i) => {
-    const section = shown.getElementById(`case-${i + 1}`)?.closest("section"), rows = [...(section?.querySelectorAll("tr") ?? [])];
-    for (const line of rows) {
-      const name = line.querySelector("th code")?.textContent.replace(/\[\d+\]$/, ""), cells = {};
-      for (const cell of line.querySelectorAll("td[data-label]")) cells[cell.dataset.label] = cell.textContent.trim();
-      if (!name || cells.Value === undefined || !number(cells.Value)) continue;
-      const owner = cells.Pantograph ?? "", key = /^\d+$/.test(owner) ? owner : "0", item = /\[(\d+)\]$/.exec(line.querySelector("th code").textContent);
-      const known = Object.entries(result.quantities).filter(([k]) => owner === "" || k === key);
-      const values = known.map(([, part]) => part[name]).filter((value) => value !== undefined).flatMap((v) => item ? selectItem(v, Number(item[1])) : v);
-      if (!values.length) continue;
-      count += 1;
-      if (!values.some((value) => value !== null && near(cells.Value, value))) {
-        found.push(`${result.id}, ${name}: '${cells.Value}' is printed, ${values.map(exact).join(" or ")} follows from the results`);
-      }
-      const rowsOf = [...result.criteria, ...(result.verification?.criteria ?? [])].filter((r) => r.quantity === name && (owner === "" || String(r.pantograph) === key));
-      if (cells.Verdict && rowsOf.length && !rowsOf.some((r) => cells.Verdict.toUpperCase().includes(word[r.verdict]))) {
-        found.push(`${result.id}, ${name}: the verdict '${cells.Verdict}' is printed, ${word[rowsOf[0].verdict]} follows from the results`);
-      }
-    }
-  });
-  return { found, count };
+  if (digest !== null && printed !== digest) {
+    found.push(`the digest of the results is ${printed ?? "not printed"}; computed is ${digest}`);
+  }
+  const tables = results.cases.map((result, i) =>
+    checkTables(shown.getElementById(`case-${i + 1}`)?.closest("section"), result));
+  const count = tables.reduce((sum, table) => sum + table.count, 0);
+  return { found: [...found, ...tables.flatMap((table) => table.found)], count };
 }
 
 // Report on a document: its checks by outcome, as `pantocheck verify` prints them.
@@ -91,7 +105,8 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
   const document = await readDocument(bytes), results = JSON.parse(document.text), checks = [];
   if (results.schema !== "pantocheck.results/1") throw new Error("the document holds no results of Pantocheck");
   const add = (outcome, statement, details = []) => checks.push({ outcome, statement, details });
-  const judged = (proved, contradicted, details) => add(details.length ? "contradicted" : "proved", details.length ? contradicted : proved, details);
+  const judged = (proved, contradicted, details) =>
+    details.length ? add("contradicted", contradicted, details) : add("proved", proved);
   let numbers;
   try {
     numbers = await checkNumbers(results);
@@ -99,7 +114,9 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
     numbers = { found: [`the results are not in the format of Pantocheck (${error.message})`], evaluated: {} };
   }
   const lines = [...new Set(numbers.found)];
-  judged("Verdicts, margins, uncertainties and statistics follow from the embedded numbers.", "The embedded numbers and verdicts contradict each other.", lines);
+  judged(
+    "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
+    "The embedded numbers and verdicts contradict each other.", lines);
   let gaps = [];
   try { gaps = findGaps(results); } catch (error) { gaps = [error.message]; }
   if (gaps.length) add("contradicted", "Parts that every run writes are missing.", gaps);
@@ -117,17 +134,21 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
     add("open", "The numbers printed on the pages of the PDF. Compare the printed digest of the results.", [digest]);
   }
   const signed = document.signed || hasSignature;
-  add("open", signed ? "The origin of the document: it claims to be signed, and signatures are not checked here." : "The origin of the document.", signed ? [] : ["unsigned: nothing shows who made this document."]);
-  const unsampled = results.cases.filter((result) => !result.signals && Object.keys(result.traces ?? {}).length).map((result) => result.id);
+  if (signed) add("open", "The origin of the document: it claims to be signed, and signatures are not checked here.");
+  else add("open", "The origin of the document.", ["unsigned: nothing shows who made this document."]);
+  const unsampled = results.cases.filter((result) => !result.signals && Object.keys(result.traces ?? {}).length)
+    .map((result) => result.id);
   if (unsampled.length) add("open", "Statistics of records whose signals are not embedded.", unsampled);
   for (const [check, statement] of ONLY_VERIFY) add("open", `${statement} (verify: ${check})`);
   const contradictions = checks.filter((check) => check.outcome === "contradicted").flatMap((check) => check.details);
   const criteria = results.cases?.reduce((sum, r) => sum + r.criteria.length + (r.verification?.criteria.length ?? 0), 0);
   const noun = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
   const size = `${noun(results.cases?.length, "case")}, ${noun(criteria, "criterion", "criteria")}`;
-  const origin = signed ? "NOT TRUSTED: the document claims to be signed" : "UNSIGNED: the numbers are consistent, anyone can have written this document";
+  const origin = signed ? "NOT TRUSTED: the document claims to be signed"
+    : "UNSIGNED: the numbers are consistent, anyone can have written this document";
   const conclusion = contradictions.length
     ? `not consistent: ${noun(contradictions.length, "contradiction")} (${size}; stated verdict '${results.verdict}').`
     : `${origin}; the verdict '${results.verdict}' follows from the embedded numbers (${size}).`;
-  return { name, kind: document.kind, state: contradictions.length ? "contradicted" : "consistent", conclusion, checks, digest: document.digest ?? null, results, evaluated: numbers.evaluated };
+  const state = contradictions.length ? "contradicted" : "consistent", { evaluated } = numbers;
+  return { name, kind: document.kind, state, conclusion, checks, digest: document.digest ?? null, results, evaluated };
 }

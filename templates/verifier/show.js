@@ -3,7 +3,8 @@ const HEADINGS = { contradicted: "Contradictions", incomplete: "Not compared in 
 const output = document.getElementById("report");
 
 function element(name, text = "", attributes = {}) {
-  const made = document.createElementNS(name === "svg" || attributes.svg ? "http://www.w3.org/2000/svg" : "http://www.w3.org/1999/xhtml", name);
+  const space = name === "svg" || attributes.svg ? "2000/svg" : "1999/xhtml";
+  const made = document.createElementNS(`http://www.w3.org/${space}`, name);
   for (const [key, value] of Object.entries(attributes)) if (key !== "svg") made.setAttribute(key, value);
   made.textContent = text;
   return made;
@@ -49,8 +50,9 @@ function tabulate(result) {
   add(["Quantity", "Pantograph", "Value", "Uncertainty", "Limits", "Margin", "Verdict"], "th");
   for (const row of result.criteria) {
     const limits = `${row.lower === null ? "" : formatG(row.lower, 6)} … ${row.upper === null ? "" : formatG(row.upper, 6)}`;
-    const texts = [row.value === null ? "—" : `${formatG(row.value, 6)} ${row.unit}`, row.uncertainty === null ? "—" : `± ${formatG(row.uncertainty, 2)}`];
-    add([row.quantity, row.pantograph || "line", ...texts, limits, row.margin === null ? "—" : formatG(row.margin, 2), row.verdict], "td");
+    const text = (value, digits, sign = "", unit = "") => ((value ?? null) === null ? "—" : `${sign}${formatG(value, digits)} ${unit}`);
+    const [value, uncertainty, margin] = [text(row.value, 6, "", row.unit), text(row.uncertainty, 2, "± "), text(row.margin, 2)];
+    add([row.quantity, row.pantograph || "line", value, uncertainty, limits, margin, row.verdict], "td");
   }
   return table;
 }
@@ -75,7 +77,11 @@ function showReport(report) {
     for (const key of Object.keys(result.traces)) {
       if (!result.traces[key].force_20_N?.length) continue;
       const signals = report.evaluated[result.id]?.[key];
-      try { output.append(drawForce(result, key, signals?.covered ? signals : null)); } catch (error) { output.append(element("p", error.message)); }
+      try {
+        output.append(drawForce(result, key, signals?.covered ? signals : null));
+      } catch (error) {
+        output.append(element("p", error.message));
+      }
     }
   }
 }
