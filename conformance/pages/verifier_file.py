@@ -30,4 +30,4 @@ def build_verifier(version: str) -> bytes:
 def describe_verifier(suite: Suite) -> str:
     """Line of page 1: the file that checks this document in a browser, and its digest."""
     digest = sha256(build_verifier(suite.version)).hexdigest()
-    return f"{VERIFIER_NAME} in any browser, SHA-256 {digest} (pantocheck verify --write-verifier FILE)"
+    return f"{VERIFIER_NAME} in a browser, SHA-256 {digest} (pantocheck verify --write-verifier FILE)"
