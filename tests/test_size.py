@@ -14,19 +14,20 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 69_950,
-    ("templates",): 2_950,
-    ("verification",): 14_900,
-    ("tests",): 49_050,
+    ("model", "conformance"): 71_200,
+    ("templates",): 2_970,
+    ("verification",): 15_650,
+    ("tests",): 50_850,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
-A lower number replaces these whenever it is reached. A subject that must add lines raises its number in the same
+The decision rule, the verifier in a browser and the damping study have raised them last. A lower number replaces these
+whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
 """
 
-MOST_WORDS = 64_500
+MOST_WORDS = 67_250
 """Largest number of words in the pages of `docs/`."""
 
 

@@ -26,7 +26,7 @@ from pantocheck.conformance.studies.vovan2015.study_report import build_provenan
 END_SHARE = 0.1
 """Share of the largest gain at which the effect of the dampers ends [-]."""
 
-OTHER_SHARES = (0.05, 0.1, 0.2, 0.3)
+END_SHARES = (0.05, 0.1, 0.2, 0.3)
 """Shares of the table that shows how the end depends on its definition [-]."""
 
 FrequencyBands = tuple[tuple[float, float], ...]
@@ -105,7 +105,7 @@ def locate_end(gains: Sequence[float], centres: Sequence[float], share: float) -
 
 def _tabulate_ends(gains: Sequence[float], centres: Sequence[float]) -> TextTable:
     """End of the effect at other levels of its definition."""
-    ends = {share: locate_end(gains, centres, share) for share in OTHER_SHARES}
+    ends = {share: locate_end(gains, centres, share) for share in END_SHARES}
     rows = [[f"{100 * share:g} %", "-" if end is None else f"{end:.3g} Hz"] for share, end in ends.items()]
     return TextTable(
         caption="End of the effect by the level of its definition",
