@@ -7,6 +7,7 @@ import pytest
 
 from helpers.graded_wave import Wave
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.records import record_resolution
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_resolution import (
     CUBIC,
@@ -64,6 +65,13 @@ def test_record_at_the_rate_of_the_case_loses_nothing(case_250: Case) -> None:
     assert set(sampling_component(found, 500.0).half_widths[1].values()) == {0.0}
     assert sampling_component(found, 1000.0).half_widths[1]["std_force_N"] > 0
     assert set(resolution_component(found).half_widths[1].values()) == {0.0}
+
+
+def test_either_half_of_the_samples_is_left_out(case_250: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    replaced = set()
+    monkeypatch.setattr(record_resolution, "replace_samples", lambda *given: replaced.add(given[:2]) or given[2])
+    sampling_component(signals(case_250, Wave(rate=500.0).record(case_250)), None)
+    assert replaced == {(first, weights) for first in (0, 1) for weights in (CUBIC, STRAIGHT)}
 
 
 @pytest.mark.parametrize("step", [1.0, 5.0])
