@@ -9,6 +9,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.study_tables import DropStatements
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.decay_preparation import prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
@@ -25,6 +26,10 @@ from pantocheck.model.modal.modes import Modes, compute_modes_below
 
 SEPARATE_SHARE = 0.1
 """Smallest gap between two groups of lateral modes, over the lowest lateral frequency [-]."""
+
+
+MERGED_GAPS = (0.5, 1.0, 2.0)
+"""Gaps of the table that shows how the merging of groups depends on its definition, over their mean width [-]."""
 
 
 def compute_statements(case: Case, inputs: DropStatements, first: DropRecord, frequency: RealArray) -> dict[str, Value]:
@@ -87,14 +92,31 @@ def select_lateral(modes: Modes) -> RealArray:
     return np.asarray(modes.frequency[share > 0.5])
 
 
-def find_merging(frequency: RealArray, groups: Sequence[int] | np.ndarray) -> float | None:
-    """Middle of the lowest gap between groups that is smaller than the mean of their widths [Hz]; None: none is."""
+def find_merging(frequency: RealArray, groups: Sequence[int] | np.ndarray, gap: float = 1.0) -> float | None:
+    """Middle of the lowest gap between groups that is smaller than the mean of their widths [Hz]; None: none is.
+
+    Args:
+        frequency: Frequencies of the modes, ascending, (n,) [Hz].
+        groups: Number of the group of each mode, from 1, (n,).
+        gap: Largest gap of merged groups over the mean of their widths [-].
+    """
     numbers = np.asarray(groups)
     members = [frequency[numbers == number] for number in range(1, int(numbers.max(initial=0)) + 1)]
     for low, high in pairwise([group for group in members if group.size]):
-        if high[0] - low[-1] < (np.ptp(low) + np.ptp(high)) / 2:
+        if high[0] - low[-1] < gap * (np.ptp(low) + np.ptp(high)) / 2:
             return float((low[-1] + high[0]) / 2)
     return None
+
+
+def tabulate_merging(case: Case, frequency: RealArray) -> TextTable:
+    """Merging of the groups of computed modes [Hz] at several levels of its definition."""
+    groups = number_groups(frequency, frequency, case.line.geometry.spans)
+    found = {gap: find_merging(frequency, groups, gap) for gap in MERGED_GAPS}
+    return TextTable(
+        caption="Groups that are no longer separate, by the level of the definition",
+        columns=["Gap over the mean width of its groups", "From"],
+        rows=[[f"{gap:g}", "-" if place is None else f"{place:.3g} Hz"] for gap, place in found.items()],
+    )
 
 
 def describe_identification(modes: Sequence[Mode], population: Population | None) -> dict[str, Value]:

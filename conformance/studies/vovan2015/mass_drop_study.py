@@ -20,7 +20,11 @@ from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.results.damping_format import DampingResults, Observability
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.conformance.runs.system import Delivered, StudyResult
-from pantocheck.conformance.studies.vovan2015.drop_statements import compute_statements, describe_identification
+from pantocheck.conformance.studies.vovan2015.drop_statements import (
+    compute_statements,
+    describe_identification,
+    tabulate_merging,
+)
 from pantocheck.conformance.studies.vovan2015.line_damping import (
     IdentifiedDrops,
     build_drop_run_table,
@@ -149,7 +153,11 @@ def run_mass_drop_study(case: Case) -> Delivered:
                 _draw_groups([mode for test in tests for mode in select_certain(test)], bound),
                 *fit.charts,
             ),
-            tables=(build_provenance_table(case), *fit.tables),
+            tables=(
+                build_provenance_table(case),
+                *([] if statements is None else [tabulate_merging(case, frequency)]),
+                *fit.tables,
+            ),
         ),
     )
 
