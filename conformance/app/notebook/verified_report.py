@@ -1,6 +1,6 @@
 """Verification of reports in Python: the checks of a certificate or a results.json."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -20,6 +20,7 @@ from pantocheck.conformance.documents.repetition_check import (
 )
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import DocumentState, Verification, check_origin, verify_document
+from pantocheck.conformance.results.results_format import Results
 
 Origin = Literal["authentic", "repeated", "untrusted", "unsigned"]
 """What shows that a report is genuine: its signatures, or its numbers computed again; signatures of unknown authorities
@@ -106,8 +107,14 @@ def verify_report(
         checks += check_rerun(results, catalogue)
         repeated |= list_known_cases(results, catalogue)
     verification = verification.add_checks([*checks, *check_origin(signatures)])
-    origin = _find_origin(signatures, all(case.id in repeated for case in results.cases if case.quantities))
+    origin = _find_origin(signatures, _is_repeated(results, repeated))
     return VerifiedReport(verification, origin, tuple(facts.signer for facts in signatures.signatures))
+
+
+def _is_repeated(results: Results, repeated: Collection[str]) -> bool:
+    """Whether every number that decides was computed again; the steps of a dossier need more than its cases."""
+    computed = [case.id for case in results.cases if case.quantities]
+    return bool(computed) and results.procedure is None and set(computed) <= set(repeated)
 
 
 def _find_origin(signatures: SignatureReport, all_repeated: bool) -> Origin:
