@@ -14,7 +14,7 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot"}
 
 LARGEST = {
-    ("model", "conformance"): 71_200,
+    ("model", "conformance"): 71_220,
     ("templates",): 2_970,
     ("verification",): 15_650,
     ("tests",): 50_850,
