@@ -116,7 +116,7 @@ def make_records(seed: tuple[int, ...], count: int, spans: int, rho: float) -> I
     """
     random = np.random.default_rng(seed)
     total = spans + 2 * MARGIN
-    level, amplitude = (_autoregression(random, count, total, rho) for _ in range(2))
+    level, amplitude = (draw_autoregression(random, count, total, rho) for _ in range(2))
     factor = np.repeat(np.exp(0.2 * amplitude), RATE, axis=1)
     step = np.repeat(level, RATE, axis=1)
     wave = np.tile(np.sin(2 * np.pi * np.arange(RATE) / RATE), total)
@@ -135,7 +135,7 @@ def make_records(seed: tuple[int, ...], count: int, spans: int, rho: float) -> I
         )
 
 
-def _autoregression(random: np.random.Generator, count: int, size: int, rho: float) -> RealArray:
+def draw_autoregression(random: np.random.Generator, count: int, size: int, rho: float) -> RealArray:
     """Stationary Gaussian autoregression of first order with unit variance, (count, size)."""
     shocks = np.sqrt(1 - rho**2) * random.standard_normal((count, size))
     shocks[:, 0] /= np.sqrt(1 - rho**2)
@@ -209,7 +209,7 @@ def measure_rows(spans: int, rho: float, records: int) -> list[Row]:
     return [
         row
         for name, numbers in values.items()
-        if (row := _build_row(name, spans, rho, np.array(numbers), uncertainties[name], limits))
+        if (row := build_row(name, spans, rho, np.array(numbers), uncertainties[name], limits))
     ]
 
 
@@ -239,22 +239,37 @@ def _long_values(rho: float) -> Mapping[str, float]:
     return {name: float(np.mean([values[name] for values in found])) for name in found[0]}
 
 
-def _build_row(
+def build_row(
     name: str,
     spans: int,
     rho: float,
     values: RealArray,
     uncertainties: list[LengthUncertainty | None],
     limits: Mapping[str, float],
+    returns: Mapping[str, float] | None = None,
 ) -> Row | None:
-    """Row of one quantity; None if no record has an uncertainty."""
+    """Row of one quantity.
+
+    Args:
+        name: Quantity.
+        spans: Spans of a record.
+        rho: Correlation of neighbouring spans [-].
+        values: Values of the records, (n,).
+        uncertainties: Their uncertainties.
+        limits: True values of a mean, a deviation or a share, by quantity.
+        returns: True values of an extreme or a number of events; default: the mean value of the records.
+
+    Returns:
+        Row; None if no record has an uncertainty.
+    """
     found = {type(uncertainty) for uncertainty in uncertainties}
     kind = next((kind for kind in (StatisticInterval, ExtremeInterval, SubRecordRange) if kind in found), None)
     if kind is None:
         return None
     selected = [isinstance(uncertainty, kind) for uncertainty in uncertainties]
     widths = np.array([x.half_width for x in itertools.compress(uncertainties, selected) if x is not None])
-    distance = np.abs(values - (values.mean() if name in GROWING else limits[name]))
+    grown = {name: float(values.mean())} if returns is None else returns
+    distance = np.abs(values - (grown if name in GROWING else limits)[name])
     contained = int(np.sum(distance[np.array(selected)] <= widths))
     ratio = float(np.median(widths) / np.quantile(distance, 0.95))
     return Row(name, spans, rho, widths.size, contained, ratio, kind)
