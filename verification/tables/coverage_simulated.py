@@ -14,7 +14,8 @@ from span to span.
 
 Rows. Every quantity of each pantograph, for rho = 0 and 0.7. Long run-in: each passage has five records of 60 spans
 after a run-in of the first pantograph of 30 spans. Short run-in: each passage has one record of 60 spans after three
-spans, and there are five times as many passages. Rows are not pooled. Fewer than 60 spans have no interval, see verification/tables/coverage.py.
+spans, and there are five times as many passages. Rows are not pooled. Fewer than 60 spans have no interval, see
+verification/tables/coverage.py.
 
 Seeds. The irregularity of passage p has the seed (50319, 1, spans of run-in, 100 rho, p), with p = 0, 1, 2 ... This
 rule was recorded before the first run.
