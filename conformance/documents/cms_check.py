@@ -186,6 +186,7 @@ def _validate(content: bytes, signed_data: Any, roots: list[Any], moment: dateti
         )
 
     def validate() -> Any:
+        """Validate now: in a thread without an event loop."""
         return asyncio.run(
             async_validate_detached_cms(
                 content,

@@ -11,6 +11,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.drops.damping_model import JOINED_WIRES, WIRES, build_damping_basis, list_other_damping
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
@@ -23,8 +24,6 @@ SAME_DENSITY = 0.02
 """Largest relative difference of the mass per length and area of wires of the same material [-]."""
 LARGEST_OTHER_SHARE = 0.1
 """Largest share of droppers, arms and supports in the damping of a mode for which material damping dominates [-]."""
-HALF_WIDTH = 1.96
-"""Half of a 95 % interval, in standard deviations [-]."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,9 @@ class TransferredDamping:
     ratio: RealArray
     """Damping ratios, (n,) [-]."""
     half_width: RealArray
-    """Half-widths of the 95 % intervals: those of the coefficients and the residual of the fit, (n,) [-]."""
+    """Half-widths of intervals of at least 95 %, from those of the coefficients and the residual of the fit, (n,) [-].
+
+    The effects of the coefficients are added as if they agreed, which is an upper bound."""
     violations: tuple[str, ...]
     """Conditions of the rule that do not hold, or that the files do not confirm; empty: it holds."""
 
@@ -70,7 +71,7 @@ def transfer_damping(fitted: DampingResults, measured: LineFile, other: LineFile
     reach = [max(c.high_95 - c.value, c.value - c.low_95) for c in fitted.coefficients]
     # Coefficients are correlated: their effects are added, which is never too small.
     by_coefficients = np.sum([np.abs(column) * width for column, width in zip(columns, reach, strict=True)], axis=0)
-    by_form = HALF_WIDTH * fitted.residual * ratio
+    by_form = QUANTILE_95 * fitted.residual * ratio
     violations = [*_compare_materials(measured, other), *_doubt_fit(fitted.coefficients, basis.stated / ratio)]
     return TransferredDamping(modes.frequency[inside], ratio, np.hypot(by_coefficients, by_form), tuple(violations))
 

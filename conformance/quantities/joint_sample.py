@@ -12,6 +12,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.near_limit import QUANTILE_95
+from pantocheck.conformance.core.rounding import round_digits
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.quantities.uncertainty import JointSample
 
@@ -63,16 +64,8 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
             for factor, changes in ((1.0, parts.deviations), (mesh, parts.mesh_changes), (bound, parts.bounds)):
                 draws = draws + factor * changes.get(owner, {}).get(name, 0.0)
             if np.ptp(draws) > 0 and any(name in part.get(owner, {}) for part in scatter):
-                sample.setdefault(owner, {})[name] = tuple(round_digits(draws, DRAW_DIGITS).tolist())
+                sample.setdefault(owner, {})[name] = tuple(round_digits(draws, DRAW_DIGITS))
     return sample
-
-
-def round_digits(numbers: RealArray, digits: int) -> RealArray:
-    """Numbers with so many significant digits; a whole number over a power of ten is the nearest float of its text."""
-    exponents = np.floor(np.log10(np.abs(numbers), out=np.zeros_like(numbers), where=numbers != 0))
-    decimals = digits - 1 - exponents
-    scale, inverse = 10.0 ** np.maximum(decimals, 0), 10.0 ** np.maximum(-decimals, 0)
-    return np.asarray(np.rint(numbers * scale / inverse) * inverse / scale)
 
 
 def _widen_members(value: float, others: Sequence[object]) -> RealArray:

@@ -7,7 +7,7 @@ influences has the variance of the statistic. Neighbouring spans are correlated.
 the slowest fluctuations along the record: the coefficients of the influences in the cosines of 1/2, 1, ... 3 periods
 (Lazarus, Lewis, Stock and Watson 2018, doi:10.1080/07350015.2018.1506926). Six coefficients give a Student variate with
 six degrees of freedom. Skewed influences widen the interval: its error of coverage grows with the square of the
-skewness of the mean (Hall 1992, doi:10.1007/978-1-4612-4384-7, section 3.5).
+skewness of the mean (Hall 1992, doi:10.1007/978-1-4612-4384-7).
 
 Extremes: the extreme of a record scatters about its expected value, the return level of the record. Its scatter follows
 from the extremes of the spans by a generalised extreme value distribution (Hosking, Wallis and Wood 1985,

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Histogram, Spectrum, Traces, UpliftTrace
+from pantocheck.conformance.core.rounding import round_digits
 from pantocheck.conformance.quantities.bands import amplitude_spectrum
 from pantocheck.conformance.quantities.line_signals import LineSignals, supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -75,7 +76,7 @@ def thin_series(series: RealArray) -> list[float]:
 
 def round_series(series: RealArray) -> list[float]:
     """Every value, rounded to six significant digits."""
-    return [float(f"{value:.6g}") for value in series.tolist()]
+    return round_digits(series, 6)
 
 
 def _build_traces(signals: PantographSignals, position: RealArray, supports: list[float]) -> Traces:

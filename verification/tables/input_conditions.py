@@ -20,6 +20,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import PassageRun
 from pantocheck.model.description.failures import SimulationError
+from verification.speed.passage_lines import QUANTITIES
 from verification.tables.input_variations import (
     NotApplicable,
     apply_choice,
@@ -32,16 +33,6 @@ from verification.tables.resolving_power import CASES
 
 OUT = Path("reference_cases/conditions")
 COMMAND = "python -m verification.tables.input_conditions"
-QUANTITIES = (
-    "std_force_N",
-    "rms_0_5_N",
-    "rms_5_20_N",
-    "rms_20_50_N",
-    "max_force_N",
-    "min_force_N",
-    "max_uplift_at_support_mm",
-)
-"""Quantities of the tables; the mean force is tuned in most cases."""
 Values = dict[tuple[int, str], float]
 """Values by pantograph, 0 for the line, and quantity."""
 

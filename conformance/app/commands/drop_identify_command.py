@@ -273,10 +273,10 @@ def _write_transfer(
 ) -> list[RenderableType]:
     """Write the damping ratios of the second line by the fit on the first one; returns lines for the terminal."""
     found = transfer_damping(results, *lines, element)
-    names = ["frequency_Hz", "damping_ratio", "half_width_95"]
+    names = ["frequency_Hz", "damping_ratio", "half_width_at_least_95"]
     write_csv_table(out / TRANSFER_FILE, names, np.column_stack([found.frequency, found.ratio, found.half_width]), 6)
     width = 100 * float(np.median(found.half_width / found.ratio))
     return [
-        escape_text(f"transfer: {found.frequency.size} modes, 95 % intervals of +-{width:.0f} % (median)"),
+        escape_text(f"transfer: {found.frequency.size} modes, intervals of at least 95 %: +-{width:.0f} % (median)"),
         *(indent_text(text, "the rule does not hold: ") for text in found.violations),
     ]

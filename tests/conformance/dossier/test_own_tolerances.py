@@ -6,7 +6,10 @@ from pathlib import Path
 import pytest
 
 from helpers.example_dossier import CachedSimulator, copy_example, validate_example
+from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.dossier.dossier_file import LineTestTable
+from pantocheck.conformance.dossier.line_test_step import build_line_test_profile
 from pantocheck.conformance.results.results_format import Results
 
 TOLERANCES = {
@@ -34,6 +37,15 @@ def list_criteria(results: Results) -> list[Criterion]:
     """Criteria of all cases and steps."""
     of_steps = [row for step in results.procedure.steps for row in getattr(step, "criteria", ())]
     return [*(row for case in results.cases for row in case.criteria), *of_steps]
+
+
+def test_tolerances_of_a_line_test_are_own() -> None:
+    published = load_profile("line-test").rule
+    wide = published[0].model_copy(update={"tolerance": 1e6, "trust": "primary", "source": "EN 50318:2018, table 7"})
+    rules = build_line_test_profile(LineTestTable(tolerance=(wide, published[1]))).rule
+    assert [rule.trust for rule in rules] == ["own", published[1].trust]
+    assert rules[0].source != wide.source
+    assert build_line_test_profile(LineTestTable()).rule == published
 
 
 @pytest.mark.thorough

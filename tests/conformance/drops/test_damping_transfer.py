@@ -81,7 +81,7 @@ def test_command_writes_the_table_of_another_line(tmp_path: Path) -> None:
         "drop", "fit", MODES, "--line", "vovan2015/mass-drop/stand-in", "--element", "1.5", "--wires", "common",
         "--transfer", "vovan2015/mass-drop/stand-in", "--out", tmp_path,
     )  # fmt: skip
-    assert "95 % intervals" in result.output
+    assert "intervals of at least 95 %" in result.output
     rows = (tmp_path / "transfer.csv").read_text(encoding="utf-8").splitlines()
-    assert rows[0] == "frequency_Hz,damping_ratio,half_width_95"
+    assert rows[0] == "frequency_Hz,damping_ratio,half_width_at_least_95"
     assert len(rows) > 30

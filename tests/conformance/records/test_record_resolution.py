@@ -60,6 +60,17 @@ def test_extreme_between_two_samples_is_bounded(place: float) -> None:
     assert straight + later >= 0.99 * place**2
 
 
+@pytest.mark.parametrize("place", [0.0, 0.25, 0.4, 0.5])
+def test_peak_between_two_samples_is_bounded_by_the_component(case_250: Case, place: float) -> None:
+    """Crests of a wave in the height: samples on straight lines bound them at 0.4, samples between them at 0.5."""
+    record = Wave(rate=500.0).record(case_250)
+    index = np.arange(record.position.shape[1])
+    turn = 2 * np.pi / 200
+    height = 5.0 + 2e-6 / turn**2 * np.cos(turn * (index - place))[None]  # curvature of 2 um per sample squared
+    widths = sampling_component(signals(case_250, replace(record, contact_height=height)), None).half_widths[1]
+    assert widths["contact_height_range_mm"] >= 0.99 * 2e-3 * place**2  # crest and trough
+
+
 def test_record_at_the_rate_of_the_case_loses_nothing(case_250: Case) -> None:
     found = signals(case_250, Wave(rate=500.0).record(case_250))
     assert set(sampling_component(found, 500.0).half_widths[1].values()) == {0.0}
