@@ -41,4 +41,5 @@ pytest_plugins = [
     "helpers.graded_wave",
     "helpers.record_fixtures",
     "helpers.signer_fixtures",
+    "helpers.verifier_page",
 ]

@@ -11,7 +11,10 @@ VERIFIER_NAME = "pantocheck-verifier.html"
 
 VERIFIER_FOLDER = TEMPLATES / "verifier"
 
-VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "documents", "show")
+SIGNATURE_LIBRARY = TEMPLATES / "pkijs"
+"""PKI.js with the packages that it needs in one file; its versions, licences and making are beside it."""
+
+VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "revisions", "signatures", "documents", "show")
 """Parts of its script, in the order of their use."""
 
 
@@ -21,8 +24,11 @@ def build_verifier(version: str) -> bytes:
     script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
     style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
     page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
-    parts = {"policy": PageCode((style,), (script,)).policy, "version": version, "style": style, "script": script}
-    for name, text in parts.items():
+    library = (SIGNATURE_LIBRARY / "pkijs.min.js").read_text("utf-8")
+    licence = (SIGNATURE_LIBRARY / "LICENSE").read_text("utf-8")
+    policy = PageCode((style,), (library, script)).policy
+    parts = {"policy": policy, "version": version, "style": style, "script": script, "notice": f"<!--\n{licence}-->\n"}
+    for name, text in (parts | {"library": library}).items():
         page = page.replace(f"@{name}@", text)
     return page.encode()
 

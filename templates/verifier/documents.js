@@ -22,7 +22,7 @@ async function readPdf(bytes) {
   if (!size) throw new Error("the attachment of the PDF cannot be read");
   const raw = bytes.slice(from, from + Number(size[1]));
   const content = /FlateDecode/.test(head[0]) ? await inflate(raw, 64 * 2 ** 20) : raw;
-  return { content, added: text.slice(length).trim() ? text.length - length : 0, signed: /\/ByteRange/.test(text.slice(length)) };
+  return { content, added: text.slice(length).trim() ? text.length - length : 0, signed: text.includes("/ByteRange") };
 }
 
 const BLOCK = /<script type="application\/json" id="pantocheck-results">([^<>]*)<\/script>/g;
@@ -101,8 +101,9 @@ function checkPage(page, digest, results) {
 }
 
 // Report on a document: its checks by outcome, as `pantocheck verify` prints them.
-async function verifyDocument(bytes, name = "document", hasSignature = false) {
+async function verifyDocument(bytes, name = "document", signatureFile = null, roots = null) {
   const document = await readDocument(bytes), results = JSON.parse(document.text), checks = [];
+  const origin = await checkOrigin(bytes, document, signatureFile, roots && readRoots(roots.content, roots.name));
   if (results.schema !== "pantocheck.results/1") throw new Error("the document holds no results of Pantocheck");
   const add = (outcome, statement, details = []) => checks.push({ outcome, statement, details });
   const judged = (proved, contradicted, details) =>
@@ -133,9 +134,12 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
     const digest = document.digest ?? "not computed: this browser offers no digests to a local file";
     add("open", "The numbers printed on the pages of the PDF. Compare the printed digest of the results.", [digest]);
   }
-  const signed = document.signed || hasSignature;
-  if (signed) add("open", "The origin of the document: it claims to be signed, and signatures are not checked here.");
-  else add("open", "The origin of the document.", ["unsigned: nothing shows who made this document."]);
+  if (origin.contradictions.length) {
+    add("contradicted", "The signatures do not hold, or the document was changed after signing.", origin.contradictions);
+  }
+  if (origin.note) add("incomplete", "The origin of the document.", origin.lines);
+  else if (origin.authentic) add("proved", "Every signature holds, and its signer leads to a given trust root.", origin.lines);
+  else add("open", "The origin of the document.", origin.lines);
   const unsampled = results.cases.filter((result) => !result.signals && Object.keys(result.traces ?? {}).length)
     .map((result) => result.id);
   if (unsampled.length) add("open", "Statistics of records whose signals are not embedded.", unsampled);
@@ -144,11 +148,12 @@ async function verifyDocument(bytes, name = "document", hasSignature = false) {
   const criteria = results.cases?.reduce((sum, r) => sum + r.criteria.length + (r.verification?.criteria.length ?? 0), 0);
   const noun = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
   const size = `${noun(results.cases?.length, "case")}, ${noun(criteria, "criterion", "criteria")}`;
-  const origin = signed ? "NOT TRUSTED: the document claims to be signed"
-    : "UNSIGNED: the numbers are consistent, anyone can have written this document";
+  const signers = origin.signers.length ? ` by ${origin.signers.join(", ")}` : "";
+  const claim = origin.authentic ? "authentic: " : signers || origin.note ? `NOT TRUSTED: the document claims to be signed${signers}; `
+    : "UNSIGNED: the numbers are consistent, anyone can have written this document; ";
   const conclusion = contradictions.length
     ? `not consistent: ${noun(contradictions.length, "contradiction")} (${size}; stated verdict '${results.verdict}').`
-    : `${origin}; the verdict '${results.verdict}' follows from the embedded numbers (${size}).`;
-  const state = contradictions.length ? "contradicted" : "consistent", { evaluated } = numbers;
-  return { name, kind: document.kind, state, conclusion, checks, digest: document.digest ?? null, results, evaluated };
+    : `${claim}the verdict '${results.verdict}' follows from the embedded numbers (${size}).`;
+  const state = contradictions.length ? "contradicted" : origin.note ? "incomplete" : "consistent", { evaluated } = numbers;
+  return { name, kind: document.kind, state, conclusion, checks, digest: document.digest ?? null, authentic: origin.authentic, results, evaluated };
 }

@@ -41,6 +41,14 @@ function drawForce(result, key, signals) {
   return figure;
 }
 
+// Half-width of an uncertainty as the certificate prints it: one of zero lacks a component, or is that of a closed form.
+function describeWidth(row, { uncertainty_basis: basis }) {
+  const missing = row.trust !== "computed" && Object.values(basis ?? {}).some((text) => text.startsWith("not known"));
+  if ((row.uncertainty ?? null) === null) return "—";
+  if (row.uncertainty) return `± ${formatG(row.uncertainty, 2)}`;
+  return !SIGNAL_NAME.test(row.quantity) ? "exact" : missing ? "not known" : "± 0";
+}
+
 function tabulate(result) {
   const table = element("table"), add = (cells, name) => {
     const row = element("tr");
@@ -50,15 +58,15 @@ function tabulate(result) {
   add(["Quantity", "Pantograph", "Value", "Uncertainty", "Limits", "Margin", "Verdict"], "th");
   for (const row of result.criteria) {
     const limits = `${row.lower === null ? "" : formatG(row.lower, 6)} … ${row.upper === null ? "" : formatG(row.upper, 6)}`;
-    const text = (value, digits, sign = "", unit = "") => ((value ?? null) === null ? "—" : `${sign}${formatG(value, digits)} ${unit}`);
-    const [value, uncertainty, margin] = [text(row.value, 6, "", row.unit), text(row.uncertainty, 2, "± "), text(row.margin, 2)];
-    add([row.quantity, row.pantograph || "line", value, uncertainty, limits, margin, row.verdict], "td");
+    const text = (value, digits, unit = "") => ((value ?? null) === null ? "—" : `${formatG(value, digits)} ${unit}`);
+    const [value, margin] = [text(row.value, 6, row.unit), text(row.margin, 2)];
+    add([row.quantity, row.pantograph || "line", value, describeWidth(row, result), limits, margin, row.verdict], "td");
   }
   return table;
 }
 
 function showReport(report) {
-  output.replaceChildren(element("h2", report.name), element("p", report.conclusion, { class: `conclusion ${report.state}` }));
+  output.replaceChildren(element("h2", report.name), element("p", report.conclusion, { class: `conclusion ${report.authentic ? "authentic" : report.state}` }));
   if (report.digest) output.append(element("p", `Digest of the results: ${report.digest}`, { class: "small" }));
   for (const [outcome, heading] of Object.entries(HEADINGS)) {
     const checks = report.checks.filter((check) => check.outcome === outcome);
@@ -86,15 +94,25 @@ function showReport(report) {
   }
 }
 
+const given = { document: null, signature: null, roots: null };
+
+// A document replaces the one before with its signature; trust roots and a signature file are added to it.
 async function showFiles(files) {
-  const list = [...files], signature = list.some((file) => file.name.endsWith(".p7s"));
-  const chosen = list.find((file) => !file.name.endsWith(".p7s"));
-  if (!chosen) return;
-  output.replaceChildren(element("p", "The document is read and computed again …"));
+  const list = [...files], find = (test) => list.find((file) => test.test(file.name)) ?? null;
+  const signature = find(/\.p7s$/i), roots = find(/\.(pem|crt|cer|der)$/i), chosen = list.find((file) => ![signature, roots].includes(file));
+  if (chosen) Object.assign(given, { document: chosen, signature: null });
+  if (signature) given.signature = signature;
+  if (roots) given.roots = roots;
+  const read = async (file) => (file ? new Uint8Array(await file.arrayBuffer()) : null), { name } = given.document ?? {};
+  output.replaceChildren(element("p", name ? "The document is read and computed again …" : "Drop the certificate, too."));
+  if (!name) return;
   try {
-    showReport(await verifyDocument(new Uint8Array(await chosen.arrayBuffer()), chosen.name, signature));
+    const trusted = given.roots && { name: given.roots.name, content: await read(given.roots) };
+    const report = await verifyDocument(await read(given.document), name, await read(given.signature), trusted);
+    const names = [name, given.signature?.name, given.roots && `trust roots ${given.roots.name}`].filter(Boolean);
+    showReport({ ...report, name: names.join(", ") });
   } catch (error) {
-    output.replaceChildren(element("p", `${chosen.name}: ${error.message}. Nothing is proved.`, { class: "conclusion contradicted" }));
+    output.replaceChildren(element("p", `${name}: ${error.message}. Nothing is proved.`, { class: "conclusion contradicted" }));
   }
 }
 

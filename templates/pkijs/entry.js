@@ -1,0 +1,1 @@
+export { Certificate, CertificateChainValidationEngine, ContentInfo, SignedData } from "pkijs";
