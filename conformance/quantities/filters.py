@@ -3,15 +3,20 @@
 A transfer function in polynomial form overflows at high sampling rates and low cut-offs; sections do not.
 """
 
-from functools import lru_cache
 from typing import Annotated, Literal
 
 import numpy as np
-import scipy  # loads scipy.signal when it is used: its import takes longer than a listing of the cases
 from pydantic import Field
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
+from pantocheck.conformance.quantities.recursive_filter import (
+    design_band_pass,
+    design_low_pass,
+    filter_both_ways,
+    filter_forwards,
+    frequency_response,
+)
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered, BandNotObservable
 
 HIGHEST_SHARE_OF_RATE = 0.4
@@ -97,8 +102,8 @@ class Filter(InputTable):
         check_observable(self.cutoff_Hz, rate, f"a filter at {self.cutoff_Hz:g} Hz")
         order, cutoff = self.single_run(rate)
         if low == 0:
-            return _design_sections(order, cutoff, rate)
-        return np.asarray(scipy.signal.butter(order, self._single_band(rate, low), "bandpass", fs=rate, output="sos"))
+            return design_low_pass(order, cutoff, rate)
+        return design_band_pass(order, self._single_band(rate, low), rate)
 
     @property
     def runs(self) -> int:
@@ -148,20 +153,13 @@ class Filter(InputTable):
         """
         sections = self.sections(rate, low)
         if self.phase == "causal":
-            filtered, _ = scipy.signal.sosfilt(sections, signal, zi=scipy.signal.sosfilt_zi(sections) * signal[0])
-            return np.asarray(filtered)
+            return filter_forwards(sections, signal)
         padding = min(signal.size - 1, int(np.ceil(2 * rate / (low or self.cutoff_Hz))))
-        return np.asarray(scipy.signal.sosfiltfilt(sections, signal, padlen=padding))
+        return filter_both_ways(sections, signal, padding)
 
     def gain(self, frequency: RealArray, rate: float, low: float = 0.0) -> RealArray:
         """Gain of the whole filter at frequencies [Hz]; other parameters as in `sections`."""
-        _, response = scipy.signal.sosfreqz(self.sections(rate, low), worN=frequency, fs=rate)
-        return np.asarray(np.abs(response) ** self.runs)
-
-
-@lru_cache
-def _design_sections(order: int, cutoff: float, rate: float) -> RealArray:
-    return np.asarray(scipy.signal.butter(order, cutoff, fs=rate, output="sos"))
+        return np.asarray(np.abs(frequency_response(self.sections(rate, low), frequency, rate)) ** self.runs)
 
 
 def is_same_cutoff(stated_Hz: float, cutoff_Hz: float) -> bool:

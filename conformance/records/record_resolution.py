@@ -10,7 +10,6 @@ from functools import lru_cache, partial
 from typing import Protocol
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import Evaluation, SectionedSignals, Value, ValuesByOwner
@@ -146,8 +145,17 @@ def _point_outwards(sign: float, window: int, series: RealArray) -> RealArray:
     """Sign of the distance of each sample from the mean of a window of samples, times a sign; 0: the whole channel."""
     known = np.isfinite(series)
     filled = np.where(known, series, series[known].mean() if known.any() else 0.0)
-    mean = uniform_filter1d(filled, window) if window > 1 else filled.mean()
-    return np.asarray(sign * np.sign(series - mean))
+    mean = _moving_mean(filled, window) if window > 1 else filled.mean()
+    distance = series - mean
+    equal = np.abs(distance) <= SAME_NUMBER  # rounding of the sums would decide the sign
+    return np.asarray(sign * np.sign(np.where(equal, 0.0, distance)))
+
+
+def _moving_mean(series: RealArray, window: int) -> RealArray:
+    """Mean of the samples of a window around each; the series is mirrored at its ends."""
+    level = series.mean()
+    sums = np.cumsum(np.pad(series - level, (window // 2 + 1, window - window // 2 - 1), mode="symmetric"))
+    return np.asarray(level + (sums[window:] - sums[:-window]) / window)
 
 
 def replace_samples(first: int, weights: tuple[float, float], series: RealArray) -> RealArray:

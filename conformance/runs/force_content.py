@@ -201,7 +201,9 @@ def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
     energy = float(deviation @ deviation)
     if n < 2 or n > force.size or energy == 0.0:
         return None
-    products = scipy.signal.correlate(whole, deviation, mode="valid", method="fft")
+    size = scipy.fft.next_fast_len(force.size, real=True)
+    spectra = np.fft.rfft(whole, size), np.fft.rfft(deviation, size)
+    products = np.fft.irfft(spectra[0] * spectra[1].conj(), size)[: force.size - n + 1]
     sums, squares = (np.cumsum(np.concatenate([[0.0], values])) for values in (whole, whole**2))
     variance = squares[n:] - squares[:-n] - (sums[n:] - sums[:-n]) ** 2 / n
     varies = variance > SMALLEST_VARIANCE * variance.max()

@@ -8,7 +8,7 @@ its amplitude and its lag reveal a wrong gain or unit of the force, or a shift i
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
+from scipy.linalg import expm
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
@@ -130,15 +130,32 @@ def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple
     m = model.head.size
     inverse = np.linalg.inv(model.mass)
     state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
-    drive = np.concatenate([np.zeros(m), -inverse @ model.head])[:, None]
-    head = np.concatenate([model.head, np.zeros(m)])[None]
+    drive = np.concatenate([np.zeros(m), -inverse @ model.head])
+    head = np.concatenate([model.head, np.zeros(m)])
     time = step * np.arange(force.size)
-    response = scipy.signal.lsim((state, drive, head, np.zeros((1, 1))), force - force.mean(), time)[1]
+    response = _simulate(state, drive, force - force.mean(), step) @ head
     poles = np.linalg.eigvals(state)
     slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]
     modes = np.exp(time[:, None] * slow)
     drift = [time] if np.abs(poles).min() < 1e-3 else []  # without a spring to the base
-    return np.asarray(response), np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
+    return response, np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
+
+
+def _simulate(matrix: RealArray, drive: RealArray, force: RealArray, step: float) -> RealArray:
+    """States of a linear system from rest, (n, k); the force (n,) [N] is linear between its samples.
+
+    The exponential of the system with force and rate of the force as further states gives the exact step.
+    """
+    k = drive.size
+    extended = np.zeros((k + 2, k + 2))
+    extended[:k, :k], extended[:k, k], extended[k, k + 1] = step * matrix, step * drive, 1.0
+    exponential = expm(extended)
+    advance, at_start, ramp = exponential[:k, :k], exponential[:k, k], exponential[:k, k + 1]
+    driven = np.outer(force[:-1], at_start) + np.outer(np.diff(force), ramp)
+    states = np.zeros((force.size, k))
+    for i, change in enumerate(driven):
+        states[i + 1] = advance @ states[i] + change
+    return states
 
 
 def remove_free_motion(signal: RealArray, free: RealArray) -> RealArray:

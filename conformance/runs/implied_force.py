@@ -12,7 +12,6 @@ removed first: the check of the dynamics limits them.
 """
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from pantocheck.conformance.cases.case import Case
@@ -24,6 +23,7 @@ from pantocheck.conformance.quantities.filters import Filter, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
 from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, head_responses, remove_free_motion
+from pantocheck.model.description.cubic_spline import evaluate_polynomials, fit_polynomials
 
 LARGEST_ERROR = 0.15
 """Largest error of the force, over its standard deviation.
@@ -85,7 +85,8 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
     inside[:taper] = inside[-taper:] = False
 
     def smooth(channel: RealArray) -> RealArray:
-        return np.asarray(scipy.interpolate.CubicSpline(record.time, low_pass(channel, record.rate))(time))
+        filtered = low_pass(channel, record.rate)
+        return evaluate_polynomials(record.time, fit_polynomials(record.time, filtered, "not a knot"), time)
 
     heights = [height]
     heights += [applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)]
@@ -97,7 +98,7 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
         motion = smooth(candidate)
         for compliance in (0.0, 1 / file.contact.stiffness_N_m):
             difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
-            difference *= scipy.signal.windows.tukey(force.size, min(1.0, 2 * taper / force.size))
+            difference *= _taper_ends(force.size, min(taper, force.size / 2))
             error = _multiply_by_dynamic_stiffness(file, difference, step, compliance)
             errors.append(_largest_remainder(error, force, inside, step) / spread)
     return min(errors)
@@ -124,16 +125,24 @@ def _multiply_by_dynamic_stiffness(
 
 def _largest_remainder(error: RealArray, force: RealArray, inside: NDArray[np.bool_], step: float) -> float:
     """Largest error inside the analysis section that neither a gain, a constant nor a small lag explains [N]."""
-    time = step * np.arange(force.size)
-    implied = scipy.interpolate.CubicSpline(time, force + error)
+    time = np.arange(force.size, dtype=np.float64) * step
+    implied = fit_polynomials(time, force + error, "not a knot")
     known = np.column_stack([np.ones(force.size), force, np.gradient(force, step)])[inside]
     lag, remainder = 0.0, error[inside]
     for _ in range(LAG_ITERATIONS):
         lag += float(np.linalg.lstsq(known, remainder, rcond=None)[0][-1])
         lag = float(np.clip(lag, -LARGEST_LAG_S, LARGEST_LAG_S))
-        remainder = implied(time[inside] - lag) - force[inside]
+        remainder = evaluate_polynomials(time, implied, time[inside] - lag) - force[inside]
     remainder -= known[:, :2] @ np.linalg.lstsq(known[:, :2], remainder, rcond=None)[0]
     return float(np.abs(remainder).max())
+
+
+def _taper_ends(size: int, width: float) -> RealArray:
+    """Window of n samples: 1, with half a cosine from 0 over a width at both ends."""
+    edge, window = width * (size - 1) / size, np.ones(size)
+    rise = 0.5 - 0.5 * np.cos(np.pi * np.arange(int(edge) + 1) / edge)
+    window[: rise.size], window[-rise.size :] = rise, rise[::-1]
+    return window
 
 
 def _describe(number: int, error: float, low_pass: Filter, height: RealArray) -> Finding:

@@ -1,9 +1,9 @@
 """Cubic spline of an irregularity: its height has no kink, so that it excites no short waves of its own."""
 
 import numpy as np
-import scipy
 
 from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.cubic_spline import evaluate_polynomials, fit_polynomials
 from pantocheck.model.description.irregularity import Irregularity
 
 NO_IRREGULARITY = Irregularity((0.0, 1.0), (0.0, 0.0))
@@ -12,7 +12,7 @@ NO_IRREGULARITY = Irregularity((0.0, 1.0), (0.0, 0.0))
 
 def spline_polynomials(irregularity: Irregularity) -> Array:
     """Coefficients of the spline between neighbouring points, highest power of the distance first, (points - 1, 4)."""
-    return np.ascontiguousarray(_spline(irregularity).c.T)
+    return fit_polynomials(np.array(irregularity.position), np.array(irregularity.height), "horizontal")
 
 
 def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
@@ -26,8 +26,4 @@ def irregularity_height(irregularity: Irregularity, position: Array) -> Array:
         Heights, (n,) [m].
     """
     inside = np.clip(position, irregularity.position[0], irregularity.position[-1])
-    return np.asarray(_spline(irregularity)(inside))
-
-
-def _spline(irregularity: Irregularity) -> "scipy.interpolate.CubicSpline":
-    return scipy.interpolate.CubicSpline(irregularity.position, irregularity.height, bc_type="clamped")
+    return evaluate_polynomials(np.array(irregularity.position), spline_polynomials(irregularity), inside)

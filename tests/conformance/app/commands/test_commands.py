@@ -275,6 +275,21 @@ def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> Non
     assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
 
 
+def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path: Path) -> None:
+    """Their imports take longer than the passages of the case."""
+    code = (
+        "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
+        f"try: app(['run', 'en50318-2002/250', '--formats', 'json', '--jobs', '1', '--out', {str(tmp_path / 'out')!r}])\n"
+        "except SystemExit: pass\n"
+        "print(*sys.modules)"
+    )
+    output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=300)
+    heavy = {"signal", "stats", "interpolate", "ndimage", "optimize", "integrate", "spatial"}
+    assert {f"scipy.{name}" for name in heavy}.isdisjoint(output.stdout.split())
+    assert {"matplotlib", "typst"}.isdisjoint(output.stdout.split())
+    assert "numba" in output.stdout.split()
+
+
 def test_show_states_requirements_start_and_section() -> None:
     """Both pantographs are 200 m apart; the last one starts at 55 m."""
     name, required = "en50318-2018/ac-simple/320-twin", "en50318-2018/ac-simple/static"
