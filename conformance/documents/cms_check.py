@@ -1,12 +1,13 @@
 """Check of a CMS signature: content, chain, validity, key usage and time stamp; and its result in words."""
 
 import asyncio
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import unquote
 
 from pantocheck.conformance.documents.key_files import (
+    TrustRoots,
     describe_failure,
     find_usage_problem,
     find_validity_problem,
@@ -61,6 +62,8 @@ class SignatureReport:
     """Whether the user named trust roots."""
     note: str = ""
     """Reason why signatures were not checked; empty if they were."""
+    lists_given: bool = False
+    """Whether the user gave lists of revoked certificates."""
 
     @property
     def contradictions(self) -> tuple[str, ...]:
@@ -91,7 +94,11 @@ def describe_signatures(report: SignatureReport) -> list[str]:
         signed = "signed by" if facts.trusted else "claims to be signed by"
         lines.append(f"signature {number}: {signed} {facts.signer}{role} ({_describe_trust(facts)}).")
         lines.append(f"  Signing certificate issued by {facts.issuer}. {_describe_time(facts)}")
-    return [*lines, "Revocation of certificates was not checked: verification uses no network."]
+    return [*lines, REVOCATION if report.lists_given else NO_REVOCATION]
+
+
+REVOCATION = "Revocation of certificates was checked by the lists among the trust roots."
+NO_REVOCATION = "Revocation of certificates was not checked: verification uses no network."
 
 
 def _describe_trust(facts: SignatureFacts) -> str:
@@ -113,10 +120,11 @@ def _describe_time(facts: SignatureFacts) -> str:
 # Check of one CMS signature: content, chain of certificates, validity, key usage and time stamp.
 NO_ROOT = "no trust root given"
 UNKNOWN = "unknown"
+UNLISTED = "no valid list of revoked certificates is given for a certificate of its chain"
 
 
 def check_cms(
-    content: bytes, signed_data: Any, roots: list[Any] | None, stated_time: datetime | None
+    content: bytes, signed_data: Any, roots: TrustRoots | None, stated_time: datetime | None
 ) -> SignatureFacts:
     """Check a signature of some content.
 
@@ -125,22 +133,26 @@ def check_cms(
     Args:
         content: The signed bytes.
         signed_data: Signature of one signer (asn1crypto.cms.SignedData).
-        roots: Trust roots (asn1crypto.x509.Certificate); None if the user gave none.
+        roots: Trust roots; None if the user gave none.
         stated_time: Time of the signature that the document states outside the signature itself.
     """
-    now = datetime.now(UTC)
+    now, trust = datetime.now(UTC), roots or TrustRoots(())
     try:
-        status = _validate(content, signed_data, roots or [], now)
+        status = _validate(content, signed_data, trust, now)
         stamp = status.timestamp_validity
         stamped = stamp is not None and stamp.trusted
         moment = stamp.timestamp if stamped else now
         if stamped:
-            status = _validate(content, signed_data, roots or [], moment)
+            status = _validate(content, signed_data, trust, moment)
+        unlisted = False
+        if trust.revocation_lists and not status.trusted and status.revocation_details is None:
+            status = _validate(content, signed_data, replace(trust, revocation_lists=()), moment)
+            unlisted = status.trusted
     except Exception as error:  # the packages raise exceptions without a common base for a damaged signature
         return _build_damaged(describe_failure(error), now)
     certificate = status.signing_cert
     damage = "" if status.intact and status.valid else "the content was changed after signing"
-    distrust = NO_ROOT if roots is None else _find_distrust(status, moment)
+    distrust = NO_ROOT if roots is None else UNLISTED if unlisted else _find_distrust(status, moment)
     return SignatureFacts(
         signer=read_name(certificate.subject),
         issuer=read_name(certificate.issuer),
@@ -170,17 +182,21 @@ def read_role(signed_data: Any) -> str:
     return ""
 
 
-def _validate(content: bytes, signed_data: Any, roots: list[Any], moment: datetime) -> Any:
-    """Status of a signature by pyHanko, with certificates judged at a moment."""
+def _validate(content: bytes, signed_data: Any, trust: TrustRoots, moment: datetime) -> Any:
+    """Status of a signature by pyHanko, with certificates judged at a moment.
+
+    With lists of revoked certificates, every certificate below a root needs a valid one.
+    """
     from pyhanko.sign.validation.generic_cms import async_validate_detached_cms
     from pyhanko.sign.validation.settings import KeyUsageConstraints
     from pyhanko_certvalidator import ValidationContext
 
     def build_context(time: datetime) -> Any:
         return ValidationContext(
-            trust_roots=list(roots),
+            trust_roots=list(trust.certificates),
+            crls=list(trust.revocation_lists),
             allow_fetching=False,
-            revocation_mode="soft-fail",
+            revocation_mode="require" if trust.revocation_lists else "soft-fail",
             moment=time,
             best_signature_time=time,
         )
@@ -214,6 +230,9 @@ def _find_distrust(status: Any, moment: datetime) -> str:
         return f"the signing certificate {validity}{when}" if validity else f"the signing certificate {usage}"
     if status.trusted:
         return ""
+    if revoked := status.revocation_details:
+        owner = "the certificate of an authority" if revoked.ca_revoked else "the signing certificate"
+        return f"{owner} was revoked on {format_moment(revoked.revocation_date)}{when}"
     if status.validation_path is None:
         return "its chain does not lead to a given trust root"
     for authority in status.validation_path:
@@ -224,7 +243,7 @@ def _find_distrust(status: Any, moment: datetime) -> str:
     return f"its chain of certificates is not valid{reason.lower().replace('_', ' ')}"
 
 
-def _find_stamp_problem(stamp: Any, roots: list[Any] | None) -> str:
+def _find_stamp_problem(stamp: Any, roots: TrustRoots | None) -> str:
     if not (stamp.intact and stamp.valid):
         return "it belongs to other content"
     authority = read_name(stamp.signing_cert.subject)

@@ -212,6 +212,37 @@ OTHER_PURPOSES = frozenset({"server_auth", "code_signing", "time_stamping", "ocs
 """Purposes (extended key usages) of servers and programs; a certificate with these alone does not name a person."""
 
 
+@dataclass(frozen=True)
+class TrustRoots:
+    """Authorities whose signatures are trusted, and their lists of revoked certificates."""
+
+    certificates: tuple[Any, ...]
+    """Certificates of the authorities (asn1crypto.x509.Certificate)."""
+    revocation_lists: tuple[Any, ...] = ()
+    """Lists of revoked certificates (asn1crypto.crl.CertificateList); none: revocation is not checked."""
+
+
+def read_trust_roots(path: Path) -> TrustRoots:
+    """Read the certificates of a file, and its lists of revoked certificates (PEM blocks `X509 CRL`).
+
+    Raises:
+        InputError: The file cannot be read, holds no certificate, or holds a damaged block.
+    """
+    from asn1crypto import crl, pem
+
+    where = f"trust roots '{path.name}'"
+    certificates = read_certificates(path, where)
+    content = read_bytes(path, where, MAX_KEY_FILE_BYTES)
+    try:
+        blocks = pem.unarmor(content, multiple=True) if pem.detect(content) else ()
+        lists = [crl.CertificateList.load(der, strict=True) for kind, _, der in blocks if kind == "X509 CRL"]
+        for item in lists:
+            _ = item.native  # reads every field, so that a damaged one is reported here
+    except (ValueError, TypeError):
+        raise InputError(where, "holds a damaged revocation list", "Give lists as PEM text.") from None
+    return TrustRoots(tuple(certificates), tuple(lists))
+
+
 def read_certificates(path: Path, where: str) -> list[Any]:
     """Read all certificates of a PEM file, or the certificate of a DER file.
 

@@ -18,10 +18,11 @@ from pantocheck.conformance.documents.document_reading import MAX_DOCUMENT_BYTES
 from pantocheck.conformance.documents.key_files import (
     MAX_SIGNATURE_BYTES,
     MOST_SIGNATURES,
+    TrustRoots,
     describe_failure,
     find_signature_file,
     parse_signatures,
-    read_certificates,
+    read_trust_roots,
     use_signature_package,
 )
 from pantocheck.conformance.documents.signature_writing import find_place
@@ -152,7 +153,7 @@ SIGNATURE_KEY = b"/ByteRange"
 """Key that every signed PDF contains in plain text, because the signature is written into the finished file."""
 
 
-def check_pdf(content: bytes, roots: list[Any] | None) -> tuple[tuple[SignatureFacts, ...], tuple[str, ...]]:
+def check_pdf(content: bytes, roots: TrustRoots | None) -> tuple[tuple[SignatureFacts, ...], tuple[str, ...]]:
     """Signatures of a signed PDF in the order of signing, and its other changes; roots as in `check_cms`."""
     from pyhanko.pdf_utils.reader import PdfFileReader
 
@@ -222,7 +223,7 @@ def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
 
     Args:
         path: PDF, or any other file with a signature file beside it (`results.json.p7s`).
-        trust_roots: PEM file of trust roots.
+        trust_roots: PEM file of trust roots, and of their lists of revoked certificates.
 
     Raises:
         InputError: A file cannot be read or is damaged, or trust roots are given and the package for signatures is
@@ -235,7 +236,7 @@ def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
         return SignatureReport((), (), given)
     try:
         with use_signature_package():
-            roots = None if trust_roots is None else read_certificates(trust_roots, f"trust roots '{trust_roots.name}'")
+            roots = None if trust_roots is None else read_trust_roots(trust_roots)
             return _check(content, detached, roots)
     except MissingPackage as error:
         if given:
@@ -243,7 +244,7 @@ def check_signatures(path: Path, trust_roots: Path | None) -> SignatureReport:
         return SignatureReport((), (), given, f"signatures were not checked: the check {error.found}. {error.hint}")
 
 
-def _check(content: bytes, detached: Path, roots: list[Any] | None) -> SignatureReport:
+def _check(content: bytes, detached: Path, roots: TrustRoots | None) -> SignatureReport:
     signatures: tuple[SignatureFacts, ...] = ()
     changes: tuple[str, ...] = ()
     if is_signed_pdf(content):
@@ -252,7 +253,8 @@ def _check(content: bytes, detached: Path, roots: list[Any] | None) -> Signature
         where = f"signature '{detached.name}'"
         parts = parse_signatures(read_bytes(detached, where, MAX_SIGNATURE_BYTES), where)
         signatures += tuple(check_cms(content, part, roots, None) for part in parts)
-    return SignatureReport(signatures, changes, roots is not None)
+    lists = roots is not None and bool(roots.revocation_lists)
+    return SignatureReport(signatures, changes, roots is not None, lists_given=lists)
 
 
 def is_signed_pdf(content: bytes) -> bool:

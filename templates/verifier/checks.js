@@ -11,6 +11,7 @@ const ONLY_VERIFY = [
   ["pages", "Texts, figures and metadata are those that the embedded results give, byte for byte."],
   ["library", "Inputs, limits, units, texts and warnings of a library case are those of the installed library."],
   ["cases from outside", "Inputs, limits and texts of a case from outside are those of its distribution or folder."],
+  ["revocation", "No certificate of a signer was revoked (lists among the trust roots)."],
   ["record", "The record itself: the outcomes of its consistency checks, and its digest (option --record)."],
   ["rerun", "A new run of the simulator gives the same values (option --rerun)."],
   ["suite", "The stated version of the suite has the stated digest."],

@@ -59,6 +59,9 @@ def test_genuine_document_is_consistent_and_unsigned(
     verifier_page.wait_for_selector(".conclusion")
     assert verifier_page.inner_text(".conclusion") == report["conclusion"]
     assert verifier_page.locator("figure polyline").count() == 1
+    # On a phone, wide tables and digests do not widen the page.
+    verifier_page.set_viewport_size({"width": 390, "height": 800})
+    assert verifier_page.evaluate("document.documentElement.scrollWidth") == 390
     # An uncertainty that lacks a component is not zero: the table has the words of the certificate.
     case = Results.model_validate(genuine.results).cases[0]
     errors = [describe_criterion(row, case.uncertainty_basis).error for row in case.criteria]
@@ -180,7 +183,7 @@ def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
     documented = re.findall(r"^\| ([a-z ]+) \| [A-Z]", table, re.MULTILINE)
     assert {"numbers", "pages", "library", "origin"} <= set(documented)
     assert set(documented) <= {*listed, *IMPLEMENTED, "missing parts", "origin"}
-    assert {"record", "rerun"} <= set(listed)
+    assert {"record", "rerun", "revocation"} <= set(listed)
     script = (VERIFIER_FOLDER / "checks.js").read_text("utf-8")
     names = re.findall('"([^"]+)"', script.partition("RECORD_CHECKS = [")[2].partition("]")[0])
     assert names == [check.name for check in RECORD_CHECKS]

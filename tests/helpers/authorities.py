@@ -1,7 +1,7 @@
 """Certificate authorities, signers and a time-stamp server of a test, made by the package cryptography."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -95,6 +95,23 @@ def issue(wanted: Request, issuer: Holder | None = None, key: Any = None) -> Hol
         builder = builder.add_extension(x509.ExtendedKeyUsage([wanted.purpose]), critical=True)
     certificate = builder.sign(signer.key, hashes.SHA256())
     return Holder(key, certificate, None if issuer is None else issuer.certificate)
+
+
+def list_revoked(issuer: Holder, revoked: Iterable[Holder] = (), days: tuple[float, float] = (-1, 30)) -> bytes:
+    """List of certificates that their issuer revoked 6 hours ago (PEM), valid between two numbers of days from now."""
+    now = datetime.now(UTC)
+    builder = (
+        x509.CertificateRevocationListBuilder()
+        .issuer_name(issuer.certificate.subject)
+        .last_update(now + days[0] * DAY)
+        .next_update(now + days[1] * DAY)
+        .add_extension(x509.AuthorityKeyIdentifier.from_issuer_public_key(issuer.key.public_key()), critical=False)
+        .add_extension(x509.CRLNumber(1), critical=False)
+    )
+    for holder in revoked:
+        entry = x509.RevokedCertificateBuilder().serial_number(holder.certificate.serial_number)
+        builder = builder.add_revoked_certificate(entry.revocation_date(now - DAY / 4).build())
+    return builder.sign(issuer.key, hashes.SHA256()).public_bytes(Encoding.PEM)
 
 
 @contextmanager

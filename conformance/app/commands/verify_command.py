@@ -36,7 +36,7 @@ def verify_command(
         Path | None, typer.Argument(metavar="FILE", help="certificate.pdf, certificate.html or results.json.")
     ] = None,
     trust_roots: Annotated[
-        Path | None, typer.Option(help="PEM file of the authorities whose signatures are trusted.")
+        Path | None, typer.Option(help="PEM file of the authorities that are trusted, and of their revocation lists.")
     ] = None,
     record: Annotated[
         list[Path] | None, typer.Option(help="Record of a case: its quantities are computed from the samples again.")

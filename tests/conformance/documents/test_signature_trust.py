@@ -9,8 +9,9 @@ import pytest
 
 from helpers.signed_files import sign
 from helpers.signer_fixtures import Signers
+from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents import key_files
-from pantocheck.conformance.documents.cms_check import describe_signatures
+from pantocheck.conformance.documents.cms_check import REVOCATION, describe_signatures
 from pantocheck.conformance.documents.signature_check import check_signatures
 
 
@@ -179,3 +180,42 @@ def test_signer_without_the_purpose_of_time_stamps(signers: Signers, document: P
     (facts,) = check_signatures(document, roots_file).signatures
     assert facts.stamped_time is None
     assert facts.stamp_problem.startswith("its authority No clock is not trusted")
+
+
+def test_lists_of_revoked_certificates(signers: Signers, document: Path, roots_file: Path) -> None:
+    """A list among the trust roots is checked; then every certificate of a chain needs a valid one."""
+    from helpers.authorities import issue, list_revoked, request, serve_time_stamps
+
+    root, certificate = signers.root, roots_file.read_bytes()
+    middle = signers.issue("Middle authority", authority=True, usages=("key_cert_sign", "crl_sign"))
+    unlisted = "no valid list of revoked certificates is given for a certificate of its chain"
+    for holder, lists, reason in (
+        (signers.assessor, [list_revoked(root)], ""),
+        (signers.assessor, [list_revoked(root, [signers.author])], ""),  # another certificate
+        (signers.assessor, [list_revoked(root, [signers.assessor])], "the signing certificate was revoked on "),
+        (signers.assessor, [list_revoked(root, days=(-9, -1))], unlisted),
+        (signers.assessor, [list_revoked(middle, [signers.assessor])], unlisted),
+        (issue(request("Ada Author"), middle), [list_revoked(root)], unlisted),
+        (issue(request("Ada Author"), middle), [list_revoked(root), list_revoked(middle)], ""),
+        (
+            issue(request("Ada Author"), middle),
+            [list_revoked(root, [middle])],
+            "the certificate of an authority was revoked",
+        ),
+        (issue(request("Mallory")), [list_revoked(root)], "its chain does not lead to a given trust root"),
+    ):
+        document.with_name("results.json.p7s").unlink(missing_ok=True)
+        sign(document, holder)
+        roots_file.write_bytes(certificate + b"".join(lists))
+        report = check_signatures(document, roots_file)
+        assert report.signatures[0].distrust.startswith(reason)
+        assert report.authentic == (reason == "")
+        assert describe_signatures(report)[-1] == REVOCATION
+    document.with_name("results.json.p7s").unlink()
+    with serve_time_stamps(signers.clock, datetime.now(UTC) - timedelta(hours=12)) as url:
+        sign(document, signers.assessor, timestamp_url=url)  # revoked 6 hours after the time stamp
+    roots_file.write_bytes(certificate + list_revoked(root, [signers.assessor]))
+    assert check_signatures(document, roots_file).authentic
+    roots_file.write_bytes(certificate + b"-----BEGIN X509 CRL-----\nAAAA\n-----END X509 CRL-----\n")
+    with pytest.raises(InputError, match="holds a damaged revocation list"):
+        check_signatures(document, roots_file)
