@@ -117,6 +117,9 @@ def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> doc.Figu
 MOST_SUPPORT_TICKS = 12
 """Largest number of supports whose positions are the ticks of the track."""
 
+RIGHT_OF_AXES: PlotStyle = {"va": "center", "ha": "left", "fontsize": 6.5}
+"""Style of the names of limits."""
+
 REFERENCE_STYLE: PlotStyle = {
     "color": INK,
     "linewidth": 1.1,
@@ -145,6 +148,58 @@ def draw_force(trace: Traces, reference: list[float]) -> Figure:
     if 1 < len(trace.supports_m) <= MOST_SUPPORT_TICKS:
         axes.set_xticks(trace.supports_m, [f"{support:g}" for support in trace.supports_m])
     add_legend(axes, 3 if reference else 5)
+    return figure
+
+
+MOST_LIMITED = 2
+"""Largest number of forces on page 1."""
+
+LIMITED = {"mean_force_N": "mean", "max_force_N": "maximum", "min_force_N": "minimum"}
+"""Quantities whose limits are levels of the force."""
+
+
+def draw_limited_forces(cases: Sequence[CaseResult]) -> tuple[doc.Figure, ...]:
+    """Forces of the first cases or pantographs with the limits of their mean and extremes."""
+    found = [
+        (case, key, trace, [row for row in case.criteria if str(row.pantograph) == key and row.quantity in LIMITED])
+        for case in cases
+        for key, trace in sorted(case.traces.items())
+        if trace.position_m and trace.force_20_N
+    ]
+    shown = found[:MOST_LIMITED]
+    wide = len(shown) == 1
+    figures = []
+    for case, key, trace, rows in shown:
+        caption = f"{case.id}, pantograph {key}: force up to 20 Hz and limits."
+        alternative = f"{caption} Grey: limits of {', '.join(LIMITED[row.quantity] for row in rows) or 'no level'}."
+        figures.append(doc.Figure(draw_limited_force(trace, rows, FULL if wide else HALF), alternative, caption, wide))
+    return tuple(figures)
+
+
+@render_svg
+def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -> Figure:
+    """Force up to 20 Hz with the limits of its mean and extremes as grey bands, or as dashed lines of single limits."""
+    figure = Figure(figsize=(width, 0.95))
+    axes = figure.subplots()
+    position, force = trace.position_m, trace.force_20_N or []
+    for row in rows:
+        if row.lower is not None and row.upper is not None:
+            axes.axhspan(row.lower, row.upper, color=LIMIT_FILL, linewidth=0, zorder=0)
+            axes.text(
+                1.01,
+                (row.lower + row.upper) / 2,
+                LIMITED[row.quantity],
+                **RIGHT_OF_AXES,
+                transform=axes.get_yaxis_transform(),
+            )
+        else:
+            for limit in (row.lower, row.upper):
+                if limit is not None:
+                    axes.axhline(limit, color=INK, linewidth=0.9, linestyle=LIMIT_LINE)
+    axes.axhline(trace.mean_N, color=INK, linewidth=0.8, linestyle="-.")
+    axes.plot(position, force, color=INK, linewidth=0.9)
+    axes.set(xlim=(position[0], position[-1]), ylabel="force [N]")
+    axes.xaxis.set_major_formatter(lambda x, _: f"{x:g} m")
     return figure
 
 

@@ -5,14 +5,21 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.figure_data import TextTable
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import UNIT_FAMILIES, find_unit, key_suffix
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_case_figures
 from pantocheck.conformance.pages.condition_sections import build_condition_section, condition_blocks, mark_values
-from pantocheck.conformance.pages.criteria_table import criteria_blocks, reference_note
+from pantocheck.conformance.pages.criteria_table import (
+    criteria_blocks,
+    list_limit_sources,
+    list_value_remarks,
+    reference_note,
+)
 from pantocheck.conformance.pages.document_facts import list_case_facts
+from pantocheck.conformance.pages.first_page import FirstPage
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (
     build_quantity_table,
@@ -39,16 +46,18 @@ class ShownCase:
     """Anchor of its section."""
     earlier: tuple[CaseResult, ...]
     """Cases whose sections stand before it."""
+    first_page: FirstPage
+    """Content of page 1, which its section does not repeat."""
 
 
-def list_shown_cases(cases: Sequence[CaseResult]) -> list[ShownCase]:
+def list_shown_cases(cases: Sequence[CaseResult], first_page: FirstPage) -> list[ShownCase]:
     """Cases with a section of their own: all but those that were skipped without any value."""
     shown: list[ShownCase] = []
     for number, case in enumerate(cases):
         parts = (case.criteria, case.quantities, case.traces, case.charts, case.tables, case.uplift)
         if case.verdict != "skip" or any(parts):
             earlier = tuple(other.case for other in shown)
-            shown.append(ShownCase(case, number, f"case-{number + 1}", earlier))
+            shown.append(ShownCase(case, number, f"case-{number + 1}", earlier, first_page))
     return shown
 
 
@@ -60,13 +69,17 @@ def build_case_section(shown: ShownCase) -> doc.Section:
         doc.Paragraph(" ".join(filter(None, (summarise_case(case), describe_record(case))))),
     ]
     changes = [f"{text}."] if (text := describe_changes(case)) else []
-    warnings = (*changes, *(f"Limits file: {change}." for change in case.limit_changes), *case.warnings)
+    warnings = (
+        *changes,
+        *(f"Limits file: {change}." for change in case.limit_changes),
+        *(text for text in case.warnings if text not in shown.first_page.warnings),
+    )
     blocks += doc.warn(warnings)
     blocks += condition_blocks(case)
     blocks += reference_note(case)
     if criteria := list_criteria(case, "criteria"):
-        table = criteria_blocks(criteria, anchor, f"{anchor}-source", case)
-        blocks.append(doc.Section("Criteria", table))
+        table = _list_criteria_blocks(shown, criteria)
+        blocks += [doc.Section("Criteria", table)] if table else []
     if figures := tuple(draw_case_figures(case, shown.number, anchor)):
         blocks.append(doc.Section("Figures", (doc.Figures(figures),)))
     blocks += verification_blocks(case, anchor)
@@ -76,6 +89,15 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     blocks += [doc.Section(table.caption, (_study_table(case, table),)) for table in _select_tables(case)]
     blocks += _list_details(shown)
     return doc.Section(case.title, mark_values(case, blocks), anchor=anchor, ruled=True)
+
+
+def _list_criteria_blocks(shown: ShownCase, criteria: Sequence[Criterion]) -> tuple[doc.Block, ...]:
+    """Table of the criteria of a case; remarks and sources alone of those whose table stands on page 1."""
+    case, anchor, source_anchor = shown.case, shown.anchor, f"{shown.anchor}-source"
+    if case.id not in shown.first_page.graded:
+        return criteria_blocks(criteria, anchor, source_anchor, case)
+    sources = () if shown.first_page.source else list_limit_sources(criteria, source_anchor)
+    return (*list_value_remarks(case, criteria, anchor), *sources)
 
 
 def _list_details(shown: ShownCase) -> Iterator[doc.Section]:

@@ -1,6 +1,7 @@
 """The certificate: from results.json to a document. Every number of the page stands in the results."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.pages import document as doc
@@ -17,17 +18,24 @@ from pantocheck.conformance.pages.criteria_table import (
 )
 from pantocheck.conformance.pages.document import digest_results, find_date
 from pantocheck.conformance.pages.document_facts import (
-    build_document_section,
     list_administration,
     list_suite_facts,
     name_suite,
     name_system,
 )
+from pantocheck.conformance.pages.first_page import (
+    MOST_CASES,
+    build_answers,
+    build_case_index,
+    group_reasons,
+    has_more_reasons,
+    plan_first_page,
+)
 from pantocheck.conformance.pages.quantity_tables import UNCERTAINTY_KEY, list_definitions
 from pantocheck.conformance.pages.scope_page import (
+    PROCEDURE_KEY,
     build_procedure_section,
     build_scope_section,
-    describe_origin,
     list_identity_warnings,
     list_sources,
     list_step_reasons,
@@ -38,19 +46,17 @@ from pantocheck.conformance.pages.step_sections import build_step_section
 from pantocheck.conformance.pages.two_verdicts import (
     NAMES,
     build_verdict_section,
-    case_verdict,
     describe_comparison,
     list_criteria,
     mark_results,
-    mark_rows,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
     build_headline,
     describe_record,
+    describe_rule,
     list_reasons,
     state_decision,
     state_incomplete,
-    summarise_case,
 )
 from pantocheck.conformance.pages.words import name_verdict, read_words
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -66,50 +72,35 @@ def build_certificate(results: Results) -> doc.Document:
 def build_dated_certificate(results: Results, date: int) -> doc.Document:
     """The certificate of a run with a given date [s since 1970]; 0: not known."""
     prepared = prepare_results(results)
-    header = build_header(prepared)
-    cases = prepared.cases
-    shown = list_shown_cases(cases)
+    header, cases, first_page = build_header(prepared), prepared.cases, plan_first_page(prepared)
+    shown = list_shown_cases(cases, first_page)
     anchors = {one.case.id: one.anchor for one in shown}
-    steps = () if prepared.procedure is None else list_step_reasons(prepared.procedure)
-    graded = any(row.verdict == "pass" for case in cases for name in NAMES for row in list_criteria(case, name))
-    calm = "No value is close to a limit." if graded else "Nothing was graded."
-    reasons = (*steps, *list_reasons(prepared)) or (doc.Paragraph(calm),)
-    closing = doc.Paragraph(f"This is a {header.statement}. It is not a certification by a third party.")
+    answers = build_answers(prepared, anchors, first_page, (digest_results(results), date))
+    reasons = group_reasons(prepared) if has_more_reasons(prepared) else ()
     return doc.Document(
         title=f"{name_verdict(header.verdict)} – {HEADING} – {name_system(prepared)}",
-        header=header,
+        header=replace(header, subject=""),
         blocks=(
             *doc.warn(list_identity_warnings(prepared)),
-            build_document_section(prepared, digest_results(results), date),
-            *_build_scope(prepared, anchors),
+            answers,
+            *(() if prepared.procedure is not None else build_scope_section(prepared, anchors)),
             *build_findings_section(prepared),
-            doc.Section("Reasons", reasons, anchor="reasons"),
+            *((doc.Section("Reasons", reasons, anchor="reasons"),) if reasons else ()),
             *_build_index(prepared, anchors),
             *_build_case_sections(prepared, shown, anchors),
             doc.Section("Explanations", _explanation_blocks(prepared), anchor="explanations"),
-            doc.Section(
-                "Reproducibility",
-                (list_suite_facts(prepared), closing),
-                anchor="reproducibility",
-            ),
+            doc.Section("Reproducibility", (list_suite_facts(prepared),), anchor="reproducibility"),
         ),
         results=results,
         date=date,
     )
 
 
-def _build_scope(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """Steps of the procedure of a dossier, or the verdicts and the scope of a run."""
-    if results.procedure is not None:
-        return (build_procedure_section(results.procedure, results.cases),)
-    return (*build_verdict_section(results), *build_scope_section(results, anchors))
-
-
 def _build_index(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """List of the cases; with a procedure, each step lists its own."""
-    if results.procedure is not None:
+    """List of many cases; page 1 has that of a few, and with a procedure, each step lists its own."""
+    if results.procedure is not None or len(results.cases) <= MOST_CASES:
         return ()
-    return (doc.Section("Cases", (_case_index(results.cases, anchors),), anchor="cases"),)
+    return (doc.Section("Cases", (build_case_index(results.cases, anchors),), anchor="cases"),)
 
 
 def _build_case_sections(results: Results, shown: list[ShownCase], anchors: dict[str, str]) -> tuple[doc.Section, ...]:
@@ -121,7 +112,7 @@ def _build_case_sections(results: Results, shown: list[ShownCase], anchors: dict
     ordered: list[doc.Section] = []
     for number, step in enumerate(results.procedure.steps, 1):
         listed = [by_id[name] for name in step.cases]
-        index = (_case_index(listed, anchors),) if listed else ()
+        index = (build_case_index(listed, anchors),) if listed else ()
         ordered += [build_step_section(number, step, results.procedure, results.cases, index)]
         ordered += [sections[name] for name in step.cases if name in sections]
     return tuple(ordered)
@@ -148,33 +139,6 @@ def build_header(results: Results) -> doc.VerdictHeader:
     )
 
 
-def _case_index(cases: Sequence[CaseResult], anchors: dict[str, str]) -> doc.Table:
-    """Table of all cases; a case without a section has no link."""
-    shares = {"Case": 2.0, "Origin": 2.0, "Verdict": 0.0, "Criteria": 3.0}
-    rows: tuple[tuple[doc.RichText, ...], ...] = tuple(
-        (
-            doc.Link(case.id, anchors[case.id]) if case.id in anchors else case.id,
-            describe_origin(case),
-            _mark(case, "criteria"),
-            summarise_case(case),
-        )
-        for case in cases
-    )
-    if any(case.verification for case in cases):
-        shares["Verification"] = 0.0
-        rows = tuple((*row, _mark(case, "verification")) for row, case in zip(rows, cases, strict=True))
-    if any(case.baseline for case in cases):
-        shares["Baseline"] = 0.0
-        rows = tuple((*row, _mark(case, "baseline")) for row, case in zip(rows, cases, strict=True))
-    return doc.Table(tuple(doc.Column(heading, share) for heading, share in shares.items()), rows)
-
-
-def _mark(case: CaseResult, name: str) -> doc.RichText:
-    """One of the verdicts of a case as a mark; a dash without this verdict."""
-    verdict = case_verdict(case, name)
-    return "–" if verdict is None else doc.VerdictMark(mark_rows(verdict, list_criteria(case, name)))
-
-
 def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
     """Meaning of margins, uncertainties, trust and definitions, once for all cases."""
     trusts = read_words()["trust"].items()
@@ -182,7 +146,11 @@ def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
     graded = any(case.criteria for case in results.cases)
     uncertain = any(case.uncertainty_basis for case in results.cases)
     definitions = list_definitions(results.cases)
+    verdicts = build_verdict_section(results) if results.procedure is None else ()
     return (
+        doc.SmallPrint(f"Decision rule: {describe_rule(results)}."),
+        *(block for section in verdicts for block in section.blocks[1:]),
+        *((doc.SmallPrint(PROCEDURE_KEY),) if results.procedure is not None else ()),
         *((doc.SmallPrint(MARGIN_KEY),) if graded else ()),
         *((doc.SmallPrint(UNCERTAINTY_KEY),) if uncertain else ()),
         doc.Section("Levels of trust", (levels,)),

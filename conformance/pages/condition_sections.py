@@ -117,11 +117,11 @@ def _mark_block(block: doc.Block) -> doc.Block:
     if isinstance(block, doc.Section):
         return replace(block, blocks=tuple(_mark_block(part) for part in block.blocks))
     if isinstance(block, doc.Table):
-        return replace(block, rows=tuple((_mark_cell(row[0]), *row[1:]) for row in block.rows))
+        return replace(block, rows=tuple((mark_cell(row[0]), *row[1:]) for row in block.rows))
     return block
 
 
-def _mark_cell(cell: doc.RichText) -> doc.RichText:
+def mark_cell(cell: doc.RichText) -> doc.RichText:
     """First cell of a row; marked if it names the quantity."""
     parts = cell if isinstance(cell, tuple) else (cell,)
     if doc.Code(CONDITIONED) in parts or parts[0] == quantity_label(CONDITIONED):

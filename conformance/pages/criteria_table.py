@@ -142,6 +142,27 @@ def criteria_blocks(
     return (*state_common_causes(criteria, basis), table, *(common if sources else ()))
 
 
+def list_value_remarks(case: CaseResult, criteria: Sequence[Criterion], anchor: str) -> tuple[doc.Block, ...]:
+    """Common causes, places and remarks of the graded values of a case that page 1 shows; `anchor` is its section."""
+    items: list[doc.RichText] = []
+    for row in criteria:
+        texts, place = describe_criterion(row, case.uncertainty_basis), _link_place(case, row, anchor)
+        if place or texts.remarks:
+            remarks = f": {'; '.join(texts.remarks)}" if texts.remarks else ""
+            items.append((f"{texts.label}, {name_owner(row)}", *place, remarks))
+    listed = (doc.BulletList(tuple(items)),) if items else ()
+    return (*state_common_causes(criteria, case.uncertainty_basis), *listed)
+
+
+def list_limit_sources(criteria: Sequence[Criterion], anchor: str) -> tuple[doc.Block, ...]:
+    """Sources of the limits of criteria, with the names of the values of each."""
+    names: dict[str, list[str]] = {}
+    for row in criteria:
+        names.setdefault(f"{row.trust}: {row.source}" if row.source else "", []).append(criterion_title(row))
+    items = tuple(f"{source} ({', '.join(dict.fromkeys(of))})" for source, of in names.items() if source)
+    return (doc.NumberedList("Sources of the limits", items, anchor),) if items else ()
+
+
 def state_common_causes(criteria: Sequence[Criterion], basis: Basis) -> tuple[doc.Block, ...]:
     """Sentences on the components that the half-widths lack, and on the causes of close values."""
     missing = any(list_missing(basis, row.uncertainty, row.trust) for row in criteria)
@@ -191,18 +212,24 @@ def _row(
 ) -> tuple[doc.RichText, ...]:
     texts, (source_anchor, place) = describe_criterion(criterion, basis), links
     number = sources.index(criterion.source) + 1 if criterion.source else None
-    bar = None if texts.limits == "none" or criterion.value is None else _bar(criterion, criterion.value)
     return (
         (f"{texts.label} ", doc.Code(criterion.quantity), *place, *map(doc.Remark, texts.remarks)),
         texts.pantograph,
         texts.value,
         texts.error,
         texts.limits,
-        texts.margin if bar is None else (bar, f" {texts.margin}"),
+        draw_margin(criterion, texts),
         doc.VerdictMark(criterion.verdict),
         doc.TrustMark(texts.trust),
         "–" if number is None else doc.Link(f"[{number}]", f"{source_anchor}-{number}"),
     )
+
+
+def draw_margin(criterion: Criterion, texts: CriterionTexts) -> doc.RichText:
+    """Margin of a criterion behind its bar; without limits or a value, the text alone."""
+    if texts.limits == "none" or criterion.value is None:
+        return texts.margin
+    return (_bar(criterion, criterion.value), f" {texts.margin}")
 
 
 def _bar(criterion: Criterion, value: float) -> doc.Drawing:

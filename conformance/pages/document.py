@@ -125,6 +125,11 @@ class Facts:
     times: tuple[tuple[str, str], ...] = ()
 
 
+TableLayout = Literal["text", "grid", "cards", "values"]
+"""Rows with a heading cell; a dense grid of values; criteria with drawings; graded values, on paper one line each. On a
+narrow screen, all but the grid become cards."""
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of a table."""
@@ -146,9 +151,7 @@ class Table:
     rows: tuple[tuple[RichText, ...], ...]
     caption: str = ""
     """Text above the table; empty if the heading of its section says enough."""
-    layout: Literal["text", "grid", "cards"] = "text"
-    """Rows with a heading cell; a dense grid of values; criteria with drawings. On a narrow screen, all but the grid
-    become cards."""
+    layout: TableLayout = "text"
 
 
 @dataclass(frozen=True)
@@ -196,7 +199,26 @@ class Section:
     """Whether the blocks are hidden on a screen until the reader opens the section; on paper they always stand."""
 
 
-Block = Paragraph | SmallPrint | CodeBlock | BulletList | NumberedList | WarningBox | Facts | Table | Figures | Section
+@dataclass(frozen=True)
+class Answers:
+    """Answers of page 1 in their order: their headings stand beside short blocks; figures and values take the width."""
+
+    sections: tuple[Section, ...]
+
+
+Block = (
+    Answers
+    | Paragraph
+    | SmallPrint
+    | CodeBlock
+    | BulletList
+    | NumberedList
+    | WarningBox
+    | Facts
+    | Table
+    | Figures
+    | Section
+)
 
 
 @dataclass(frozen=True)
@@ -251,7 +273,7 @@ def make_table(
     records: Iterable[Row],
     cells: Mapping[Column, Callable[[Row], RichText]],
     caption: str = "",
-    layout: Literal["text", "grid", "cards"] = "text",
+    layout: TableLayout = "text",
 ) -> Table:
     """A table with one row per record, and the content of each column."""
     rows = tuple(tuple(cell(record) for cell in cells.values()) for record in records)

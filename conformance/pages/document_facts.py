@@ -1,7 +1,7 @@
 """Identity of a report on its page 1: administrative data, date, digest, verification and signature."""
 
 from pantocheck.conformance.core.reproducibility import format_date
-from pantocheck.conformance.pages.document import Facts, Section
+from pantocheck.conformance.pages.document import Facts
 from pantocheck.conformance.pages.scope_page import list_sources
 from pantocheck.conformance.pages.verifier_file import describe_verifier
 from pantocheck.conformance.pages.words import format_plain, format_value
@@ -19,28 +19,27 @@ ADMINISTRATION = {
 """Labels of the administrative data in the order of the page."""
 
 NO_ISSUER = "not stated"
-SIGNATURE = "added to the file after writing, if any; the command below shows its state"
+SIGNATURE = "added after writing, if any; pantocheck verify shows its state"
 VERIFICATION = "pantocheck verify FILE, with the name of this file"
 
 
-def build_document_section(results: Results, digest: str, date: int) -> Section:
-    """Section on the identity of a report.
-
-    Args:
-        results: Results from `prepare_results`.
-        digest: Digest of the results before their preparation; it covers the administrative data, and not the page.
-        date: Date of the document [s since 1970]; 0: not known.
-    """
-    pairs = (
+def list_issuer_facts(results: Results, date: int) -> tuple[tuple[str, str], ...]:
+    """Administrative data, date [s since 1970, 0: not known], sources from outside and signature of a report."""
+    return _drop_empty(
         *list_administration(results.administration),
-        ("Date of this document", format_date(date)),
-        ("Digest of the results", digest),
+        ("Date", format_date(date)),
         *list_sources(results),
         ("Signature", SIGNATURE),
+    )
+
+
+def list_check_facts(results: Results, digest: str) -> tuple[tuple[str, str], ...]:
+    """Means of checking a report, and the digest of its results with the administrative data, without the page."""
+    return (
         ("Verification", VERIFICATION),
         ("Verifier", describe_verifier(results.suite)),
+        ("Digest of the results", digest),
     )
-    return Section("Document", (Facts(tuple(pair for pair in pairs if pair[1])),), anchor="document")
 
 
 def list_administration(administration: Administration | None) -> tuple[tuple[str, str], ...]:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from pantocheck.conformance.core.figure_data import DrawnSymbol, DrawnView, LineShape
 from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, PALE, marker_style, render_svg
+from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.words import format_plain
@@ -175,6 +176,59 @@ def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc
     ground = "" if section is None else " Grey ground: analysis section."
     caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}{ground}"
     return (doc.Figure(draw_line_shape(shape, section), caption, caption),)
+
+
+SKETCHED = 60.0
+"""Length of the view over the width of a sketched pantograph."""
+
+KNEE = np.array([-0.6, 0.6, 0.0, -0.5, 0.5]), np.array([-0.9, -0.45, 0.0, 0.0, 0.0])
+"""Base, knee and head of a sketched pantograph, in its width [-] and below the wire [m]."""
+
+
+@render_svg
+def draw_sketch(shape: LineShape, section: tuple[float, float] | None, pantographs: int) -> Figure:
+    """Side view without scales, with the analysis section [m] on a grey ground and a number of pantographs below."""
+    figure = Figure(figsize=(FULL, 0.38))
+    figure.set_layout_engine("none")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    start, end = shape.supports_m[0], shape.supports_m[-1]
+    low, high = section or (start, end)
+    axes.axvspan(low, high, color=PALE, zorder=0)
+    _draw_view(axes, shape.side.model_copy(update={"points": []}), {})
+    wire = [curve for curve in shape.side.curves if curve.kind == "contact_wire"]
+    x, y = [place for curve in wire for place in curve.x_m], [height for curve in wire for height in curve.y_m]
+    size = (end - start) / SKETCHED
+    for number in range(pantographs if wire else 0):
+        place = (low + high) / 2 - 3 * size * number
+        head = float(np.interp(place, x, y))
+        axes.plot(place + size * KNEE[0], head + KNEE[1], color=INK, linewidth=1.0)
+    axes.set(xlim=(start, end))
+    axes.margins(y=0.08)
+    return figure
+
+
+def draw_line_sketch(case: CaseResult) -> tuple[doc.Figure, ...]:
+    """Sketch of the line of a case for page 1; none without its shape."""
+    shape = case.line_shape
+    if shape is None:
+        return ()
+    number = sum(key != "0" for key in case.quantities) if case.run.speed_km_h else 0
+    caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}, without scale."
+    alternative = f"{caption} Analysis section on a grey ground, {count_noun(number, 'pantograph')}."
+    return (doc.Figure(draw_sketch(shape, case.run.evaluated_m, number), alternative, caption),)
+
+
+def name_pantographs(case: CaseResult) -> str:
+    """Number, masses and distances of the pantographs of a case; the number alone of those that are no chains."""
+    masses = [(", ".join(map(format_plain, chain.masses)), names) for chain, names in _read_chains(case).items()]
+    texts = [f"{len(names)} × masses {values} kg" for values, names in masses]
+    number = sum(key != "0" for key in case.quantities)
+    spacing = next((group.values["spacing_m"] for group in case.inputs if "spacing_m" in group.values), None)
+    shown = ", ".join(map(format_plain, _list_numbers(spacing)))
+    return ", ".join(
+        [*(texts or ([count_noun(number, "pantograph")] if number else [])), *([f"{shown} m apart"] if shown else [])]
+    )
 
 
 def find_earlier_drawing(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc.SmallPrint, ...]:

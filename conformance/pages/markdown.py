@@ -16,7 +16,7 @@ def render_markdown(document: doc.Document) -> str:
     if isinstance(header, doc.VerdictHeader):
         parts = [
             f"# {name_verdict(header.verdict)}: {escape_markdown(header.headline)}",
-            escape_markdown(f"{header.subject} This is a {header.statement}."),
+            escape_markdown(f"{header.subject} This is a {header.statement}.".lstrip()),
         ]
     else:
         parts = [f"# {escape_markdown(header.heading)}", escape_markdown(header.headline)]
@@ -40,6 +40,9 @@ def _render(block: doc.Block, level: int) -> Iterator[str]:
             yield f"{'#' * level} {escape_markdown(block.heading)}"
             for part in block.blocks:
                 yield from _render(part, level + 1)
+        case doc.Answers():
+            for section in block.sections:
+                yield from _render(section, level)
         case doc.Paragraph() | doc.SmallPrint():
             yield _text(block.text)
         case doc.CodeBlock():

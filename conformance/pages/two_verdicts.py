@@ -92,8 +92,10 @@ def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
     if len(names) == 1:
         return ()
     rows = tuple(_verdict_row(results, name) for name in names)
+    confirmed = dict.fromkeys(case.verification.confirmed_by for case in results.cases if case.verification is not None)
     meanings = [text for name, text in (("verification", MEANING), ("baseline", BASELINE_MEANING)) if name in names]
-    columns = (doc.Column("Verdict on", 2), doc.Column("Verdict"), doc.Column("Part"), doc.Column("Cases and basis", 3))
+    columns = (doc.Column("Verdict on"), doc.Column("Verdict"), doc.Column("Part"), doc.Column("Cases and basis", 3))
+    meanings += [f"Confirmed by {text}." for text in confirmed]
     blocks = (doc.Table(columns, rows), doc.SmallPrint(" ".join(meanings)))
     return (doc.Section(f"{NUMBERS[len(names)]} verdicts", blocks, anchor="verdicts"),)
 
@@ -119,7 +121,7 @@ def _verdict_row(results: Results, name: str) -> tuple[doc.RichText, ...]:
     verdict = _run_verdict(results, name)
     part = "decides" if name == "baseline" or name in results.requested else "for information"
     mark = mark_rows(verdict, (row for case in results.cases for row in list_criteria(case, name)))
-    return NAMES[name], doc.VerdictMark(mark), part, " ".join(_describe_basis(results, name))
+    return SHORT_TITLES[name], doc.VerdictMark(mark), part, " ".join(_describe_basis(results, name))
 
 
 def _describe_basis(results: Results, name: str) -> Iterator[str]:
@@ -143,9 +145,6 @@ def _describe_basis(results: Results, name: str) -> Iterator[str]:
     counted = sum(rows[verdict] for verdict in ("pass", "undecided", "fail", "skip"))
     if counted:
         yield f"{rows['pass']} of {counted} counted criteria are inside their limits."
-    if name == "verification":
-        for text in dict.fromkeys(case.verification.confirmed_by for case in cases if case.verification is not None):
-            yield f"Confirmed by {text}."
 
 
 def verdict_sentences(results: Results) -> list[str]:

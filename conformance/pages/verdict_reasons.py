@@ -15,6 +15,9 @@ from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import list_missing
 from pantocheck.conformance.results.results_format import CaseConformity, CaseResult, Results
 
+CLOSE_HEADING = "Closer to a limit than the uncertainty"
+"""Heading of the close values."""
+
 NAMES_SHOWN = 5
 """Number of cases for information that the headline names."""
 
@@ -142,7 +145,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
             if case.record and case.record.state == "unconfirmed"
         ],
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
-        "Closer to a limit than the uncertainty": _list_close(results),
+        CLOSE_HEADING: _list_close(results),
         "Another documented reading reverses the verdict": [
             f"{_subject(*pair)}: {'; '.join(pair[1].readings)}."
             for pair in _criteria(results)
@@ -157,14 +160,23 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
 
 def state_decision(results: Results) -> str:
     """Sentences on the decision rule, and on the probability that all counted values lie inside their limits."""
-    rule = describe_decision(parse_decision(results.decision, "results, key decision"))
-    parts = [f"Decision rule: {rule}."]
-    if results.conformity is not None:
-        pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
-        shares = [f"{name} {_describe_chances(of)}" for name, of in pairs]
-        chance = format_probability(results.conformity)
-        parts.append(f"Probability that all counted values lie inside their limits: {chance} ({'; '.join(shares)}).")
-    return " ".join(parts)
+    chance = describe_chance(results)
+    shown = f" Probability that all counted values lie inside their limits: {chance}." if chance else ""
+    return f"Decision rule: {describe_rule(results)}.{shown}"
+
+
+def describe_rule(results: Results) -> str:
+    """Name of the decision rule, and what it means behind a colon."""
+    return describe_decision(parse_decision(results.decision, "results, key decision"))
+
+
+def describe_chance(results: Results) -> str:
+    """Probability that all counted values lie inside their limits, with that of each case; empty if it is not known."""
+    if results.conformity is None:
+        return ""
+    pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
+    shares = [f"{name} {_describe_chances(of)}" for name, of in pairs]
+    return f"{format_probability(results.conformity)} ({'; '.join(shares)})"
 
 
 def _describe_chances(of: CaseConformity) -> str:

@@ -57,14 +57,14 @@ function isRounded(text, value) {
   return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
 }
 
-// Values and verdicts in the tables of a case: rows with the name of a quantity and a cell "Value".
+// Values and verdicts in the tables of a case, or in that of page 1: rows with the name of a quantity and a cell "Value".
 function checkTables(section, result) {
   const found = [];
   let count = 0;
   for (const line of section?.querySelectorAll("tr") ?? []) {
     const [, name, item] = /^(.*?)(?:\[(\d+)\])?$/.exec(line.querySelector("th code")?.textContent ?? ""), cells = {};
     for (const cell of line.querySelectorAll("td[data-label]")) cells[cell.dataset.label] = cell.textContent.trim();
-    if (!name || cells.Value === undefined || !findNumber(cells.Value)) continue;
+    if (!name || (cells.Case !== undefined && !cells.Case.endsWith(result.id)) || cells.Value === undefined || !findNumber(cells.Value)) continue;
     const anyone = cells.Pantograph === undefined, owner = /^\d+$/.test(cells.Pantograph ?? "") ? cells.Pantograph : "0";
     const stated = Object.keys(result.quantities).filter((key) => anyone || key === owner)
       .map((key) => result.quantities[key][name]).filter((value) => value !== undefined);
@@ -94,8 +94,8 @@ function checkPage(page, digest, results) {
   if (digest !== null && printed !== digest) {
     found.push(`the digest of the results is ${printed ?? "not printed"}; computed is ${digest}`);
   }
-  const tables = results.cases.map((result, i) =>
-    checkTables(shown.getElementById(`case-${i + 1}`)?.closest("section"), result));
+  const tables = results.cases.flatMap((result, i) => ["result", `case-${i + 1}`].map((anchor) =>
+    checkTables(shown.getElementById(anchor)?.closest("section"), result)));
   const count = tables.reduce((sum, table) => sum + table.count, 0);
   return { found: [...found, ...tables.flatMap((table) => table.found)], count };
 }

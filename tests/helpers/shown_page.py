@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
-from pantocheck.conformance.pages.document import Document
+from pantocheck.conformance.pages.document import Answers, Document, Facts
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
@@ -35,3 +35,10 @@ def print_certificate(results: dict[str, Any]) -> bytes:
 def summarise(results: dict[str, Any]) -> str:
     """Markdown summary of results."""
     return render_markdown(build_summary(Results.model_validate(results)))
+
+
+def find_facts(document: Document, anchor: str) -> tuple[tuple[str, str], ...]:
+    """Facts of an answer on page 1."""
+    answers = [section for block in document.blocks if isinstance(block, Answers) for section in block.sections]
+    blocks = [block for section in answers if section.anchor == anchor for block in section.blocks]
+    return tuple(pair for block in blocks if isinstance(block, Facts) for pair in block.pairs)

@@ -424,7 +424,7 @@ def test_certificate_shows_the_drift_below_a_heading_of_its_own(shown_drift: Res
     html = shown_certificate(shown_drift.to_dict())
     headings = re.findall(r"<h[23][^>]*>(.*?)</h[23]>", html, re.DOTALL)
     assert [heading for heading in headings if "Drift from the baseline" in heading]
-    assert "Two verdicts" in html
+    assert "It always counts in the verdict of the report" in html
     assert "16 criteria: 16 " in html
     text = re.sub(r"<[^>]*>|\s|&nbsp;|\u200b|&#8203;", "", html)
     assert re.search(r"1of\d+valuesdriftedbymorethan1%fromearlier\.json,oraremissing", text)

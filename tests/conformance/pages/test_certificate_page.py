@@ -91,7 +91,7 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
     assert describe_criterion(Criterion.model_validate(row | {"uncertainty": None}), unknown).error.startswith("± ")
     case["criteria"][0]["verdict"] = "fail"
     marked = shown_certificate(passing)
-    page_1 = marked[: marked.index('id="cases"')]
+    page_1 = marked[: marked.index('id="case-1"')]
     counted = sum(row["verdict"] in ("pass", "fail") for case in passing["cases"] for row in case["criteria"])
     assert f"The uncertainty of {counted} counted values is incomplete (section or length not known)" in page_1
     for text in (summarise(passing), render_markdown(certify(passing))):
@@ -104,12 +104,12 @@ def test_incomplete_uncertainty_is_marked_and_counted_on_page_1(passing: dict[st
 
 
 def test_certificate_states_a_close_criterion_once(passing: dict[str, Any]) -> None:
-    """Its numbers stand in the row of the criterion, and page 1 names it."""
+    """Its numbers stand in the table of page 1 alone, and its cause and probability in the section of the case."""
     remark = "lies 0.1 N from a limit, less than its uncertainty of 0.2 N"
     passing["cases"][0]["criteria"][0] |= {"value": 119.91, "margin": 0.018, "close": [remark]}
     text = shown_certificate(passing)
     assert text.count("119.9 N") == 1
-    assert "119.9 N" not in text[: text.index('id="cases"')]
+    assert "119.9 N" in text[: text.index('id="case-1"')]
 
 
 def test_margin_beside_a_limit_of_zero_is_a_distance(passing: dict[str, Any]) -> None:

@@ -1,11 +1,13 @@
 """Margin bar of a criterion."""
 
+import re
 from xml.etree import ElementTree
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pantocheck.conformance.pages.margin_bar import WIDTH, draw_margin_bar
+from pantocheck.conformance.core.texts import TEMPLATES
+from pantocheck.conformance.pages.margin_bar import HEIGHT, WIDTH, draw_margin_bar
 
 numbers = st.floats(-1e6, 1e6)
 
@@ -31,3 +33,10 @@ def test_margin_bar_marks_differ_in_shape() -> None:
     assert "<circle" not in outside
     assert 'r="4.5" fill="#ffffff"' in uncounted
     assert "l-9 -6v12z" in beyond
+
+
+def test_bar_on_paper_keeps_the_ratio_of_its_sides() -> None:
+    """With another ratio, Typst crops the strip below the bar; the sizes have three digits."""
+    source = (TEMPLATES / "elements.typ").read_text("utf-8")
+    [(width, height)] = re.findall(r'svg\), format: "svg", width: ([0-9.]+)em, height: ([0-9.]+)em', source)
+    assert abs(float(height) / float(width) - HEIGHT / WIDTH) < 1e-3

@@ -58,7 +58,7 @@ def test_page_1_names_modified_copy_weakened_limits_and_scope(copied: dict[str, 
     assert "lowered from secondary to provisional" in page
     page = PdfReader(BytesIO(print_certificate(describe(results)))).pages[0].extract_text()
     assert "self-declared conformance report, in the style of EN 50318" in page
-    steps = ("pantograph model", "static check", "Reference models", "line test", "limits of validity")
+    steps = ("Pantograph model", "Static check", "Reference models", "Line test", "Limits of validity")
     assert all(step in " ".join(page.split()) for step in steps)
     assert "superseded by EN 50318:2018" in " ".join(page.split())
 

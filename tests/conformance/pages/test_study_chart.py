@@ -101,6 +101,6 @@ def test_certificate_shows_tables_and_charts_of_a_study_escaped(results: dict[st
     text = render_html(document)
     assert "Figure of a study" in text
     assert "&lt;b&gt;less&lt;/b&gt; in front" in text
-    [cases] = [block for block in document.blocks if block.anchor == "case-1"]
+    [cases] = [block for block in document.blocks if isinstance(block, Section) and block.anchor == "case-1"]
     [section] = [block for block in cases.blocks if isinstance(block, Section) and block.heading == "Findings"]
     assert section.blocks[0].rows == (("<b>less</b> in front", "reproduced"),)

@@ -7,11 +7,13 @@ from xml.etree import ElementTree
 import pytest
 
 from helpers.shown_page import certify, shown_certificate, summarise
+from pantocheck.conformance.app.commands.command_output import print_output
+from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
 from pantocheck.conformance.pages.ci_reports import render_junit
-from pantocheck.conformance.pages.document import Section, Table
+from pantocheck.conformance.pages.document import Answers, Section, Table, VerdictMark
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.two_verdicts import summarise_verdict, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import build_headline, list_reasons
@@ -101,9 +103,9 @@ def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any])
 @pytest.mark.parametrize("build", [build_certificate, build_summary])
 def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: Any) -> None:
     text = render_markdown(build(Results.model_validate(decide(failing, "criteria"))))
-    assert "## Two verdicts" in text
+    assert ("## Two verdicts" if build is build_summary else "## Result") in text
     assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes." in text
-    assert "| Verification against the converged solution, up to 50 Hz | FAIL | for information |" in text
+    assert "| Verification up to 50 Hz | FAIL | for information |" in text
     assert "Confirmed by finite differences." in text
     assert "computed" in text
 
@@ -169,3 +171,22 @@ def test_changed_verification_is_found(failing: Results) -> None:
             case "verification of the run":
                 forged["verification_verdict"] = "pass"
         assert find_discrepancies(Results.model_validate(forged)), change
+
+
+@pytest.mark.parametrize(("close", "mark"), [([], "PASS"), (["0.1 N from a limit"], "PASS, CLOSE")])
+def test_pass_with_a_close_value_is_amber_in_every_table_and_in_the_terminal(
+    passing: dict[str, Any], close: list[str], mark: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A green mark of a case would hide the value that another start reverses."""
+    passing["cases"][0]["criteria"][0] |= {"close": close, "uncertainty": 2.0}
+    [answers] = [block for block in certify(passing).blocks if isinstance(block, Answers)]
+    tables = [block for section in answers.sections for block in section.blocks if isinstance(block, Table)]
+    name = "close" if close else "pass"
+    assert tables[0].rows[0][2] == VerdictMark(name)  # row of the case
+    assert tables[-1].rows[0][-1 if len(tables[-1].columns) == 8 else -2] == VerdictMark(name)  # row of the value
+    assert tables[-1].rows[1][-1 if len(tables[-1].columns) == 8 else -2] == VerdictMark("pass")
+    [case] = [block for block in certify(passing).blocks if isinstance(block, Section) and block.anchor == "case-1"]
+    assert case.blocks[0].text[0] == VerdictMark(name)  # type: ignore[union-attr, index]
+    print_output(build_results_output(Results.model_validate(passing), [], 0), "run")
+    lines = [line for line in capsys.readouterr().out.splitlines() if passing["cases"][0]["title"] in line]
+    assert [line.split(" en50318")[0] for line in lines] == [mark]

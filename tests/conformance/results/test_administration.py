@@ -9,12 +9,12 @@ import pytest
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
+from helpers.shown_page import find_facts
 from pantocheck.conformance.app.commands.command_list import app
 from pantocheck.conformance.app.commands.options import build_options, read_stated_administration
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.ci_reports import render_junit
-from pantocheck.conformance.pages.document import Facts, Section
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.results.administration import read_administration
 from pantocheck.conformance.results.results_format import Results
@@ -22,14 +22,9 @@ from pantocheck.conformance.results.results_reading import read_results
 
 
 def document_facts(results: dict[str, Any]) -> dict[str, str]:
-    """Facts of the section on the document."""
-    sections = [
-        block for block in build_certificate(Results.model_validate(results)).blocks if isinstance(block, Section)
-    ]
-    [section] = [section for section in sections if section.anchor == "document"]
-    [facts] = section.blocks
-    assert isinstance(facts, Facts)
-    return dict(facts.pairs)
+    """Facts on the issuer and on the means of checking."""
+    document = build_certificate(Results.model_validate(results))
+    return dict((*find_facts(document, "document"), *find_facts(document, "check")))
 
 
 @pytest.mark.parametrize(
@@ -83,10 +78,10 @@ def test_page_1_states_data_date_and_digest(results: dict[str, Any], monkeypatch
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     results["administration"] = {"issuer": "Erika", "report_number": None, "remarks": "one\ntwo"}
     facts = document_facts(results)
-    assert {key: facts[key] for key in ("Issuer", "Remarks", "Date of this document")} == {
+    assert {key: facts[key] for key in ("Issuer", "Remarks", "Date")} == {
         "Issuer": "Erika",
         "Remarks": "one two",
-        "Date of this document": "2023-11-14 22:13:20 UTC",
+        "Date": "2023-11-14 22:13:20 UTC",
     }
     content, later = (
         render_pdf(build_certificate(Results.model_validate(results | changes)))
