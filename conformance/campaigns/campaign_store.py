@@ -133,6 +133,7 @@ def open_store(folder: Path, identity: Mapping[str, Any]) -> Iterator[CampaignSt
             another campaign.
     """
     check_writable(folder)
+    folder.mkdir(parents=True, exist_ok=True)
     where = f"folder '{folder}'"
     try:
         with FileLock(folder / "campaign.lock", timeout=0):

@@ -6,6 +6,17 @@ from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
 
+Part = TypeVar("Part", bound=ResultsPart)
+
+
+def check_lengths(part: Part, *lists: list[float]) -> Part:
+    """Return a part whose lists have one length."""
+    if len(set(map(len, lists))) > 1:
+        raise ValueError(
+            f"lists of {' and '.join(str(len(numbers)) for numbers in lists)} numbers, expected one length"
+        )
+    return part
+
 
 class Spectrum(ResultsPart):
     """Single-sided amplitude spectrum of the delivered force about its mean, over the analysis section."""
@@ -13,12 +24,20 @@ class Spectrum(ResultsPart):
     frequency_Hz: list[float]
     amplitude_N: list[float]
 
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(self, self.frequency_Hz, self.amplitude_N)
+
 
 class Histogram(ResultsPart):
     """Share of the samples of the 20 Hz force in each class."""
 
     edges_N: list[float]
     share_pct: list[float]
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(self, self.edges_N[1:], self.share_pct)
 
 
 class Traces(ResultsPart):
@@ -32,6 +51,12 @@ class Traces(ResultsPart):
     supports_m: list[float]
     spectrum: Spectrum
     histogram: Histogram | None
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(
+            self, self.position_m, self.force_N, self.force_N if self.force_20_N is None else self.force_20_N
+        )
 
 
 class ExtremePlace(ResultsPart):
@@ -48,6 +73,10 @@ class UpliftTrace(ResultsPart):
     support_m: float
     time_s: list[float]
     uplift_mm: list[float]
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(self, self.time_s, self.uplift_mm)
 
 
 class Series(ResultsPart):
@@ -66,6 +95,10 @@ class Series(ResultsPart):
     """Upper edge of a band."""
     error: list[float] | None = None
     """Half the length of the error bar of each point, or half the width of the band along a line."""
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(self, *(part for part in (self.x, self.y, self.high, self.error) if part is not None))
 
 
 class Mark(ResultsPart):
@@ -93,18 +126,6 @@ class Chart(ResultsPart):
     wide: bool = True
 
 
-Part = TypeVar("Part", bound=ResultsPart)
-
-
-def _check_lengths(part: Part, *lists: list[float]) -> Part:
-    """Return a part whose lists have one length."""
-    if len(set(map(len, lists))) > 1:
-        raise ValueError(
-            f"lists of {' and '.join(str(len(numbers)) for numbers in lists)} numbers, expected one length"
-        )
-    return part
-
-
 class DrawnCurve(ResultsPart):
     """Wire in a view of a line at rest, thinned: heights or lateral positions along the line."""
 
@@ -114,7 +135,7 @@ class DrawnCurve(ResultsPart):
 
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
-        return _check_lengths(self, self.x_m, self.y_m)
+        return check_lengths(self, self.x_m, self.y_m)
 
 
 class DrawnDroppers(ResultsPart):
@@ -126,7 +147,7 @@ class DrawnDroppers(ResultsPart):
 
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
-        return _check_lengths(self, self.x_m, self.lower_m, self.upper_m)
+        return check_lengths(self, self.x_m, self.lower_m, self.upper_m)
 
 
 class DrawnSymbol(ResultsPart):

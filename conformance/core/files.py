@@ -165,14 +165,16 @@ def produce_atomically(path: Path, produce: Callable[[Path], object]) -> None:
 
 
 def check_writable(folder: Path) -> None:
-    """Create a folder and a test file in it, so that a long computation does not end without a place for its results.
+    """Write a test file into a folder, so that a long computation does not end without a place for its results.
+
+    A missing folder is not created: a refused input leaves none. The test is made in the folder that would hold it.
 
     Raises:
         InputError: The folder cannot be created or written.
     """
     with _convert_write_errors(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
+        existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+        with tempfile.TemporaryFile(dir=existing):
             pass
 
 

@@ -11,6 +11,7 @@ from pydantic_core import ErrorDetails
 from pantocheck.conformance.core.files import read_bytes, write_atomically
 from pantocheck.conformance.core.format_versions import check_version
 from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.parsed_values import check_values, collect_pairs
 
 T = TypeVar("T")
 
@@ -27,7 +28,7 @@ def read_json(path: Path, kind: str, largest: int) -> Any:
         Parsed content.
 
     Raises:
-        InputError: The file cannot be read, is too large or is not JSON.
+        InputError: The file cannot be read, is too large, is not JSON, or holds a value that `check_values` refuses.
     """
     where = f"{kind} '{path.name}'"
     return parse_json(read_bytes(path, where, largest), where, largest)
@@ -38,13 +39,14 @@ def parse_json(content: bytes, where: str, largest: int) -> Any:
     if len(content) > largest:
         raise InputError(where, f"has {len(content)} bytes", f"At most {largest} bytes are accepted.")
     try:
-        parsed = json.loads(content)
+        parsed = json.loads(content, object_pairs_hook=collect_pairs)
     except (ValueError, RecursionError) as error:
         raise InputError(
             where,
             f"is not valid JSON ({_clean(str(error))})",
             "Write the file again with the same command of the suite.",
         ) from None
+    check_values(parsed, where)
     check_version(parsed, where)
     return parsed
 

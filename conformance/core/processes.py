@@ -8,10 +8,11 @@ import ctypes
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from multiprocessing.process import BaseProcess
+from multiprocessing.process import BaseProcess, parent_process
 from pathlib import Path
 from types import FrameType
 
@@ -95,11 +96,27 @@ def limit_threads() -> None:
         os.environ.setdefault(name, "1")
 
 
+ORPHAN_GRACE = 1.0
+"""Time of a worker to end its program after its parent has ended [s]; two seconds later, no worker may be left."""
+
+
 def handle_worker_signals() -> None:
-    """Let a signal end a worker and the program of its case; only the parent process reports the signal."""
+    """Let a signal, or the end of the parent, end a worker and the program of its case; only the parent reports it."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _exit_on_signal)
     end_with_parent(signal.SIGTERM)
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    """End this process after its parent, which may have been killed before or during a compiled kernel.
+
+    Python runs the handler of a signal between two of its own instructions only. A kernel lets other threads run.
+    """
+    if (parent := parent_process()) is not None:
+        parent.join()
+        time.sleep(ORPHAN_GRACE)
+        os._exit(128 + signal.SIGTERM)
 
 
 def end_workers(workers: Collection[BaseProcess]) -> None:

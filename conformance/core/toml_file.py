@@ -10,6 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pantocheck.conformance.core.files import read_text
 from pantocheck.conformance.core.format_versions import check_version
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.parsed_values import check_values
 from pantocheck.conformance.core.validation_messages import build_input_error
 
 MAX_TOML_BYTES = 5_000_000
@@ -65,6 +66,7 @@ def read_toml(path: Path, kind: str) -> dict[str, Any]:
     """Read a TOML file without validation of its keys; see `read_model`."""
     where = f"{kind} '{path.name}'"
     tree = parse_toml(read_text(path, where, MAX_TOML_BYTES), where)
+    check_values(tree, where)
     check_version(tree, where)
     return tree
 

@@ -1,10 +1,10 @@
 """Facts on a case in results.json: contact losses, events, derived values, inputs, force laws, record, other runs."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from pantocheck.conformance.core.figure_data import Spectrum
+from pantocheck.conformance.core.figure_data import Spectrum, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict
@@ -220,6 +220,10 @@ class MeasuredPantograph(ResultsPart):
     simulated_spectrum: Spectrum
     measured_spectrum: Spectrum
     spans: list[SpanStatistics]
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return check_lengths(self, self.position_m, self.simulated_N, self.measured_N)
 
 
 class MeasuredRun(ResultsPart):

@@ -4,14 +4,22 @@ The models check the file when it is written and read. Their JSON Schema is expo
 """
 
 import json
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pantocheck.conformance.cases.case import CaseOrigin
 from pantocheck.conformance.core.criterion import CaseVerification, ComponentName, Criterion
 from pantocheck.conformance.core.decision import DecisionText
-from pantocheck.conformance.core.figure_data import Chart, ExtremePlace, LineShape, TextTable, Traces, UpliftTrace
+from pantocheck.conformance.core.figure_data import (
+    Chart,
+    ExtremePlace,
+    LineShape,
+    TextTable,
+    Traces,
+    UpliftTrace,
+    check_lengths,
+)
 from pantocheck.conformance.core.findings import FindingCounts
 from pantocheck.conformance.core.packed_samples import SignalSamples
 from pantocheck.conformance.core.results_part import Number, Owner, ResultsPart, Suite
@@ -245,6 +253,14 @@ class CaseResult(ResultsPart):
     """Line at rest around the analysis section; missing: not known."""
     reference: Annotated[ReferenceValues | None, Field(exclude_if=is_absent)] = None
     """Values of the reference simulator; missing: not requested."""
+
+    @model_validator(mode="after")
+    def _place_reference(self) -> Self:
+        for owner, force in ({} if self.reference is None else self.reference.force_20_N).items():
+            if owner not in self.traces:
+                raise ValueError(f"reference, pantograph {owner}: a curve without that of the case")
+            check_lengths(self, self.traces[owner].position_m, force)
+        return self
 
 
 class Results(ResultsPart):
