@@ -161,18 +161,11 @@ def _give(run: PlannedRun, idle: list[_Worker], execute: Execute) -> _Worker:
 def _work(connection: Connection, execute: Execute) -> None:
     """Execute runs until the connection ends; an exception becomes the reason of a failed run."""
     handle_worker_signals()
-    while True:
-        try:
+    with suppress(EOFError, OSError):  # of the connection: the parent has ended
+        while True:
             run: PlannedRun = connection.recv()
-        except (EOFError, OSError):
-            return
-        connection.send(_STARTED)
-        start = time.perf_counter()
-        try:
-            row = execute(run)
-        except Exception as error:
-            row = build_failed_row(run, f"{type(error).__name__}: {error}", time.perf_counter() - start)
-        connection.send(row)
+            connection.send(_STARTED)
+            connection.send(call_execution(execute, run))
 
 
 # Cluster of Dask: workers on many machines, which can come and go during a campaign.
@@ -238,10 +231,11 @@ class DaskExecutor:
 
 def call_execution(execute: Execute, run: PlannedRun) -> RunRow:
     """Execute a run on a worker; an exception becomes the reason of a failed run."""
+    start = time.perf_counter()
     try:
         return execute(run)
     except Exception as error:
-        return build_failed_row(run, f"{type(error).__name__}: {error}", 0.0)
+        return build_failed_row(run, f"{type(error).__name__}: {error}", time.perf_counter() - start)
 
 
 @contextmanager

@@ -16,8 +16,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function of a time step, and keep it for other processes."""
-    compiled: Function = _njit(cache=True, _nrt=False)(function)
+    """Compile a function of a time step, and keep it for other processes; other threads of Python run meanwhile."""
+    compiled: Function = _njit(cache=True, _nrt=False, nogil=True)(function)
     return compiled
 
 

@@ -25,6 +25,7 @@ from pantocheck.conformance.campaigns.campaign_file import Execution
 from pantocheck.conformance.campaigns.campaign_store import STORE_NAME, open_store
 from pantocheck.conformance.campaigns.run_executors import LocalWorkers
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.model.dynamics import recording
 
 RUNS = 200
 """Runs in two processes: some are finished at every kill, and those after the hundredth wait for a gate."""
@@ -32,10 +33,14 @@ RUNS = 200
 GATE, GATED = "gate", 100
 
 
-def start_driver(folder: Path) -> subprocess.Popen[bytes]:
+END_S, LOAD = 2.0, 5.0
+"""Time after which no worker of a killed driver may be left, and its factor: other tests load the machine meanwhile."""
+
+
+def start_driver(folder: Path, errors: int | None = None) -> subprocess.Popen[bytes]:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "CAMPAIGN_GATE": str(folder / GATE)}
     command = [sys.executable, "-m", "helpers.cheap_campaign", str(folder), str(RUNS)]
-    return subprocess.Popen(command, env=environment)
+    return subprocess.Popen(command, env=environment, stderr=errors)
 
 
 def count_stored(folder: Path) -> int:
@@ -70,6 +75,60 @@ def test_killed_campaign_resumes_to_the_table_of_an_undisturbed_one(tmp_path: Pa
         (killed / GATE).touch()
         assert driver.wait(timeout=600) == 0
     assert (killed / "campaign.csv").read_bytes() == build_table(tmp_path / "undisturbed", RUNS)
+
+
+def wait_for_ends(processes: list[int], longest_s: float) -> list[int]:
+    """Processes that still run after a time; those that only wait for their parent have ended."""
+    end = time.monotonic() + longest_s
+    while (running := [process for process in processes if is_running(process)]) and time.monotonic() < end:
+        time.sleep(0.02)
+    return running
+
+
+def is_running(process: int) -> bool:
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state != "Z"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the children of a process are listed in /proc")
+def test_workers_of_a_killed_driver_end_without_a_word(tmp_path: Path) -> None:
+    """They wait at the gate, which never opens, so that no run of theirs ends by itself."""
+    with start_driver(tmp_path, subprocess.PIPE) as driver:
+        wait_for_runs(tmp_path, driver, GATED)
+        children = list_children(driver.pid)
+        assert len(children) >= 2
+        driver.send_signal(signal.SIGKILL)
+        assert wait_for_ends(children, LOAD * END_S) == []
+        assert driver.stderr is not None
+        assert driver.stderr.read() == b""
+
+
+CAMPAIGN = ("en50318-2002/250", "--vary", "speed_km_h=200:299:1")
+
+
+@pytest.mark.thorough
+@pytest.mark.skipif(sys.platform != "linux", reason="the children of a process are listed in /proc")
+def test_workers_end_inside_a_kernel(tmp_path: Path) -> None:
+    """Each run of the case needs several passages, which compute in compiled code."""
+    code = "from pantocheck.conformance.app.main import main; main()"
+    command = [sys.executable, "-c", code, "campaign", *CAMPAIGN, "--workers", "2", "--out", str(tmp_path)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as driver:
+        while len(list_children(driver.pid)) < 3 or not count_stored(tmp_path):
+            assert driver.poll() is None
+            time.sleep(0.1)
+        children = list_children(driver.pid)
+        driver.send_signal(signal.SIGKILL)
+        assert wait_for_ends(children, LOAD * END_S) == []
+        assert driver.stderr is not None
+        assert b"Traceback" not in driver.stderr.read()
+
+
+def test_compiled_functions_of_a_time_step_let_other_threads_run() -> None:
+    """Otherwise no thread of a worker notices the end of its parent during a passage."""
+    assert recording._advance.targetoptions["nogil"]
 
 
 def test_failing_runs_become_rows_with_their_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
