@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 from pydantic import JsonValue
 
 from pantocheck.conformance.core.criterion import Criterion
+from pantocheck.conformance.pages.condition_sections import describe_condition
 from pantocheck.conformance.pages.document_facts import name_system
 from pantocheck.conformance.pages.scope_page import describe_origin, prepare_results
 from pantocheck.conformance.pages.two_verdicts import NAMES, list_criteria, select_criteria
@@ -159,6 +160,7 @@ def _case_suite(case: CaseResult, results: Results, certificates: Sequence[str])
         "limits_digest": case.limits_digest,
         "limit_changes": "; ".join(case.limit_changes),
         "changes": "; ".join(case.changes),
+        "condition": describe_condition(case),
         "certificate": "; ".join(certificates),
         **{f"administration_{key}": text for key, text in (results.administration or ())},
         **{f"platform_{name}": text for name, text in results.platform},

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, ComponentName
+from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED, describe_condition
 from pantocheck.conformance.pages.criteria_table import has_reference
 from pantocheck.conformance.pages.document import Code, Column, RichText, Table, make_table
 from pantocheck.conformance.pages.two_verdicts import list_criteria
@@ -148,11 +149,11 @@ def _find_largest(width: float | list[float] | None) -> float | None:
     return max(width, default=None) if isinstance(width, list) else width
 
 
-# List of all quantities as comma-separated values: value, uncertainty by component, limits, verdict, input changes.
+# All quantities as comma-separated values: value, uncertainty by component, limits, verdict, condition, input changes.
 COLUMNS = (
     *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
     *COMPONENT_NAMES,
-    *("lower", "upper", "verdict", "changes"),
+    *("lower", "upper", "verdict", "condition", "changes"),
 )
 NOT_KNOWN = "NA"
 """Cell of a value that is not known: it is not zero."""
@@ -171,6 +172,7 @@ def _list_rows(case: CaseResult) -> Iterator[list[Any]]:
     """One row per quantity, or per item of a quantity with several values."""
     rows = [row for row in case.criteria if not row.is_drift]
     graded = {(str(row.pantograph), row.quantity, row.item): row for row in rows}
+    condition = describe_condition(case).removeprefix(f"{BAND_MARK} ")
     for key, quantities in case.quantities.items():
         for name, value in quantities.items():
             for item, number in enumerate(value, 1) if isinstance(value, list) else ((None, value),):
@@ -182,6 +184,7 @@ def _list_rows(case: CaseResult) -> Iterator[list[Any]]:
                     *(_select_item(width, item) for width in widths),
                     *map(_blank, (criterion and criterion.lower, criterion and criterion.upper)),
                     "" if criterion is None else criterion.verdict,
+                    condition if name == CONDITIONED else "",
                     "; ".join(case.changes),
                 ]
 

@@ -8,6 +8,7 @@ from pantocheck.conformance.core.figure_data import Chart, Series
 from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED, describe_condition
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.two_verdicts import mark_case, mark_results
 from pantocheck.conformance.pages.words import clean_text, format_value, name_pantograph, quantity_label, quantity_unit
@@ -165,6 +166,7 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
     runs = [(run, case) for run in published for case in run.results.cases if case.id == case_id]
     blocks: list[doc.Block] = [doc.Paragraph((doc.PageLink("All systems and cases", "../index.html"),))]
     blocks.append(doc.Section("Verdicts", (_build_verdict_table(runs),)))
+    blocks += map(doc.SmallPrint, dict.fromkeys(filter(None, (describe_condition(case) for _, case in runs))))
     # One run per system has no history: the table shows its values.
     repeated = len(runs) > len({run.system for run, _ in runs})
     for owner in sorted({owner for _, case in runs for owner in case.quantities}, key=int):
@@ -197,10 +199,9 @@ def _build_verdict_table(runs: Sequence[Run]) -> doc.Table:
 
 
 def _build_value_table(runs: Sequence[Run], owner: str, names: Sequence[str]) -> doc.Table:
-    columns = (
-        *map(doc.Column, ("System", "Version")),
-        *(doc.Column(f"{quantity_label(name)} [{quantity_unit(name)}]", number=True) for name in names),
-    )
+    marks = {CONDITIONED: f" {BAND_MARK}"} if any(describe_condition(case) for _, case in runs) else {}
+    labels = [f"{quantity_label(name)}{marks.get(name, '')} [{quantity_unit(name)}]" for name in names]
+    columns = (*map(doc.Column, ("System", "Version")), *(doc.Column(label, number=True) for label in labels))
     rows = tuple(
         (
             clean_text(run.system),

@@ -1,10 +1,13 @@
 """Conditions of the band from 20 to 50 Hz in certificate and summary: sentence, mark and table."""
 
+import csv
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
 from helpers.shown_page import certify, summarise
+from pantocheck.conformance.pages.ci_reports import render_junit
 from pantocheck.conformance.pages.condition_sections import (
     BAND_MARK,
     build_condition_section,
@@ -12,8 +15,8 @@ from pantocheck.conformance.pages.condition_sections import (
     mark_values,
 )
 from pantocheck.conformance.pages.document import Code, Paragraph, Remark, Section, Table
-from pantocheck.conformance.pages.quantity_tables import build_quantity_table
-from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.pages.quantity_tables import build_quantity_table, render_quantity_list
+from pantocheck.conformance.results.results_format import CaseResult, Results
 
 SPRING = {
     "group": "pantograph 1.contact", "trust": "provisional", "source": "untraced", "values": {"stiffness_N_m": 50000.0}
@@ -98,3 +101,16 @@ def test_table_lists_changes_of_both_pantographs_and_reasons(conditioned: dict[s
 def test_text_without_a_table_is_not_marked(conditioned: dict[str, Any]) -> None:
     paragraph = Paragraph("RMS, 20–50 Hz")
     assert mark_values(model(conditioned), (paragraph,)) == (paragraph,)
+
+
+def test_list_of_quantities_and_junit_state_the_condition(conditioned: dict[str, Any]) -> None:
+    """In the list at the values of the band alone; in JUnit once for each case."""
+    results = Results.model_validate(conditioned)
+    rows = list(csv.DictReader(render_quantity_list(results).splitlines()))
+    stated = {row["quantity"] for row in rows if row["condition"]}
+    assert stated == {"rms_20_50_N"}
+    [text] = {row["condition"] for row in rows if row["condition"] and row["case"] == results.cases[0].id}
+    assert text.startswith("Values from 20 to 50 Hz are conditional on a contact spring of ")
+    suite = ElementTree.fromstring(render_junit(results))[0]
+    properties = {row.get("name"): row.get("value") for row in suite.iter("property")}
+    assert properties["condition"] == f"{BAND_MARK} {text}"
