@@ -184,6 +184,7 @@ def _mark(name: str, case: CaseResult) -> doc.RichText:
 def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Block]:
     """Verdicts, rule, probability, reasons, forces and graded values; the steps of a procedure."""
     first = [case for case in results.cases if case.id in first_page.graded]
+    others = [case for case in results.cases if case.id not in first_page.graded]
     if results.procedure is not None:
         yield build_procedure_section(results.procedure, results.cases).blocks[0]
     for section in build_verdict_section(results) if results.procedure is None else ():
@@ -196,7 +197,7 @@ def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Bl
         ("Uncertainty", state_incomplete(results)),
     ]
     yield doc.Facts(tuple((name, text) for name, text in (*facts, *_list_reasons(results, first)) if text))
-    if figures := draw_limited_forces(first if results.procedure is not None else first or results.cases):
+    if figures := draw_limited_forces(first if results.procedure is not None else [*first, *others]):
         yield doc.Figures(figures)
     if first:
         yield _build_value_table(first, first_page)

@@ -7,7 +7,7 @@ import pytest
 from pypdf import PdfReader
 
 from helpers.shown_page import certify, find_facts, print_certificate, shown_certificate
-from pantocheck.conformance.pages.document import Answers, Document, Section, Table
+from pantocheck.conformance.pages.document import Answers, Document, Figures, Section, Table
 from pantocheck.conformance.pages.first_page import MOST_CASES, MOST_GRADED, MOST_SENTENCES
 from pantocheck.conformance.pages.markdown import render_markdown
 
@@ -76,3 +76,15 @@ def test_warning_of_every_case_is_said_once(results: dict[str, Any], others: lis
     assert text.count("Warning: one\n") == (0 if others else 1)
     assert text.count("* one\n") == (1 if others else 0)
     assert text.count("Warning: of the first\n") == 1
+
+
+def test_forces_are_drawn_without_graded_values(passing: dict[str, Any]) -> None:
+    """A case without limits has forces, too; those of the graded cases come first."""
+    case = passing["cases"][0]
+    passing["cases"] = [case | {"criteria": []}]
+    [answers] = [block for block in certify(passing).blocks if isinstance(block, Answers)]
+    [figures] = [block for block in answers.sections[2].blocks if isinstance(block, Figures)]
+    assert [figure.caption.split(": ")[0].split(", ")[1] for figure in figures.figures] == [
+        "pantograph 1",
+        "pantograph 2",
+    ]
