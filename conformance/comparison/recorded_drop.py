@@ -63,7 +63,7 @@ def locate_drop(record: DropRecord, catenary: Catenary) -> RecordedDrop:
     if line.differences:
         raise InputError(
             where,
-            f"the line of the record is not that of --line: {list_differences(line)}",
+            f"the line of the record is not that of --line: {list_differences(line.differences)}",
             "Name the line of the record with --line, or correct the sidecar of the record.",
         )
     places = [_find_place(f"{where}, channel '{c.name}'", "position_m", c.wire, c.position, catenary) for c in channels]

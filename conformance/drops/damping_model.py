@@ -109,9 +109,6 @@ def build_damping_basis(frequency: RealArray, energies: ComponentEnergies, state
 MODEL_ERROR = 0.01
 """Relative error of a computed damping ratio that is due to the line model [-]."""
 
-FIT_REPLICATES = 400
-"""Replicates of the confidence intervals."""
-
 MODAL_GROUPS = 2
 """Groups of span modes with a band of modal damping, as in Vo Van, Balmes and Lorang (2015), section 3."""
 
@@ -168,29 +165,38 @@ def fit_damping_model(basis: DampingBasis, measured: MeasuredModes) -> DampingFi
         InputError: There are not more modes than coefficients.
     """
     terms = [term for term in basis.terms if term[0] in (*WIRES, JOINED_WIRES)]
-    if measured.frequency.size <= len(terms):
-        raise InputError(
-            "modes",
-            f"only {measured.frequency.size} modes for a fit of {len(terms)} coefficients",
-            f"Identify at least {len(terms) + 1} modes whose half-power bands overlap no other mode, or name the "
-            "line of the record with --line.",
-        )
+    refuse_few_modes(measured.frequency.size, len(terms))
     columns = basis.ratios[:, [basis.terms.index(term) for term in terms]]
     target, std = measured.damping_ratio - basis.stated, ratio_deviation(measured)
     used = np.ones(target.size, dtype=np.bool_)
     for _ in range(3):
         values = solve_weighted(columns, target, mode_weights(std, measured.group, used))
-        used = _near_their_group(target - columns @ values, std, measured.group)
+        used = near_their_group(target - columns @ values, std, measured.group)
     # The last fit uses the final set of modes.
     values = solve_weighted(columns, target, mode_weights(std, measured.group, used))
     predicted = basis.stated + columns @ values
-    low_95, high_95 = _confidence_intervals(columns, target, measured, used)
+    low_95, high_95 = _confidence_intervals(columns, values, target - columns @ values, measured, used)
     relative = (measured.damping_ratio - predicted) / measured.damping_ratio
     coefficients = tuple(
         Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(lower), high_95=float(upper))
         for (kind, matrix), value, lower, upper in zip(terms, values, low_95, high_95, strict=True)
     )
     return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
+
+
+def refuse_few_modes(modes: int, coefficients: int) -> None:
+    """Refuse a fit with no more modes than coefficients.
+
+    Raises:
+        InputError: There are too few modes.
+    """
+    if modes <= coefficients:
+        raise InputError(
+            "modes",
+            f"only {modes} modes for a fit of {coefficients} coefficients",
+            f"Identify at least {coefficients + 1} modes whose half-power bands overlap no other mode, or name the "
+            "line of the record with --line.",
+        )
 
 
 def ratio_deviation(measured: MeasuredModes) -> RealArray:
@@ -214,7 +220,7 @@ def solve_weighted(columns: RealArray, target: RealArray, weight: RealArray) -> 
     return np.asarray(solution / scale)
 
 
-def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
+def near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) -> NDArray[np.bool_]:
     near = np.ones(residual.size, dtype=np.bool_)
     for number in np.unique(group):
         members = np.flatnonzero(group == number)
@@ -225,20 +231,17 @@ def _near_their_group(residual: RealArray, std: RealArray, group: IntegerArray) 
 
 
 def _confidence_intervals(
-    columns: RealArray, target: RealArray, measured: MeasuredModes, used: NDArray[np.bool_]
+    columns: RealArray, values: RealArray, residual: RealArray, measured: MeasuredModes, used: NDArray[np.bool_]
 ) -> tuple[RealArray, RealArray]:
-    """Percentiles 2.5 and 97.5 over replicates with redrawn modes of each group and added measurement noise."""
-    random = np.random.default_rng(20150817)
-    std, noise, group = ratio_deviation(measured), measured.std, measured.group
-    group_members = [np.flatnonzero((group == number) & used) for number in np.unique(group)]
-    group_members = [members for members in group_members if members.size]
-    replicates = np.empty((FIT_REPLICATES, columns.shape[1]))
-    for r in range(FIT_REPLICATES):
-        rows = np.concatenate([random.choice(members, members.size) for members in group_members])
-        noisy = target[rows] + noise[rows] * random.standard_normal(rows.size)
-        all_used = np.ones(rows.size, dtype=np.bool_)
-        replicates[r] = solve_weighted(columns[rows], noisy, mode_weights(std[rows], group[rows], all_used))
-    return np.percentile(replicates, 2.5, axis=0), np.percentile(replicates, 97.5, axis=0)
+    """95 % intervals of weighted least squares on one line, with the scatter that the residuals show."""
+    std = ratio_deviation(measured)
+    weight = mode_weights(std, measured.group, used)
+    freedom = max(int(used.sum()) - columns.shape[1], 1)
+    found = std * np.sqrt(np.sum((residual[used] / std[used]) ** 2) / freedom)
+    scale = np.maximum(np.linalg.norm(columns * weight[:, None], axis=0), np.finfo(float).tiny)
+    gain = np.linalg.pinv(columns * weight[:, None] / scale) * weight * np.maximum(found, measured.std) / scale[:, None]
+    width = scipy.stats.t.ppf(0.975, freedom) * np.sqrt(np.sum(gain**2, axis=1))
+    return np.maximum(values - width, 0.0), values + width
 
 
 def fit_modal_bands(measured: MeasuredModes, groups: int = MODAL_GROUPS) -> tuple[ModalBand, ...]:

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import tomli_w
+from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.texts import count_noun
@@ -17,6 +18,9 @@ from pantocheck.conformance.drops.damping_model import (
     THRESHOLDS,
     WIRES,
     DampingBasis,
+    DampingFit,
+    MeasuredModes,
+    Term,
     build_damping_basis,
     compute_observability,
     fit_damping_model,
@@ -24,13 +28,24 @@ from pantocheck.conformance.drops.damping_model import (
     judge_coefficients,
     list_other_damping,
 )
+from pantocheck.conformance.drops.joint_fit import JointFit, Prior, fit_jointly, solve_about
 from pantocheck.conformance.drops.line_comparison import compare_line, warn_about_line
+from pantocheck.conformance.drops.line_evidence import (
+    assess_groups,
+    build_intervals,
+    list_properties,
+    name_covariance,
+    refute_line,
+)
 from pantocheck.conformance.drops.mode_matching import MatchedModes, match_modes, select_usable
 from pantocheck.conformance.drops.paired_shapes import list_paired_shapes
+from pantocheck.conformance.line.line_parameters import DEFAULT_TOLERANCE, MECHANICAL, ParameterGroup
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
     FittedModels,
+    FittedProperty,
+    GroupResidual,
     MeasuredBand,
     MeasuredRatios,
     PairedMode,
@@ -45,11 +60,28 @@ from pantocheck.model.modal.modes import component_energies, damping_ratios
 
 WireCoefficients = Literal["separate", "common"]
 
-COEFFICIENTS_OF_WIRES: dict[WireCoefficients, Callable[[DampingBasis], DampingBasis]] = {
-    "separate": lambda basis: basis,
-    "common": DampingBasis.join_wires,
+
+class WireForm(NamedTuple):
+    """Form of the damping of the wires."""
+
+    join: Callable[[DampingBasis], DampingBasis]
+    """Basis of the coefficients."""
+    kinds: tuple[str, ...]
+    """Kinds of component of the coefficients, each with its stiffness and mass."""
+    shares: RealArray
+    """Shares of the coefficients in those of both wires, (4, t) [-]."""
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """Coefficients in the order of the shares."""
+        return tuple((kind, matrix) for kind in self.kinds for matrix in MATRICES)
+
+
+FORMS: dict[WireCoefficients, WireForm] = {
+    "separate": WireForm(lambda basis: basis, WIRES, np.eye(4)),
+    "common": WireForm(DampingBasis.join_wires, (JOINED_WIRES,), np.vstack([np.eye(2), np.eye(2)])),
 }
-"""Basis of the fit: each wire with its own coefficients, or both with the same."""
+"""Form of the fit: each wire with its own coefficients, or both with the same."""
 
 
 NOTICEABLE_SHARE = 0.01
@@ -67,45 +99,70 @@ class FitOptions:
     """Whether contact and messenger wire have their own coefficients, or the same."""
     modal_groups: int = MODAL_GROUPS
     """Number of groups of span modes with a band of modal damping, from the first."""
+    free: tuple[ParameterGroup, ...] = ("tensions",)
+    """Properties of the line that are fitted together with the damping.
+
+    None: the line is exact, and all groups of modes have the same weight.
+    """
+    tolerances: RealArray | None = None
+    """Covariance of the factors of `MECHANICAL` [-]; None: `DEFAULT_TOLERANCE`, independent."""
+
+    def build_prior(self, free: tuple[ParameterGroup, ...]) -> Prior:
+        """Prior of the properties of the line."""
+        covariance = self.tolerances
+        if covariance is None:
+            covariance = DEFAULT_TOLERANCE**2 * np.eye(len(MECHANICAL))
+        return Prior(MECHANICAL, covariance, frozenset(free))
 
 
 def build_damping_results(
     modes: Sequence[Mode], line: Catenary, element: float, source: str, options: FitOptions = FitOptions()
 ) -> DampingResults:
-    """Fit a damping model to identified modes.
+    """Fit the damping of a line, and the properties of it that are free, to identified modes.
 
     Args:
         modes: Identified modes; lateral, uncertain and ungrouped ones are left out.
         line: Line of the record; its present damping is the reference of the comparison.
         element: Element length [m].
         source: Name of the file of the modes, for messages.
-        options: Coefficients of the wires, and bands of modal damping.
+        options: Coefficients of the wires, free properties of the line, and bands of modal damping.
 
     Raises:
         InputError: There are too few modes, or too few of them have a computed counterpart.
     """
-    usable = select_usable(modes, source)
-    comparison = compare_line(usable, line)
-    matched = match_modes(usable, line, element, source)
+    usable, form = select_usable(modes, source), FORMS[options.wires]
+    prior = options.build_prior(options.free or ("tensions",))
+    joint = fit_jointly(usable, line, prior, form.shares, element, source)
+    with_tensions = options.build_prior(("tensions", *options.free))
+    evident = joint if "tensions" in prior.free else solve_about(joint, with_tensions, form.shares)
+    comparison = refute_line(compare_line(usable, line), evident, with_tensions, line)
+    matched = joint.linear.matched if options.free else match_modes(usable, line, element, source)
     measured, shapes = matched.measured, matched.shapes
     energies = component_energies(matched.mesh, shapes)
     stated = _compute_stated_ratios(matched, line)
-    basis = COEFFICIENTS_OF_WIRES[options.wires](build_damping_basis(shapes.frequency, energies, stated))
+    basis = form.join(build_damping_basis(shapes.frequency, energies, stated))
     paired_basis = basis.select_modes(np.array([pair.computed for pair in matched.pairs], dtype=np.int64))
     overlapping = matched.overlapping
     separate = np.flatnonzero(~overlapping)
     fitted_basis, fitted_modes = paired_basis.select_modes(separate), measured.select(separate)
-    fit = fit_damping_model(fitted_basis, fitted_modes)
+    if options.free:
+        fit = _describe_fit(joint, form, fitted_basis, fitted_modes, np.isin(separate, joint.used))
+    else:
+        fit = fit_damping_model(fitted_basis, fitted_modes)
     observability = tuple(
         row for row in compute_observability(fitted_basis, fitted_modes, fit) if row.largest_share > 0
     )
     coefficients = judge_coefficients(fit.coefficients, observability, matched.matching)
     bands = fit_modal_bands(measured, options.modal_groups)
     rayleigh = basis.predict(fit.values)
+    properties, groups = list_properties(joint, prior) if options.free else (), assess_groups(joint)
+    names = [f"{kind}_{matrix}_coefficient" for kind, matrix in form.terms]
     return DampingResults(
         modes_file=source,
         warnings=(
             *warn_about_line(comparison),
+            *_warn_about_properties(properties),
+            *_warn_about_groups(groups),
             *_warn_about_overlap(measured.frequency[overlapping]),
             *_warn_about_stated(fitted_basis.stated / fitted_modes.damping_ratio),
             *_warn_about_coefficients(coefficients),
@@ -115,6 +172,9 @@ def build_damping_results(
         matching=matched.matching,
         residual=fit.residual,
         coefficients=coefficients,
+        properties=properties,
+        covariance=name_covariance(joint, prior, names) if options.free else None,
+        groups=groups,
         modal=tuple(
             MeasuredBand(from_Hz=b.from_frequency, to_Hz=b.to_frequency, damping_ratio=b.damping_ratio) for b in bands
         ),
@@ -125,6 +185,19 @@ def build_damping_results(
         comparison=_compare_models(matched, rayleigh, bands),
         unpaired=tuple(mode.frequency_Hz for mode in matched.unpaired),
     ).rounded()
+
+
+def _describe_fit(
+    joint: JointFit, form: WireForm, basis: DampingBasis, measured: MeasuredModes, used: NDArray[np.bool_]
+) -> DampingFit:
+    """Coefficients of a joint fit with their intervals, and its residual at the modes that overlap no other."""
+    coefficients = tuple(
+        Coefficient(kind=kind, matrix=matrix, value=float(value), low_95=float(low), high_95=float(high))
+        for (kind, matrix), value, low, high in zip(form.terms, joint.values, *build_intervals(joint), strict=True)
+    )
+    predicted = basis.predict(dict(zip(form.terms, joint.values.tolist(), strict=True)))
+    relative = (measured.damping_ratio - predicted) / measured.damping_ratio
+    return DampingFit(coefficients, predicted, used, float(np.sqrt(np.mean(relative[used] ** 2))))
 
 
 def _list_pairs(matched: MatchedModes, predicted: RealArray, used: set[int]) -> tuple[PairedMode, ...]:
@@ -185,6 +258,25 @@ def _list_stated(line: Catenary) -> tuple[StatedDamping, ...]:
         for kind, rayleigh in list_other_damping(line).items()
         if rayleigh != Rayleigh()
     )
+
+
+def _warn_about_properties(properties: Sequence[FittedProperty]) -> list[str]:
+    """Warning about free properties that the modes do not determine."""
+    names = [row.name.replace("_", " ") for row in properties if not row.determined]
+    if not names:
+        return []
+    return [f"The modes do not determine: {', '.join(names)}. It stays at its stated value within its tolerance."]
+
+
+def _warn_about_groups(groups: Sequence[GroupResidual]) -> list[str]:
+    """Warning about groups of modes that the damping of the wires does not explain."""
+    return [
+        f"The damping of the wires does not explain group {row.group}: its {count_noun(row.modes, 'mode')} differ by "
+        f"{100 * row.mean:+.1f} % on average; scatter as among the modes of a group gives this with a probability of "
+        f"{row.probability:.1g}."
+        for row in groups
+        if not row.explained
+    ]
 
 
 def _warn_about_overlap(frequency: RealArray) -> list[str]:

@@ -53,20 +53,22 @@ def refuse_other_line(comparison: LineComparison, source: str) -> None:
     if comparison.differences:
         raise InputError(
             source,
-            f"the line of the record is not that of --line: {list_differences(comparison)}",
+            f"the line of the record is not that of --line: {list_differences(comparison.differences)}",
             "Name the line of the record with --line. The option --other-line permits another line and marks the "
             "result.",
         )
 
 
 def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
-    """Warnings about the line of a fit; none for a consistent line."""
+    """Warnings about the line of a fit; none for a consistent one."""
     warnings = []
     if comparison.differences:
         warnings.append(
             "The line of the fit is not the line of the record, so that the errors of the coefficients can exceed "
-            f"their intervals: {list_differences(comparison)}."
+            f"their intervals: {list_differences(comparison.differences)}."
         )
+    if comparison.refuted:
+        warnings.append(f"The natural frequencies contradict the line: {list_differences(comparison.refuted)}.")
     if comparison.missing:
         warnings.append(
             "The line of the fit is not confirmed, because the modes do not state all properties of the line of the "
@@ -75,11 +77,9 @@ def warn_about_line(comparison: LineComparison) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def list_differences(comparison: LineComparison) -> str:
-    """All differences as text in one line."""
-    return "; ".join(
-        f"{row.fact} is {row.record} in the record, {row.line} on the line" for row in comparison.differences
-    )
+def list_differences(differences: Sequence[LineDifference]) -> str:
+    """Differences as text in one line."""
+    return "; ".join(f"{row.fact} is {row.record} in the record, {row.line} on the line" for row in differences)
 
 
 def _add_sensors(

@@ -13,6 +13,8 @@ from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
     FittedModels,
+    FittedProperty,
+    GroupResidual,
     Matching,
     Observability,
     PairedMode,
@@ -29,6 +31,14 @@ LINE_STATES = {
     "unconfirmed": "The line of the fit is not confirmed.",
     "contradicted": "The line of the fit is NOT the line of the record.",
 }
+LINE_FIT = (
+    "Factors on the stated values, fitted together with the coefficients; the intervals of either contain the "
+    "uncertainty of the other. A tension holds for the stated mass per length."
+)
+REACH = (
+    "Residual of each group of span modes. A group is not explained if scatter as among the modes of a group gives its "
+    "residual with a probability below 1 % for all groups together."
+)
 COMPARISON = "The line as it is: the line with the damping of its line file."
 
 
@@ -61,6 +71,8 @@ def build_damping_document(results: DampingResults, block: str) -> doc.Document:
     explanation = describe_observability(results.thresholds)
     sections: dict[str, tuple[doc.Block, ...]] = {
         "Result": (doc.Paragraph(RESULT), doc.CodeBlock(block), _coefficient_table(results.coefficients)),
+        "Line": (doc.Paragraph(LINE_FIT), _property_table(results.properties)) if results.properties else (),
+        "Reach of the model": (doc.Paragraph(REACH), _group_table(results.groups)) if results.groups else (),
         "Comparison": (doc.Paragraph(COMPARISON), doc.Figures((comparison,))),
         "Mode shapes": tuple(_list_shape_figures(results.shapes)),
         "Observability": (
@@ -122,6 +134,30 @@ def _coefficient_table(rows: Sequence[Coefficient]) -> doc.Table:
         "Determined": lambda row: "yes" if row.determined else "not determined",
     }
     return doc.make_grid("Coefficients", rows, cells)
+
+
+def _property_table(rows: Sequence[FittedProperty]) -> doc.Table:
+    cells: dict[str, Callable[[FittedProperty], str]] = {
+        "Property": lambda row: row.name.replace("_", " "),
+        "Factor": lambda row: format_value(row.factor, 5),
+        "95 % interval": lambda row: f"{format_value(row.low_95, 5)} to {format_value(row.high_95, 5)}",
+        "Tolerance [%]": lambda row: format_percent(row.tolerance, 3),
+        "Determined": lambda row: "yes" if row.determined else "no: at its stated value",
+    }
+    return doc.make_grid("Properties of the line", rows, cells)
+
+
+def _group_table(rows: Sequence[GroupResidual]) -> doc.Table:
+    cells: dict[str, Callable[[GroupResidual], str]] = {
+        "Group": lambda row: str(row.group),
+        "Modes": lambda row: str(row.modes),
+        "Mean residual [%]": lambda row: format_percent(row.mean, 3),
+        "RMS residual [%]": lambda row: format_percent(row.rms, 3),
+        "Chi-square": lambda row: format_value(row.chi_square, 3),
+        "Probability": lambda row: format_value(row.probability, 2),
+        "Explained": lambda row: "yes" if row.explained else "NO",
+    }
+    return doc.make_grid("Residuals of the groups", rows, cells)
 
 
 def _observability_table(rows: Sequence[Observability]) -> doc.Table:

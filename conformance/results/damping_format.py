@@ -44,6 +44,51 @@ class LineComparison(RoundedModel):
     differences: tuple[LineDifference, ...]
     missing: tuple[str, ...]
     """Properties of the line that the modes do not state."""
+    refuted: tuple[LineDifference, ...] = ()
+    """Properties of the line that the natural frequencies contradict, whatever the record states."""
+
+
+class FittedProperty(RoundedModel):
+    """Property of the line that was fitted together with the damping."""
+
+    name: str
+    """Name, as the key of its tolerance in a line file."""
+    factor: Rounded
+    """Found over stated value [-]; that of a tension holds for the stated mass per length."""
+    low_95: Rounded
+    """Lower bound of the 95 % interval of the factor [-]."""
+    high_95: Rounded
+    """Upper bound of the 95 % interval of the factor [-]."""
+    tolerance: Rounded
+    """Standard deviation of the stated value before the fit [-]."""
+    determined: bool
+    """false: the modes do not determine it; it stays at its stated value within the tolerance."""
+
+
+class JointCovariance(RoundedModel):
+    """Covariance of the factors of the fitted properties and of the coefficients."""
+
+    names: tuple[str, ...]
+    rows: tuple[tuple[Rounded, ...], ...]
+    """Square matrix; coefficients in [s] and [1/s], factors without unit."""
+
+
+class GroupResidual(RoundedModel):
+    """Residual of the damping ratios of one group of span modes, and its test."""
+
+    group: int
+    modes: int
+    """Number of modes in the fit."""
+    mean: Rounded
+    """Mean of (measured - fitted) / measured [-]."""
+    rms: Rounded
+    """Root mean square of the same [-]."""
+    chi_square: Rounded
+    """Squared residual over its covariance; its expectation is the number of modes."""
+    probability: Rounded
+    """Probability of such a residual if the model carries the group [-]."""
+    explained: bool
+    """false: the wires do not explain the group, at a level of 1 % for all groups together."""
 
 
 class Matching(RoundedModel):
@@ -199,6 +244,11 @@ class DampingResults(RoundedModel):
     residual: Rounded
     """RMS of (measured - fitted) / measured, all modes of the fit [-]."""
     coefficients: tuple[Coefficient, ...]
+    properties: tuple[FittedProperty, ...] = ()
+    """Properties of the line that were fitted together with the coefficients."""
+    covariance: JointCovariance | None = None
+    groups: tuple[GroupResidual, ...] = ()
+    """Residuals of the groups: how far the form of the model carries."""
     stated: tuple[StatedDamping, ...] = ()
     """Damping of other components, as the line of the fit states it."""
     modal: tuple[MeasuredBand, ...]

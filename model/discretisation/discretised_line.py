@@ -75,7 +75,7 @@ def max_wave_speed(line: DiscretisedLine) -> float:
 def with_damping(line: DiscretisedLine, damping: Mapping[Kind, Rayleigh]) -> DiscretisedLine:
     """Replace the damping of a line; its initial state does not depend on it."""
     catenary = replace(line.catenary, damping=dict(damping))
-    beams = build_beams(catenary, line.mesh)
+    beams = build_beams(catenary, line.mesh, line.beams.flexibility)
     connectors = build_connectors(catenary, line.mesh, beams, line.state)
     return replace(line, catenary=catenary, beams=beams, connectors=connectors)
 

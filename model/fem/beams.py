@@ -96,8 +96,8 @@ class Beams(NamedTuple):
     """Residual flexibility of each element, see `element_flexibility`, (B, S-1, 7) [m/N]."""
 
 
-def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
-    """Build the wires and lumped parts of a line as rows of beams."""
+def build_beams(catenary: Catenary, mesh: Mesh, known_flexibility: Array | None = None) -> Beams:
+    """Build the wires and lumped parts of a line as rows of beams; `known_flexibility`: that of the same wires."""
     stations = mesh.position.size
     length = np.diff(mesh.position)
     middle = mesh.position[:-1] + length / 2
@@ -119,7 +119,9 @@ def build_beams(catenary: Catenary, mesh: Mesh) -> Beams:
         free[row, first : last + 1] = True
         if wire.kind is not Kind.STITCH_WIRE:  # a stitch wire ends in clamps, not in anchors
             free[row, [first, last], 0] = False
-    flexibility = _flexibility_of_rows(mesh, length, tension, bending_stiffness)
+    flexibility = known_flexibility
+    if flexibility is None:
+        flexibility = _flexibility_of_rows(mesh, length, tension, bending_stiffness)
     at_station = np.array([station_flexibility(elements) for elements in flexibility])
     lumped_mass, lumped_stiffness, lumped_damping = sum_lumped_parts(catenary, mesh)
     rayleigh = [catenary.rayleigh(kind) for kind in mesh.row_kind]

@@ -24,7 +24,7 @@ import scipy.sparse as sp
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.modal.modes import Modes, free_vectors
-from pantocheck.model.statics.assembly import assemble_matrices, free_unknowns, stretch_directions
+from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, free_unknowns, stretch_directions
 from pantocheck.model.statics.line_stiffness import factored_stiffness
 
 SMALLEST_SHARE = 1e-6
@@ -74,7 +74,7 @@ class ReducedModes:
             matrix: Symmetric matrix C in the span, (s, s).
             derivative: Its derivatives by the properties, (p, s, s).
         """
-        own = np.einsum("ij,pik,kj->pj", self.vector, derivative, self.vector)
+        own = np.sum(self.vector * (derivative @ self.vector), axis=1)
         return np.asarray(own + 2 * np.einsum("jk,pkj->pj", self.vector.T @ matrix @ self.vector, self.rotation))
 
 
@@ -148,3 +148,10 @@ def _full_matrices(line: DiscretisedLine) -> tuple[sp.csc_array, sp.csc_array]:
     matrices = assemble_matrices(line)
     held = sp.csr_array(stretch_directions(line))[matrices.free]
     return matrices.stiffness + held @ sp.diags_array(line.stretches.stiffness) @ held.T, matrices.mass
+
+
+def span_shapes(line: DiscretisedLine, reduced: ReducedLine) -> Modes:
+    """Vectors of the span as shapes of the line."""
+    shape = np.zeros((reduced.eigenvalue.size, line.beams.free.size))
+    shape[:, bandwidth_order(line)[free_unknowns(line)]] = reduced.vectors
+    return Modes(np.sqrt(reduced.eigenvalue) / (2 * np.pi), shape.reshape(-1, *line.beams.free.shape))

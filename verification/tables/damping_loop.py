@@ -11,7 +11,7 @@ import numpy as np
 from scipy.signal import resample_poly
 
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.drops.damping_results import build_damping_results
+from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.line.catenary_model import build_catenary
@@ -50,7 +50,7 @@ def main() -> None:
         line=MeasuredLine(spans_m=six_spans.span_lengths),
     )
     (identification,) = identify_modes((record,))
-    results = build_damping_results(identification.modes, line, ELEMENT, "the loop")
+    results = build_damping_results(identification.modes, line, ELEMENT, "the loop", FitOptions(free=()))
     for c in results.coefficients:
         expected = getattr(PUT_IN[Kind(c.kind)], f"{c.matrix}_coefficient")
         interval = f"[{c.low_95:.4g}, {c.high_95:.4g}]"

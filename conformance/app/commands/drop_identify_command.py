@@ -48,6 +48,12 @@ from pantocheck.conformance.drops.population_analysis import analyse_population
 from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_parameters import (
+    DEFAULT_TOLERANCE,
+    MECHANICAL,
+    PARAMETER_GROUPS,
+    ParameterGroup,
+)
 from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
 from pantocheck.conformance.pages.report_writers import remark_missing_formats, write_document
@@ -217,6 +223,13 @@ def drop_fit_command(
         Path, typer.Option(help="Folder for damping.toml, damping_with_modal.toml, damping.json, .html and .pdf.")
     ],
     element: ElementOption = 0.5,
+    free: Annotated[
+        str,
+        typer.Option(
+            help="Properties of the line that are fitted as well, separated by commas: "
+            f"{', '.join(PARAMETER_GROUPS)}; none: the line is exact."
+        ),
+    ] = "tensions",
     wires: Annotated[
         WireCoefficients,
         typer.Option(help="separate: each wire has its own coefficients; common: both wires have the same."),
@@ -238,9 +251,10 @@ def drop_fit_command(
 ) -> CommandOutput:
     """Fit a damping model of a line to identified modes.
 
-    The model is Rayleigh damping per component, with and without modal damping. The report states which coefficients
-    the modes determine. A line whose spans, tensions or wires at the sensors differ from those of the record is
-    refused.
+    The model is Rayleigh damping per component, with and without modal damping. The tensions are fitted together with
+    it, about the stated values with their tolerances ([tolerance] of the line file, or 1 %). The report states which
+    coefficients the modes determine, and a line that the frequencies contradict. A line whose spans, tensions or wires
+    at the sensors differ from those of the record is refused.
 
     Example: pantocheck drop fit T1/modes.json --line my-line.toml --out T1
     """
@@ -251,7 +265,9 @@ def drop_fit_command(
     check_writable(out)
     with follow_steps("damping fit", 2) as progress:
         progress.begin_task("modes of the line")
-        results = build_damping_results(identified, catenary, element, modes.name, FitOptions(wires, modal_groups))
+        tolerances = measured.covariance_of([parameter.name for parameter in MECHANICAL], DEFAULT_TOLERANCE)
+        options = FitOptions(wires, modal_groups, choose_groups(free), tolerances)
+        results = build_damping_results(identified, catenary, element, modes.name, options)
         progress.begin_task("report")
         document, files = write_damping_fit(results, out)
     transferred = [] if transfer is None else _write_transfer(results, (measured, read_line(transfer)), element, out)
@@ -266,6 +282,18 @@ def drop_fit_command(
         files=[*files, *([] if transfer is None else [out / TRANSFER_FILE])],
         remarks=remark_missing_formats(),
     )
+
+
+def choose_groups(text: str) -> tuple[ParameterGroup, ...]:
+    """Groups of properties from a list with commas, or none.
+
+    Raises:
+        InputError: A name is not a group.
+    """
+    names = [] if text.strip() == "none" else [name.strip() for name in text.split(",")]
+    if unknown := [name for name in names if name not in PARAMETER_GROUPS]:
+        raise InputError("--free", f"{unknown[0][:80]!r} is not known", f"Choose of {', '.join(PARAMETER_GROUPS)}.")
+    return tuple(group for group in PARAMETER_GROUPS if group in names)
 
 
 def _write_transfer(

@@ -32,6 +32,7 @@ from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_parameters import DEFAULT_TOLERANCE, MECHANICAL, ParameterGroup
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.results.damping_format import Coefficient, DampingResults
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
@@ -201,7 +202,11 @@ class IdentifiedLines:
         return axes
 
     def fit_damping(
-        self, case: OpenedCase, element_m: float = 0.5, wires: WireCoefficients = "separate"
+        self,
+        case: OpenedCase,
+        element_m: float = 0.5,
+        wires: WireCoefficients = "separate",
+        free: tuple[ParameterGroup, ...] = ("tensions",),
     ) -> FittedDamping:
         """Fit a damping model of the line of a case to the modes, as `pantocheck drop fit` does.
 
@@ -209,13 +214,17 @@ class IdentifiedLines:
             case: Case with the line of the records.
             element_m: Element length [m].
             wires: Whether contact and messenger wire have their own coefficients, or the same.
+            free: Properties of the line that are fitted as well: tensions, droppers, supports, arms.
 
         Raises:
             InputError: The line is not that of the record, or the modes do not determine a model.
         """
-        catenary = build_catenary(case.case.line)
+        line = case.case.line
+        catenary = build_catenary(line)
         refuse_other_modes(self.modes, catenary, "modes")
-        return FittedDamping(build_damping_results(self.modes, catenary, element_m, "modes", FitOptions(wires)))
+        tolerances = line.covariance_of([parameter.name for parameter in MECHANICAL], DEFAULT_TOLERANCE)
+        options = FitOptions(wires, free=free, tolerances=tolerances)
+        return FittedDamping(build_damping_results(self.modes, catenary, element_m, "modes", options))
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write modes.json; returns the paths of the files.

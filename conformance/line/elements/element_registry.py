@@ -11,6 +11,7 @@ from pantocheck.conformance.line.elements.point_mass import PointMasses
 from pantocheck.conformance.line.elements.steady_arm import SteadyArms
 from pantocheck.conformance.line.elements.stitch_wire import StitchWires
 from pantocheck.conformance.line.elements.tension_section import TensionSections
+from pantocheck.conformance.line.elements.tolerance import Tolerances
 from pantocheck.conformance.line.elements.variation import Variations
 from pantocheck.conformance.line.elements.wire import Wires
 from pantocheck.conformance.line.elements.wire_irregularity import Irregularities
@@ -18,6 +19,7 @@ from pantocheck.conformance.line.elements.wire_spring import WireSprings
 
 
 class LineElements(
+    Tolerances,
     Variations,
     TrackCurves,
     TensionSections,

@@ -11,7 +11,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series, TextTable
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.damping_model import MATRICES, WIRES
-from pantocheck.conformance.drops.damping_results import build_damping_results
+from pantocheck.conformance.drops.damping_results import FitOptions, build_damping_results
 from pantocheck.conformance.drops.drop_simulation import require_mass_drop
 from pantocheck.conformance.drops.identify import Identification
 from pantocheck.conformance.drops.population_analysis import analyse_population
@@ -42,6 +42,9 @@ from pantocheck.conformance.studies.vovan2015.study_report import build_provenan
 from pantocheck.model import Catenary, Kind, discretise
 from pantocheck.model.modal.modes import compute_modes_below
 
+EXACT = FitOptions(free=())
+"""Fit on a line that is exact, because the drops are simulated on it."""
+
 SMALLEST_DRAWN_RATIO = 1e-3
 """Smaller ratios, and zero, are drawn at this value on the logarithmic scale [-]."""
 
@@ -53,7 +56,7 @@ def build_fit_report(case: Case, identification: Identification) -> StudyResult:
     """
     line, element = build_catenary(case.line), case.file.discretisation.element_m
     try:
-        results = build_damping_results(identification.modes, line, element, f"the modes of {case.id}")
+        results = build_damping_results(identification.modes, line, element, f"the modes of {case.id}", EXACT)
     except InputError as error:
         return StudyResult(tables=(TextTable(caption="Fitted damping: none", columns=["Reason"], rows=[[str(error)]]),))
     return StudyResult(

@@ -203,11 +203,12 @@ def test_modes_without_facts_or_with_a_missing_fact_hide_no_difference(file: Lin
     facts = describe_line(file).model_copy(update={"spans_m": (), "messenger_wire_tension_N": 15e3})
     comparison = compare_line([build_mode(facts)], catenary)
     assert (comparison.state, len(comparison.differences), len(comparison.missing)) == ("contradicted", 1, 1)
-    # Record T1, without facts on the line, is from another line, which the fit can only see by its matching.
+    # Record T1, without facts on the line, is from another line: its frequencies are not those of this one.
     modes = TypeAdapter(list[Mode]).validate_python(json.loads(lzma.decompress(MODES.read_bytes())))
     results = build_damping_results(modes, catenary, 1.5, "modes.json")
-    assert results.line.state == "unconfirmed"
-    assert "not confirmed" in results.warnings[0]
+    assert (results.line.state, results.line.differences) == ("contradicted", ())
+    assert "natural frequencies contradict the line: scatter of the frequencies" in results.warnings[0]
+    assert "not confirmed" in results.warnings[1]
     assert results.matching.matched_share < 0.8
     assert results.matching.median_mac < 0.9
     assert not any(c.determined for c in results.coefficients)

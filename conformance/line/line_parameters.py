@@ -1,0 +1,102 @@
+"""Properties of a line that a measurement can correct: each multiplies a value of the model by a factor."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+from pantocheck.model import Catenary, Kind, Rayleigh
+
+ParameterGroup = Literal["tensions", "droppers", "supports", "arms"]
+"""Groups of properties that a fit frees together."""
+
+DEFAULT_TOLERANCE = 0.01
+"""Standard deviation of a property without a stated tolerance, as a share of its value [-]."""
+
+CatenaryChange = Callable[[Catenary, float], Catenary]
+
+
+@dataclass(frozen=True)
+class LineParameter:
+    """Property of a line."""
+
+    name: str
+    """Key of its tolerance in a line file, without `_pct`."""
+    group: ParameterGroup | None
+    """Group that frees it; None: a coefficient of damping."""
+    scale: CatenaryChange
+    """Line in which the property is multiplied by a factor."""
+
+
+def _scale_tension(kind: Kind) -> CatenaryChange:
+    def scale(line: Catenary, factor: float) -> Catenary:
+        wires = (replace(w, tension=w.tension * factor) if w.kind is kind else w for w in line.wires)
+        return replace(line, wires=tuple(wires))
+
+    return scale
+
+
+def _scale_droppers(line: Catenary, factor: float) -> Catenary:
+    """Droppers with their stiffness, or EA, times a factor."""
+    parts = (
+        replace(d, axial_stiffness=(d.axial_stiffness or 0.0) * factor)
+        if d.stiffness is None
+        else replace(d, stiffness=d.stiffness * factor)
+        for d in line.droppers
+    )
+    return replace(line, droppers=tuple(parts))
+
+
+def _scale_supports(line: Catenary, factor: float) -> Catenary:
+    parts = (replace(support, stiffness=support.stiffness * factor) for support in line.messenger_supports)
+    return replace(line, messenger_supports=tuple(parts))
+
+
+def _scale_arm_stiffness(line: Catenary, factor: float) -> Catenary:
+    """Arms with their stiffness times a factor: a hinged arm, of stiffness force over length, is so much shorter."""
+    parts = (
+        replace(a, length=None if a.length is None else a.length / factor)
+        if a.vertical_stiffness is None
+        else replace(a, vertical_stiffness=a.vertical_stiffness * factor)
+        for a in line.steady_arms
+    )
+    return replace(line, steady_arms=tuple(parts))
+
+
+def _scale_arm_mass(line: Catenary, factor: float) -> Catenary:
+    return replace(line, steady_arms=tuple(replace(arm, mass=arm.mass * factor) for arm in line.steady_arms))
+
+
+def _scale_damping(kind: Kind, key: str) -> CatenaryChange:
+    def scale(line: Catenary, factor: float) -> Catenary:
+        rayleigh = line.rayleigh(kind)
+        changed: Rayleigh = replace(rayleigh, **{key: getattr(rayleigh, key) * factor})
+        return replace(line, damping={**line.damping, kind: changed})
+
+    return scale
+
+
+MECHANICAL: tuple[LineParameter, ...] = (
+    LineParameter("contact_wire_tension", "tensions", _scale_tension(Kind.CONTACT_WIRE)),
+    LineParameter("messenger_wire_tension", "tensions", _scale_tension(Kind.MESSENGER_WIRE)),
+    LineParameter("dropper_stiffness", "droppers", _scale_droppers),
+    LineParameter("messenger_support_stiffness", "supports", _scale_supports),
+    LineParameter("steady_arm_stiffness", "arms", _scale_arm_stiffness),
+    LineParameter("steady_arm_moving_mass", "arms", _scale_arm_mass),
+)
+"""Properties on which natural frequencies depend; tensions at the stated masses, because they see T / m alone."""
+
+DAMPING: tuple[LineParameter, ...] = tuple(
+    LineParameter(f"{kind}_{key}", None, _scale_damping(kind, key))
+    for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
+    for key in ("mass_coefficient", "stiffness_coefficient")
+)
+"""Coefficients of the damping of the wires."""
+
+PARAMETER_GROUPS: tuple[ParameterGroup, ...] = get_args(ParameterGroup)
+
+
+def scale_line(line: Catenary, parameters: Iterable[LineParameter], factors: Sequence[float]) -> Catenary:
+    """Line with each of its properties multiplied by a factor."""
+    for parameter, factor in zip(parameters, factors, strict=True):
+        line = parameter.scale(line, float(factor))
+    return line
