@@ -1,9 +1,10 @@
-"""Store of a campaign: an SQLite file to which each finished run is written at once."""
+"""Store of a campaign: an SQLite file to which each finished run is written within a second."""
 
 import json
 import sqlite3
+import threading
 from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -35,24 +36,48 @@ CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT N
 """
 
 
+COMMIT_S = 1.0
+"""Time from a finished run to the commit that writes it [s]. A commit waits for the disk, longer than a short run."""
+
+
 class CampaignStore:
     """Rows of the finished runs of one campaign in an open database. One process at a time writes them."""
 
     def __init__(self, connection: sqlite3.Connection) -> None:
         self._connection = connection
+        self._lock = threading.Lock()
+        self._timer: threading.Timer | None = None
 
     def add(self, row: RunRow) -> None:
-        """Write a finished run with its traces; both survive the end of this process and of the machine."""
+        """Write a finished run with its traces.
+
+        The end of this process or of the machine loses the runs that were finished in the last `COMMIT_S`, and no
+        others. The next session repeats them.
+        """
         run = row.run
         values = (
             *(run.number, run.design, run.case_id, run.system, json.dumps(run.inputs, default=str)),
             *(row.verdicts["verdict"], json.dumps(row.verdicts), row.reason, json.dumps(row.quantities), row.wall_s),
             json.dumps(row.uncertainties),
         )
-        with self._connection:
+        with self._lock:
+            if row.traces:  # before the run: a run in the store then has its traces
+                self._connection.execute("INSERT OR REPLACE INTO trace VALUES (?, ?)", (run.number, row.traces))
             self._connection.execute(f"INSERT INTO run VALUES ({', '.join('?' * len(values))})", values)
-            if row.traces:
-                self._connection.execute("INSERT INTO trace VALUES (?, ?)", (run.number, row.traces))
+            if self._timer is None:
+                self._timer = threading.Timer(COMMIT_S, self._commit_later)
+                self._timer.daemon = True
+                self._timer.start()
+
+    def commit(self) -> None:
+        """Write the runs that are not written yet."""
+        with self._lock:
+            self._timer = None
+            self._connection.commit()
+
+    def _commit_later(self) -> None:
+        with suppress(sqlite3.Error):  # a full disk: the next commit of this session raises the error
+            self.commit()
 
     def holds(self, number: int) -> bool:
         """Whether a run is finished."""
@@ -136,15 +161,17 @@ def open_store(folder: Path, identity: Mapping[str, Any]) -> Iterator[CampaignSt
     folder.mkdir(parents=True, exist_ok=True)
     where = f"folder '{folder}'"
     try:
-        with FileLock(folder / "campaign.lock", timeout=0):
-            connection = sqlite3.connect(folder / STORE_NAME)
+        with (
+            FileLock(folder / "campaign.lock", timeout=0),
+            closing(sqlite3.connect(folder / STORE_NAME, check_same_thread=False)) as connection,
+        ):
+            connection.executescript(_TABLES)
+            store = CampaignStore(connection)
+            store.check_identity(identity, folder)
             try:
-                connection.executescript(_TABLES)
-                store = CampaignStore(connection)
-                store.check_identity(identity, folder)
                 yield store
             finally:
-                connection.close()
+                store.commit()
     except Timeout:
         raise InputError(where, "another process runs this campaign", "Wait for its end, or stop it.") from None
     except sqlite3.Error as error:

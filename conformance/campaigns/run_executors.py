@@ -4,9 +4,10 @@ import multiprocessing
 import os
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from itertools import islice
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Protocol
@@ -38,7 +39,7 @@ class RunExecutor(Protocol):
     def execute_all(self, runs: Iterator[PlannedRun], execute: Execute) -> Generator[RunRow, None, None]:
         """Execute runs, and yield each row as soon as its run is finished.
 
-        Runs are taken from the iterator one at a time, when a process is free. A run whose process ends unexpectedly is
+        Runs are taken from the iterator when a process is free. A run whose process ends unexpectedly is
         repeated. Closing the generator ends all processes.
         """
 
@@ -169,8 +170,14 @@ def _work(connection: Connection, execute: Execute) -> None:
 
 
 # Cluster of Dask: workers on many machines, which can come and go during a campaign.
-RUNS_PER_THREAD = 2
-"""Runs in flight per thread of the cluster: one is computed while the next one waits at the worker."""
+TASKS_PER_THREAD = 2
+"""Tasks in flight per thread of the cluster: one is computed while the next one waits at the worker."""
+
+TASK_S, MOST_RUNS = 5.0, 200
+"""Duration of a task that its number of runs aims at [s], and largest number: messages cost more than short runs."""
+
+CAPACITY_S = 1.0
+"""Time after which the threads of the cluster are counted again [s]; each count is a message and its answer."""
 
 CONNECTION_TIMEOUT_S = 30
 
@@ -200,21 +207,36 @@ class DaskExecutor:
         """Execute runs as in `RunExecutor`; the scheduler repeats a run whose worker ends unexpectedly."""
         from distributed import CancelledError, KilledWorker, as_completed
 
-        finished, in_flight = as_completed([]), dict[str, tuple[Any, PlannedRun]]()
+        # The execution is the result of a task: a worker that comes later gets it from another one, or computes it.
+        sent = self._client.submit(_keep, execute, pure=False)
+        finished = as_completed([], with_results=True, raise_errors=False)
+        in_flight, again = dict[str, tuple[Any, list[PlannedRun]]](), deque[PlannedRun]()
+        capacity, counted, size = 0, -CAPACITY_S, 1
         try:
             while True:
-                while len(in_flight) < self._capacity and (run := next(runs, None)) is not None:
-                    future = self._client.submit(call_execution, execute, run, pure=False)
-                    in_flight[future.key] = future, run
+                if time.monotonic() - counted >= CAPACITY_S:
+                    capacity, counted = self._count_tasks(), time.monotonic()
+                while len(in_flight) < capacity:
+                    batch = [again.popleft()] if again else list(islice(runs, size))
+                    if not batch:
+                        break
+                    future = self._client.submit(execute_batch, sent, batch, pure=False)
+                    in_flight[future.key] = future, batch
                     finished.add(future)
                 if not in_flight:
                     return
-                future, run = in_flight.pop(next(finished).key)
-                try:
-                    row: RunRow = future.result()
-                except KilledWorker:
-                    row = build_failed_row(run, PROCESS_ENDED, 0.0)
-                yield row
+                done, result = next(finished)
+                _, batch = in_flight.pop(done.key)
+                if done.status == "finished":
+                    rows, duration = result
+                    size = min(MOST_RUNS, max(1, int(TASK_S * len(rows) / max(duration, 1e-9))))
+                    yield from rows
+                elif not isinstance(error := done.exception(), KilledWorker):
+                    raise error
+                elif len(batch) > 1:
+                    again.extend(batch)  # one of them ends its worker: each is a task of its own now
+                else:
+                    yield build_failed_row(batch[0], PROCESS_ENDED, 0.0)
         except (CancelledError, OSError) as error:
             found = f"the connection to the scheduler is lost ({type(error).__name__})"
             raise InputError("campaign", found, "Start the scheduler; the same command resumes the campaign.") from None
@@ -222,11 +244,21 @@ class DaskExecutor:
             with suppress(OSError):
                 self._client.cancel([future for future, _ in in_flight.values()])
 
-    @property
-    def _capacity(self) -> int:
-        """Largest number of runs in flight; workers may have come or gone."""
+    def _count_tasks(self) -> int:
+        """Largest number of tasks in flight; workers may have come or gone."""
         threads: dict[str, int] = self._client.nthreads()
-        return RUNS_PER_THREAD * max(1, sum(threads.values()))
+        return TASKS_PER_THREAD * max(1, sum(threads.values()))
+
+
+def _keep(execute: Execute) -> Execute:
+    return execute
+
+
+def execute_batch(execute: Execute, runs: Sequence[PlannedRun]) -> tuple[list[RunRow], float]:
+    """Execute runs on a worker; an exception becomes the reason of a failed run. Returns the duration, too [s]."""
+    start = time.perf_counter()
+    rows = [call_execution(execute, run) for run in runs]
+    return rows, time.perf_counter() - start
 
 
 def call_execution(execute: Execute, run: PlannedRun) -> RunRow:

@@ -35,7 +35,7 @@ LOG_INTERVAL_S = 10.0
 REDRAWS_PER_S = 3.0
 """Redraws on a terminal [1/s]: a log of the terminal grows by some kilobytes a minute."""
 
-SMALLEST_SHARE = 0.1
+FIRST_SHARE = 0.1
 """Completed share from which the remaining time is estimated; below, the estimate is an extrapolation by 10 times."""
 
 
@@ -145,7 +145,7 @@ class TaskProgress(logging.Handler):
         else:
             completed = self._finished + sum(step.completed for step in self._steps.values())
             begin, first, latest, share = self._begin, 0.0, now, min(completed / self._total, 1.0)
-        if share - first < SMALLEST_SHARE:
+        if share - first < FIRST_SHARE:
             return share, None
         remaining = (latest - begin) * (1 - share) / (share - first) - (now - latest)
         return share, remaining if remaining >= 1 or share >= 1 else None
