@@ -1,6 +1,7 @@
 // Signatures by PKI.js: content, chain of certificates, validity, key usage, time stamp; in the words of `verify`.
 const ATTRIBUTES = { stamp: "1.2.840.113549.1.9.16.2.14", time: "1.2.840.113549.1.9.5", role: "0.4.0.19122.1.1" };
-const EXTENSIONS = { usage: "2.5.29.15", purposes: "2.5.29.37", limits: "2.5.29.19" }, NO_ROOT = "no trust root given";
+const EXTENSIONS = { usage: "2.5.29.15", purposes: "2.5.29.37", limits: "2.5.29.19" };
+const NO_ROOT = "no trust root given", NO_CHAIN = "its chain does not lead to a given trust root";
 const STAMPING = "1.3.6.1.5.5.7.3.8", PURPOSES = {
   "1.3.6.1.5.5.7.3.1": "server auth", "1.3.6.1.5.5.7.3.3": "code signing", [STAMPING]: "time stamping", "1.3.6.1.5.5.7.3.9": "ocsp signing",
 };
@@ -58,7 +59,7 @@ function findUsageProblem(certificate) {
 
 function isWeak({ subjectPublicKeyInfo: { algorithm, parsedKey } }) {
   if (algorithm.algorithmId === "1.2.840.113549.1.1.1") return parsedKey.modulus.valueBlock.valueHexView.length < 256;
-  if (!CURVES.test(algorithm.algorithmParams?.valueBlock?.toString() ?? "")) throw new Unchecked("this browser does not know the algorithm of a key");
+  if (!CURVES.test(algorithm.algorithmParams?.valueBlock?.toString() ?? "")) throw new Unchecked("the algorithm of a key is not known here");
   return false;
 }
 
@@ -73,13 +74,12 @@ async function findPath(signer, others, roots, moment) {
     const problem = resultCode === 8 && findValidityProblem(authority, moment);
     if (problem) return { problem: `the certificate of the authority ${readName(authority.subject)} ${problem}` };
   }
-  const [first, last] = [path[0], path.at(-1)], ends = last && roots.some((root) => sameCertificate(root, last));
-  if (result && sameCertificate(first, signer) && ends) {
-    const bound = (certificate) => findExtension(certificate, EXTENSIONS.limits)?.pathLenConstraint ?? Infinity;
-    const sound = path.every((certificate, i) => !isWeak(certificate) && ALGORITHMS.test(certificate.signatureAlgorithm.algorithmId) && i - 1 <= bound(certificate));
-    return sound ? { path } : { problem: "its chain of certificates is not valid" };
-  }
-  return { problem: [8, 14, 98].includes(resultCode) ? "its chain of certificates is not valid" : "its chain does not lead to a given trust root" };
+  // The library checks neither the strength of keys nor the length of a path.
+  const limit = (certificate) => findExtension(certificate, EXTENSIONS.limits)?.pathLenConstraint ?? Infinity;
+  const long = path.some((certificate, i) => i - 1 > limit(certificate)), invalid = resultCode === 14 || long;
+  const isStrong = (certificate) => !isWeak(certificate) && ALGORITHMS.test(certificate.signatureAlgorithm.algorithmId);
+  if (result && !long && sameCertificate(path[0], signer) && path.every(isStrong)) return { path };
+  return { problem: invalid ? "its chain of certificates is not valid (certificate chain general failure)" : NO_CHAIN };
 }
 
 // Role that the signer states in a signed attribute; empty without one.
@@ -118,7 +118,8 @@ async function checkSignature(content, signed, number, roots, time) {
   const find = (list, id) => list.find((attribute) => attribute.type === id);
   const facts = { signer: "unknown", issuer: "unknown", role: "", damage: "", distrust: "", root: "", time, checkedAt: now };
   if (signed.encapContentInfo.eContent) return { ...facts, damage: "the signature is damaged (it contains its content)" };
-  if (!ALGORITHMS.test(info.signatureAlgorithm.algorithmId)) throw new Unchecked("this browser does not know the algorithm of the signature");
+  const known = ALGORITHMS.test(info.signatureAlgorithm.algorithmId) && DIGESTS.test(info.digestAlgorithm.algorithmId);
+  if (!known) throw new Unchecked("the algorithm of a signature is weak or not known here");
   let outcome;
   try {
     outcome = await signed.verify({ signer: number, data: content.slice().buffer, extendedMode: true });
@@ -129,16 +130,15 @@ async function checkSignature(content, signed, number, roots, time) {
   if (!certificate) return { ...facts, damage: `the signature is damaged (${cleanText(message)})` };
   isWeak(certificate);
   Object.assign(facts, { signer: readName(certificate.subject), issuer: readName(certificate.issuer), role: readRole(find(attributes, ATTRIBUTES.role)) });
-  const sound = intact && attributes.length && DIGESTS.test(info.digestAlgorithm.algorithmId);
-  if (!sound) facts.damage = "the content was changed after signing";
+  if (!(intact && attributes.length)) facts.damage = "the content was changed after signing";
   facts.time = find(attributes, ATTRIBUTES.time)?.values[0].toDate?.() ?? time;
   const attribute = find(info.unsignedAttrs?.attributes ?? [], ATTRIBUTES.stamp);
   const stamp = attribute ? await checkStamp(attribute, info.signature.valueBlock.valueHexView, roots, now) : {};
   const moment = stamp.moment ?? now, when = stamp.moment ? "" : " (no trusted time stamp)";
   const validity = findValidityProblem(certificate, moment), usage = findUsageProblem(certificate);
-  const { path, problem } = roots && !validity && !usage ? await findPath(certificate, others, roots, moment) : {};
-  const late = problem?.startsWith("the certificate of the authority") ? when : "";
-  facts.distrust = !roots ? NO_ROOT : validity ? `the signing certificate ${validity}${when}` : usage ? `the signing certificate ${usage}` : problem ? `${problem}${late}` : "";
+  const { path, problem = "" } = roots && !validity && !usage ? await findPath(certificate, others, roots, moment) : {};
+  const late = problem.startsWith("the certificate of the authority") ? when : "";
+  facts.distrust = !roots ? NO_ROOT : validity ? `the signing certificate ${validity}${when}` : usage ? `the signing certificate ${usage}` : `${problem}${late}`;
   if (path && !facts.damage) facts.root = readName(path.at(-1).subject);
   return { ...facts, stamped: stamp.moment, stampProblem: stamp.problem, checkedAt: moment };
 }

@@ -126,6 +126,64 @@ def test_signature_files(genuine: Genuine, signers: Signers, roots_file: Path, v
 
 
 @pytest.mark.usefixtures("any_key")
+def test_keys_and_chains_at_their_bounds(
+    genuine: Genuine,
+    signers: Signers,
+    roots_file: Path,
+    verify: Verify,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Strength of keys and digests, length of a path, an authority that is none, and a root that signs itself."""
+    from asn1crypto import cms, x509
+    from cryptography.hazmat.primitives.asymmetric import ec, ed25519, rsa
+    from cryptography.hazmat.primitives.serialization import Encoding
+
+    from helpers.authorities import issue, request
+
+    authority = {"authority": True, "usages": ("key_cert_sign",)}
+    short = signers.issue("Short authority", path_length=0, **authority)
+    own = issue(request("Own root"))
+    weak = rsa.generate_private_key(public_exponent=65537, key_size=1024)
+    further = issue(request("Further authority", **authority), short)
+    below = issue(request("Below a further one"), further)
+    for number, (holder, digest, trusted) in enumerate(
+        (
+            (issue(request("P-521"), signers.root, ec.generate_private_key(ec.SECP521R1())), "sha512", True),
+            (issue(request("Below"), short), "sha256", True),
+            (below, "sha256", False),
+            (issue(request("Weak"), signers.root, weak), "sha256", False),
+            (issue(request("Mallory"), signers.assessor), "sha256", False),
+            (own, "sha256", True),
+        )
+    ):
+        monkeypatch.setattr(signature_writing, "select_digest", lambda _, name=digest: name)
+        document = write(tmp_path / f"{number}", "certificate.html", genuine.html.encode())
+        signature = sign(document, holder)
+        if holder is below:  # the key file holds one authority
+            message = cms.ContentInfo.load(signature.read_bytes())
+            added = x509.Certificate.load(short.certificate.public_bytes(Encoding.DER))
+            message["content"]["certificates"].append(cms.CertificateChoices("certificate", added))
+            signature.write_bytes(message.dump(force=True))
+        report, _ = compare(
+            verify, document, own.write_certificate(tmp_path / "own.pem") if holder is own else roots_file
+        )
+        assert report["authentic"] == trusted, holder.certificate.subject
+    curve = issue(request("Other curve"), signers.root, ec.generate_private_key(ec.BrainpoolP256R1()))
+    edwards = issue(request("Ed25519"), signers.root, ed25519.Ed25519PrivateKey.generate())
+    for holder, digest, reason in (
+        (edwards, "sha512", "the algorithm of a signature is weak or not known here"),
+        (curve, "sha256", "the algorithm of a key is not known here"),
+        (signers.assessor, "sha1", "the algorithm of a signature is weak or not known here"),
+    ):
+        monkeypatch.setattr(signature_writing, "select_digest", lambda _, name=digest: name)
+        signature = sign(write(tmp_path / digest, "results.json", b"{}"), holder).read_bytes()
+        report = verify(genuine.html.encode(), "certificate.html", signature, None)
+        assert report["state"] == "incomplete"
+        assert list_details(report, *ORIGINS) == [f"signatures were not checked: {reason}."]
+
+
+@pytest.mark.usefixtures("any_key")
 def test_signatures_of_other_content(
     genuine: Genuine, signers: Signers, roots_file: Path, verify: Verify, tmp_path: Path
 ) -> None:

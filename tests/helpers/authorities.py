@@ -59,6 +59,7 @@ class Request:
     authority: bool = False
     usages: tuple[str, ...] = ("digital_signature",)
     purpose: x509.ObjectIdentifier | None = None
+    path_length: int | None = None
 
 
 def request(name: str, days: tuple[float, float] = (-1, 365), **content: Any) -> Request:
@@ -86,7 +87,7 @@ def issue(wanted: Request, issuer: Holder | None = None, key: Any = None) -> Hol
         .serial_number(x509.random_serial_number())
         .not_valid_before(wanted.valid_from)
         .not_valid_after(wanted.valid_to)
-        .add_extension(x509.BasicConstraints(wanted.authority, None), critical=True)
+        .add_extension(x509.BasicConstraints(wanted.authority, wanted.path_length), critical=True)
         .add_extension(x509.SubjectKeyIdentifier.from_public_key(key.public_key()), critical=False)
         .add_extension(x509.KeyUsage(**{name: name in wanted.usages for name in USAGES}), critical=True)
         .add_extension(x509.AuthorityKeyIdentifier.from_issuer_public_key(signer.key.public_key()), critical=False)
