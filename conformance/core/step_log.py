@@ -4,10 +4,11 @@ The loggers are named after their modules, `pantocheck.*`. Without a handler of 
 """
 
 import logging
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import partial
 
 logging.getLogger("pantocheck").addHandler(logging.NullHandler())
 
@@ -73,16 +74,30 @@ class StepSequence:
 
     def begin(self, name: str) -> ShareCallback:
         """Report the start of a step; return the callback of its completed share, 0 to 1."""
-        names, (begin, end) = list(self.weights), _PART.get()
+        return self.begin_together(name, [name])[0]
+
+    def begin_together(self, label: str, names: Sequence[str]) -> list[ShareCallback]:
+        """Report the start of steps that run at the same time, under one label.
+
+        Args:
+            label: Name of all of them together.
+            names: Steps that follow each other in `weights`.
+
+        Returns:
+            Callback of the completed share of every step.
+        """
+        order, (begin, end) = list(self.weights), _PART.get()
         scale = (end - begin) / sum(self.weights.values())
-        before = begin + scale * sum(self.weights[earlier] for earlier in names[: names.index(name)])
-        self.logger.info("%s: %s", self.task, name, extra={"step": TaskStep(self.task, name, before)})
+        before = begin + scale * sum(self.weights[earlier] for earlier in order[: order.index(names[0])])
+        self.logger.info("%s: %s", self.task, label, extra={"step": TaskStep(self.task, label, before)})
+        shares = dict.fromkeys(names, 0.0)
 
-        def report(share: float) -> None:
-            completed = before + scale * share * self.weights[name]
-            self.logger.debug("%s: %s", self.task, name, extra={"step": TaskStep(self.task, name, completed)})
+        def report(name: str, share: float) -> None:
+            shares[name] = share
+            completed = before + scale * sum(shares[step] * self.weights[step] for step in names)
+            self.logger.debug("%s: %s", self.task, label, extra={"step": TaskStep(self.task, label, completed)})
 
-        return report
+        return [partial(report, name) for name in names]
 
 
 def report_remote(logger: logging.Logger, task: str) -> None:

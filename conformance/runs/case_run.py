@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import count
 
@@ -90,18 +90,16 @@ def _halve_rest(progress: ShareCallback) -> Iterator[ShareCallback]:
     return map(follow, count())
 
 
-def run_starts(
-    starts: Iterable[RunStart],
-    case: Case,
+def run_start(
+    start: RunStart,
     line: DiscretisedLine,
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...],
-) -> Iterator[Record]:
-    """Simulate the passage of a case from other starts; parameters as in `run_passage`."""
-    pantographs = build_pantographs(case, line, uplift_forces)
-    for start in starts:
-        passage = replace(_place_train(start.case, line, discretisation, pantographs), ramp=start.ramp_s)
-        yield record_passage(start.case, passage, integrate_passage(line, passage))
+    progress: ShareCallback = ignore_progress,
+) -> Record:
+    """Simulate the passage of a case from another start; parameters as in `run_passage`."""
+    passage = replace(build_passage(start.case, line, discretisation, uplift_forces), ramp=start.ramp_s)
+    return record_passage(start.case, passage, integrate_passage(line, passage, progress))
 
 
 def _run_once(

@@ -1,31 +1,41 @@
 """Reference simulator as a system under test, in the same process."""
 
 import logging
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
+from threading import Event
 from typing import Literal
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
-from pantocheck.conformance.cases.start_and_section import list_other_starts
+from pantocheck.conformance.cases.start_and_section import RunStart, list_other_starts
 from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.step_log import ShareCallback, StepSequence, ignore_progress
 from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
-from pantocheck.conformance.runs.case_run import run_passage, run_starts
+from pantocheck.conformance.runs.case_run import run_passage, run_start
 from pantocheck.conformance.runs.resolution import list_model_uncertainty, resolution_warnings, window_warnings
 from pantocheck.conformance.runs.static_quantities import compute_quantities_along_line, compute_static_quantities
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model.description.failures import SimulationError
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.kernel_cache import has_kept_kernels
 
 _LOGGER = logging.getLogger(__name__)
 
 OWN_MESH, FINE_MESH, COARSE_MESH = "mesh of the case", "mesh halved", "mesh doubled"
 """Steps of a case."""
+OTHER_RUNS = "other meshes and starts"
+"""Name of the steps after the first one together, on several threads."""
 COMPILATION = "compiling the simulator (first run only)"
 """Step of the first run after an installation."""
+
+Task = Callable[[ShareCallback], Delivered | None]
+"""Run of a case on another mesh or from another start."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +45,8 @@ class ReferenceSimulator:
     name: str = "Pantocheck reference simulator"
     version: str = version("pantocheck")
     kind: Literal["builtin"] = "builtin"
+    threads: int = 1
+    """Number of threads on which the other meshes and starts of a case run; the results do not depend on it."""
 
     def __post_init__(self) -> None:
         """Require the compiler of the time steps at once: later, each case would end as `error`."""
@@ -46,13 +58,18 @@ class ReferenceSimulator:
         delivered, uplift_forces = _deliver(case, discretisation, progress=_begin_run(case, steps))
         line = discretise_line(case.line, discretisation.element_m)
         shape = build_line_shape(case.line, case.analysed_spans, line)
-        refined, _ = _deliver(case, discretisation.scale(1 / 2), uplift_forces, steps.begin(FINE_MESH))
-        try:
-            coarse, _ = _deliver(case, discretisation.scale(2), uplift_forces, steps.begin(COARSE_MESH))
-        except SimulationError:  # too coarse to converge: the uncertainty follows from two meshes
-            coarse = None
-        starts = () if uplift_forces is None else _run_other_starts(case, discretisation, uplift_forces, steps)
-        return replace(delivered, refined=refined, coarse=coarse, starts=starts, line_shape=shape)
+        tasks: dict[str, Task] = {
+            FINE_MESH: partial(_deliver_again, case, discretisation.scale(1 / 2), uplift_forces),
+            COARSE_MESH: partial(_deliver_coarse, case, discretisation.scale(2), uplift_forces),
+        }
+        if uplift_forces is not None:
+            tasks |= {
+                name_start(number): partial(_deliver_start, start, line, discretisation, uplift_forces)
+                for number, start in enumerate(list_other_starts(case), 1)
+            }
+        refined, coarse, *starts = _run_tasks(tasks, steps, self.threads)
+        others = tuple(start for start in starts if start is not None)
+        return replace(delivered, refined=refined, coarse=coarse, starts=others, line_shape=shape)
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
@@ -72,7 +89,7 @@ class UnrefinedSimulator(ReferenceSimulator):
 def _plan_steps(case: Case) -> StepSequence:
     """Steps of a case, with their estimated durations in passages on the mesh of the case."""
     other_starts = () if case.is_static else list_other_starts(case)
-    starts = {f"start {number}": 1.0 for number, _ in enumerate(other_starts, 1)}
+    starts = {name_start(number): 1.0 for number, _ in enumerate(other_starts, 1)}
     return StepSequence(
         _LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts}
     )
@@ -86,20 +103,60 @@ def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
     return progress
 
 
-def _run_other_starts(
-    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...], steps: StepSequence
-) -> tuple[Delivered, ...]:
-    """Simulate a case from other starts, if its run-in is short."""
-    starts = list_other_starts(case)
-    if not starts:
-        return ()
-    line = discretise_line(case.line, discretisation.element_m)
-    runs = run_starts(starts, case, line, discretisation, uplift_forces)
-    delivered = []
-    for number, _ in enumerate(starts, 1):
-        steps.begin(f"start {number}")
-        delivered.append(Delivered(next(runs)))
-    return tuple(delivered)
+def name_start(number: int) -> str:
+    """Name of the step of another start."""
+    return f"start {number}"
+
+
+def _run_tasks(tasks: Mapping[str, Task], steps: StepSequence, threads: int) -> list[Delivered | None]:
+    """Results of independent runs in their order; the time steps let other threads run."""
+    if threads == 1:
+        return [task(steps.begin(name)) for name, task in tasks.items()]
+    stopped = Event()
+
+    def follow(progress: ShareCallback, share: float) -> None:
+        if stopped.is_set():
+            raise SimulationError("another run of the case has failed, or the user has stopped the run")
+        progress(share)
+
+    callbacks = steps.begin_together(OTHER_RUNS, list(tasks))
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            runs = zip(tasks.values(), callbacks, strict=True)
+            futures = [pool.submit(task, partial(follow, progress)) for task, progress in runs]
+            for future in wait(futures, return_when=FIRST_EXCEPTION).done:
+                future.result()
+            return [future.result() for future in futures]
+        except BaseException:
+            stopped.set()
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _deliver_again(
+    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None, progress: ShareCallback
+) -> Delivered:
+    return _deliver(case, discretisation, uplift_forces, progress)[0]
+
+
+def _deliver_coarse(
+    case: Case, discretisation: Discretisation, uplift_forces: tuple[float, ...] | None, progress: ShareCallback
+) -> Delivered | None:
+    """Result on a coarse mesh; None if it is too coarse to converge: the uncertainty follows from two meshes."""
+    try:
+        return _deliver_again(case, discretisation, uplift_forces, progress)
+    except SimulationError:
+        return None
+
+
+def _deliver_start(
+    start: RunStart,
+    line: DiscretisedLine,
+    discretisation: Discretisation,
+    uplift_forces: tuple[float, ...],
+    progress: ShareCallback,
+) -> Delivered:
+    return Delivered(run_start(start, line, discretisation, uplift_forces, progress))
 
 
 def _deliver(

@@ -1,7 +1,9 @@
 """Choice of the system under test by the option `--system`."""
 
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from typing import Any, cast
 
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.runs.system import System
@@ -38,3 +40,11 @@ def choose_system(text: str, timeout_s: float = TIMEOUT_S) -> System:
         "there is no such system",
         "Choose builtin, record:DIR or command:PROGRAM ARGUMENTS.",
     )
+
+
+def use_threads(system: System, threads: int) -> System:
+    """System that runs a case on several threads; only the reference simulator can."""
+    if system.kind != "builtin":
+        return system
+    threaded: System = replace(cast(Any, system), threads=threads)
+    return threaded

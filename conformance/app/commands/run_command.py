@@ -45,6 +45,7 @@ from pantocheck.conformance.pages.report_writers import remark_missing_formats, 
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.report_files import FILES, check_formats
 from pantocheck.conformance.results.results_format import Results
+from pantocheck.conformance.runs.system_choice import use_threads
 
 
 def run_command(
@@ -77,7 +78,9 @@ def run_command(
     drift: DriftOption = None,
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
-    jobs: Annotated[int | None, typer.Option(help="Number of cases that run in parallel.", show_default="1")] = None,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processors, for cases and for the meshes of a case.", show_default="1")
+    ] = None,
     damping_study: Annotated[
         bool,
         typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
@@ -164,6 +167,7 @@ def _run_cases(prepared: PreparedPlan, with_reference: bool, interruption: Inter
         parts = (f"{name} (required by {', '.join(others)})" for name, others in prepared.added.items())
         error_console().print(escape_text(f"cases added: {'; '.join(parts)}"), soft_wrap=True)
     jobs = min(plan.jobs, len(cases))
+    system = use_threads(system, plan.jobs // jobs)
     try:
         with report_cases(len(cases)) as progress:
             follow = interruption.follow(progress, len(cases))

@@ -20,9 +20,11 @@ from pantocheck.conformance.runs.reference_simulator import (
     COARSE_MESH,
     COMPILATION,
     FINE_MESH,
+    OTHER_RUNS,
     OWN_MESH,
     ReferenceSimulator,
 )
+from pantocheck.model.description.failures import SimulationError
 
 LOGGER = logging.getLogger("pantocheck.test")
 
@@ -174,6 +176,46 @@ def test_levels_and_handlers_are_restored() -> None:
         assert progress.describe().startswith("anything, 0:00:0")
         assert root.isEnabledFor(logging.DEBUG)
     assert (root.level, root.handlers) == before
+
+
+def test_threads_change_no_bit_and_report_their_steps_together(caplog: pytest.LogCaptureFixture) -> None:
+    case = select_cases(["en50318-2002/300"])[-1]
+    short = shorten_case(case, 200.0, 0.5, 2)
+    alone = ReferenceSimulator().run(short)
+    with caplog.at_level(logging.INFO, "pantocheck"):
+        together = ReferenceSimulator(threads=3).run(short)
+    steps = [record.__dict__["step"] for record in caplog.records if "step" in record.__dict__]
+    assert [step.name for step in steps] == [OWN_MESH, OTHER_RUNS]
+    assert len(alone.starts) == len(together.starts) == 7
+    for one, other in zip((alone, *alone.starts), (together, *together.starts), strict=True):
+        assert one.record.force.tobytes() == other.record.force.tobytes()
+    assert alone.refined.record.force.tobytes() == together.refined.record.force.tobytes()
+    assert alone.coarse.record.force.tobytes() == together.coarse.record.force.tobytes()
+
+
+def test_failure_of_one_run_ends_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The fine mesh would take long: the first report of its progress ends it."""
+    short = shorten_case(select_cases(["en50318-2002/300"])[-1], 200.0, 0.5, 2)
+    ended = []
+
+    def fail(*_: object) -> None:
+        raise SimulationError("no initial state")
+
+    def wait(*given: object) -> None:
+        try:
+            while True:
+                given[-1](0.5)
+                time.sleep(0.01)
+        except SimulationError as reason:
+            ended.append(str(reason))
+            raise
+
+    monkeypatch.setattr(reference_simulator, "_deliver_start", fail)
+    monkeypatch.setattr(reference_simulator, "_deliver_again", wait)
+    monkeypatch.setattr(reference_simulator, "_deliver_coarse", fail)
+    with pytest.raises(SimulationError):
+        ReferenceSimulator(threads=2).run(short)
+    assert ended == ["another run of the case has failed, or the user has stopped the run"]
 
 
 @pytest.mark.parametrize("kept", [True, False])
