@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
-FOREIGN = {"uplot"}
+FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
     ("model", "conformance"): 71_220,
