@@ -39,7 +39,7 @@ from pantocheck.conformance.drops.line_evidence import (
 )
 from pantocheck.conformance.drops.mode_matching import MatchedModes, match_modes, select_usable
 from pantocheck.conformance.drops.paired_shapes import list_paired_shapes
-from pantocheck.conformance.line.line_parameters import DEFAULT_TOLERANCE, MECHANICAL, ParameterGroup
+from pantocheck.conformance.line.line_parameters import MECHANICAL, ParameterGroup
 from pantocheck.conformance.results.damping_format import (
     Coefficient,
     DampingResults,
@@ -105,13 +105,13 @@ class FitOptions:
     None: the line is exact, and all groups of modes have the same weight.
     """
     tolerances: RealArray | None = None
-    """Covariance of the factors of `MECHANICAL` [-]; None: `DEFAULT_TOLERANCE`, independent."""
+    """Covariance of the factors of `MECHANICAL` [-]; None: the default of each."""
 
     def build_prior(self, free: tuple[ParameterGroup, ...]) -> Prior:
         """Prior of the properties of the line."""
         covariance = self.tolerances
         if covariance is None:
-            covariance = DEFAULT_TOLERANCE**2 * np.eye(len(MECHANICAL))
+            covariance = np.diag([parameter.tolerance**2 for parameter in MECHANICAL])
         return Prior(MECHANICAL, covariance, frozenset(free))
 
 

@@ -4,13 +4,12 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, Kind, Rayleigh
 
 ParameterGroup = Literal["tensions", "droppers", "supports", "arms"]
 """Groups of properties that a fit frees together."""
-
-DEFAULT_TOLERANCE = 0.01
-"""Standard deviation of a property without a stated tolerance, as a share of its value [-]."""
 
 CatenaryChange = Callable[[Catenary, float], Catenary]
 
@@ -25,6 +24,12 @@ class LineParameter:
     """Group that frees it; None: a coefficient of damping."""
     scale: CatenaryChange
     """Line in which the property is multiplied by a factor."""
+    keys: tuple[tuple[str, str], ...]
+    """Tables of a line file, wherever they stand, and the keys in them that the factor multiplies."""
+    tolerance: float = 0.01
+    """Standard deviation without a stated tolerance, as a share of the value [-]."""
+    inverse: tuple[tuple[str, str], ...] = ()
+    """Tables and keys that the factor divides."""
 
 
 def _scale_tension(kind: Kind) -> CatenaryChange:
@@ -75,22 +80,51 @@ def _scale_damping(kind: Kind, key: str) -> CatenaryChange:
     return scale
 
 
+def _tension(kind: Kind) -> LineParameter:
+    return LineParameter(f"{kind}_tension", "tensions", _scale_tension(kind), ((str(kind), "tension_N"),))
+
+
+def _damping(kind: Kind, key: str, in_file: str) -> LineParameter:
+    return LineParameter(f"{kind}_{key}", None, _scale_damping(kind, key), ((str(kind), in_file),), 0.2)
+
+
 MECHANICAL: tuple[LineParameter, ...] = (
-    LineParameter("contact_wire_tension", "tensions", _scale_tension(Kind.CONTACT_WIRE)),
-    LineParameter("messenger_wire_tension", "tensions", _scale_tension(Kind.MESSENGER_WIRE)),
-    LineParameter("dropper_stiffness", "droppers", _scale_droppers),
-    LineParameter("messenger_support_stiffness", "supports", _scale_supports),
-    LineParameter("steady_arm_stiffness", "arms", _scale_arm_stiffness),
-    LineParameter("steady_arm_moving_mass", "arms", _scale_arm_mass),
+    _tension(Kind.CONTACT_WIRE),
+    _tension(Kind.MESSENGER_WIRE),
+    LineParameter(
+        "dropper_stiffness",
+        "droppers",
+        _scale_droppers,
+        (("droppers", "stiffness_N_m"), ("droppers", "axial_stiffness_EA_N")),
+    ),
+    LineParameter(
+        "messenger_support_stiffness", "supports", _scale_supports, (("messenger_support", "stiffness_N_m"),)
+    ),
+    LineParameter(
+        "steady_arm_stiffness",
+        "arms",
+        _scale_arm_stiffness,
+        (("steady_arm", "vertical_stiffness_N_m"),),
+        inverse=(("steady_arm", "length_m"),),
+    ),
+    LineParameter(
+        "steady_arm_moving_mass",
+        "arms",
+        _scale_arm_mass,
+        (("steady_arm", "mass_kg_m"), ("steady_arm", "clamp_kg")),
+    ),
 )
 """Properties on which natural frequencies depend; tensions at the stated masses, because they see T / m alone."""
 
 DAMPING: tuple[LineParameter, ...] = tuple(
-    LineParameter(f"{kind}_{key}", None, _scale_damping(kind, key))
+    _damping(kind, key, in_file)
     for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE)
-    for key in ("mass_coefficient", "stiffness_coefficient")
+    for key, in_file in (
+        ("stiffness_coefficient", "stiffness_coefficient_s"),
+        ("mass_coefficient", "mass_coefficient_1_s"),
+    )
 )
-"""Coefficients of the damping of the wires."""
+"""Coefficients of the damping of the wires, stiffness before mass of each wire."""
 
 PARAMETER_GROUPS: tuple[ParameterGroup, ...] = get_args(ParameterGroup)
 
@@ -100,3 +134,8 @@ def scale_line(line: Catenary, parameters: Iterable[LineParameter], factors: Seq
     for parameter, factor in zip(parameters, factors, strict=True):
         line = parameter.scale(line, float(factor))
     return line
+
+
+def build_tolerances(line: LineFile, parameters: Sequence[LineParameter]) -> RealArray:
+    """Covariance of the factors of properties by the tolerances of a line file, (p, p) [-]."""
+    return line.covariance_of([each.name for each in parameters], [each.tolerance for each in parameters])

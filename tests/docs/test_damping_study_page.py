@@ -52,7 +52,10 @@ def test_outcomes_follow_from_the_printed_values() -> None:
 def test_commands_of_the_page_are_those_of_the_damping_files() -> None:
     """tests/conformance/line/elements/test_damping_files.py fits with these options."""
     (fit,) = (line for line in PAGE.splitlines() if line.startswith("pantocheck drop fit"))
-    assert "modes/modes.json --line vovan2015/mass-drop/stand-in --element 0.75 --wires common --out fit" in fit
+    assert (
+        "modes/modes.json --line vovan2015/mass-drop/stand-in --element 0.75 --wires common --free none --out fit"
+        in fit
+    )
     names = {path.stem for path in (library_folder() / "vovan2015" / "damping").glob("*.toml")}
     written = {name for name in names if f"reference_cases/vovan2015/damping/{name}.toml\n" in PAGE}
     assert written == {"stand-in", "updated", "updated-modal"}

@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import pytest
 from jsonschema import validate
 
 from helpers.docs_pages import list_blocks, read_page
@@ -91,10 +92,15 @@ def test_sidecars_and_profile_of_logger_files() -> None:
 
 
 def test_spans_and_supports_of_a_line() -> None:
-    spans, supports = (tomllib.loads(text)["geometry"] for text in list_blocks("line-files.md", "toml"))
+    *parts, tolerances = map(tomllib.loads, list_blocks("line-files.md", "toml"))
+    spans, supports = (part["geometry"] for part in parts)
     tables = list_spans(read_toml(library_folder() / "en50318-2018" / "ac-simple" / "line.toml", "line"))
     tables["geometry"] |= spans | supports
-    line = LineFile.model_validate(tables)
+    line = LineFile.model_validate(tables | tolerances)
+    assert line.covariance_of(["dropper_stiffness", "steady_arm_stiffness"], [0.01, 0.01]).tolist() == [
+        [pytest.approx(0.01), 0.0],
+        [0.0, pytest.approx(1e-4)],
+    ]
     layout = line.layout
     assert [limit.position for limit in layout.limits] == [0.0, 63.0, 121.5, 175.5, 238.5]
     rise = [0.0, 0.003 * 3.0, 0.003 * 61.5, 0.003 * 115.5, 0.003 * 120.0]

@@ -41,6 +41,7 @@ PANELS: dict[str, dict[str, str]] = {
         "line export": "Write supports and droppers of a line as tables.",
         "line draw": "Draw a whole line to scale, in elevation and in plan.",
         "line statics": "Compare measured static values with those of a line.",
+        "line update": "Write the line as built, from measurements.",
     },
     "pantograph": {
         "pantograph compare": "Compare measured responses with a pantograph.",

@@ -49,10 +49,10 @@ from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_parameters import (
-    DEFAULT_TOLERANCE,
     MECHANICAL,
     PARAMETER_GROUPS,
     ParameterGroup,
+    build_tolerances,
 )
 from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
@@ -265,7 +265,7 @@ def drop_fit_command(
     check_writable(out)
     with follow_steps("damping fit", 2) as progress:
         progress.begin_task("modes of the line")
-        tolerances = measured.covariance_of([parameter.name for parameter in MECHANICAL], DEFAULT_TOLERANCE)
+        tolerances = build_tolerances(measured, MECHANICAL)
         options = FitOptions(wires, modal_groups, choose_groups(free), tolerances)
         results = build_damping_results(identified, catenary, element, modes.name, options)
         progress.begin_task("report")

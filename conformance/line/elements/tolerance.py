@@ -76,20 +76,21 @@ class Tolerances(Element):
     tolerance: Annotated[ToleranceTable | None, Field(exclude_if=is_absent), NO_FEATURE] = None
     """Standard deviations of the built line from the stated values."""
 
-    def tolerance_of(self, name: str, default: float) -> float:
-        """Standard deviation of a property as a share of its value [-]; `default` if none is stated."""
-        stated = None if self.tolerance is None else getattr(self.tolerance, f"{name}_pct")
-        return default if stated is None else stated / 100
+    def covariance_of(self, names: Sequence[str], defaults: Sequence[float]) -> RealArray:
+        """Covariance of properties as shares of their values, (p, p) [-].
 
-    def covariance_of(self, names: Sequence[str], default: float) -> RealArray:
-        """Covariance of properties as shares of their values, (p, p) [-]; as in `tolerance_of`."""
-        std = np.array([self.tolerance_of(name, default) for name in names])
+        Args:
+            names: Properties, as the keys of the tolerances without `_pct`.
+            defaults: Standard deviation of each without a stated tolerance [-].
+        """
+        stated = [None if self.tolerance is None else getattr(self.tolerance, f"{name}_pct") for name in names]
+        std = np.array([share if pct is None else pct / 100 for pct, share in zip(stated, defaults, strict=True)])
         correlation = np.eye(len(names))
-        stated = None if self.tolerance is None else self.tolerance.correlation
-        if stated is not None:
-            place = {name: number for number, name in enumerate(stated.names)}
+        table = None if self.tolerance is None else self.tolerance.correlation
+        if table is not None:
+            place = {name: number for number, name in enumerate(table.names)}
             known = [(i, place[name]) for i, name in enumerate(names) if name in place]
             for i, k in known:
                 for j, m in known:
-                    correlation[i, j] = stated.rows[k][m]
+                    correlation[i, j] = table.rows[k][m]
         return np.asarray(correlation * np.outer(std, std))

@@ -1,0 +1,269 @@
+"""Update of a line by measurements: normal estimates of its properties, and the verdict of a held-out passage.
+
+The unknowns are factors of the properties and damping coefficients of the line, with the tolerances of its file as
+prior. Each kind of data updates mean and covariance in turn: modes by the joint fit, elasticities and passages by
+linear rows with central differences, computed anew at each step. Heights replace those of the droppers.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.comparison.static_record import StaticRecord
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.drops.joint_fit import Prior, fit_jointly
+from pantocheck.conformance.drops.mode_matching import select_usable
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_parameters import (
+    DAMPING,
+    MECHANICAL,
+    PARAMETER_GROUPS,
+    LineParameter,
+    build_tolerances,
+    scale_line,
+)
+from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record_signals import RecordSignals
+from pantocheck.conformance.results.identified_modes import Mode
+from pantocheck.conformance.results.line_update_format import HeldOutValue, UsedData
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.model import Catenary, Kind, discretise
+from pantocheck.model.statics.elasticity import rest_height, static_uplift
+
+ELASTICITY_ERROR, BAND_ERROR = 0.02, 0.02
+"""Relative standard deviation of a measured elasticity that states none, and of simulated and measured bands [-]."""
+
+HEIGHT_ERROR_M, HEIGHT_TOLERANCE_M = 0.003, 0.02
+"""Standard deviations of a measured height that states none, and of the stated height at a dropper [m]."""
+
+STEP_SHARE = 0.5
+"""Step of the central differences, over the standard deviation of the factor [-]."""
+
+REFINEMENTS = 3
+"""Number of Gauss-Newton steps for the elasticities."""
+
+BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
+"""Quantities of a passage: bands partition the variance of the force, so that they are measured apart."""
+
+LEVEL = 0.01
+"""Probability that the held-out passage refuses a right line [-]."""
+
+Predict = Callable[[RealArray], RealArray]
+"""Values of the model for the factors of all properties."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Normal estimate of the factors of the properties."""
+
+    parameters: tuple[LineParameter, ...]
+    factors: RealArray
+    """Means, (p,) [-]."""
+    covariance: RealArray
+    """Covariance, (p, p) [-]."""
+    data: tuple[UsedData, ...] = ()
+    """Measurements of the estimate."""
+
+
+@dataclass(frozen=True)
+class MeasuredPassage:
+    """Recorded passage and its case."""
+
+    name: str
+    case: Case
+    record: Record
+
+    @property
+    def values(self) -> tuple[tuple[int, str, float], ...]:
+        """Pantograph, name and value of every band that the record supports."""
+        return _list_bands(self.case, self.record)
+
+
+def begin_estimate(line: LineFile) -> Estimate:
+    """Estimate by the tolerances alone; a property whose value is zero is left out."""
+    catenary = build_catenary(line)
+    parameters = tuple(each for each in (*MECHANICAL, *DAMPING) if each.scale(catenary, 2.0) != catenary)
+    return Estimate(parameters, np.ones(len(parameters)), build_tolerances(line, parameters))
+
+
+def update_by_modes(estimate: Estimate, line: LineFile, modes: Sequence[Mode], element: float, source: str) -> Estimate:
+    """Estimate with identified modes, which determine the damping as well.
+
+    Raises:
+        InputError: The modes do not belong to the line, or are too few.
+    """
+    mechanical = tuple(each for each in estimate.parameters if each.group is not None)
+    damping = tuple(each for each in estimate.parameters if each.group is None)
+    count = len(mechanical)
+    prior = Prior(mechanical, estimate.covariance[:count, :count], frozenset(PARAMETER_GROUPS))
+    catenary = build_catenary(line)
+    fit = fit_jointly(select_usable(modes, source), catenary, prior, np.eye(4), element, source)
+    kept = [number for number, each in enumerate(DAMPING) if each in damping]
+    stated = np.array([_read_coefficient(catenary, each) for each in damping])
+    rows = [*range(count), *(count + number for number in kept)]
+    scale = np.append(np.ones(count), 1 / stated)
+    used = UsedData(name="modes", values=3 * fit.used.size, misfit=fit.misfit)
+    return replace(
+        estimate,
+        factors=np.append(fit.factors, fit.values[kept] / stated),
+        covariance=fit.covariance[np.ix_(rows, rows)] * np.outer(scale, scale),
+        data=(*estimate.data, used),
+    )
+
+
+def update_by_elasticity(estimate: Estimate, line: LineFile, record: StaticRecord, element: float) -> Estimate:
+    """Estimate with elasticities that were measured along the line."""
+    measured = record.values["elasticity"]
+    known = np.isfinite(measured)
+    position, measured = record.position[known], measured[known]
+    half_width = record.sidecar.elasticity_uncertainty_mm_N
+    std = ELASTICITY_ERROR * measured if half_width is None else np.full(measured.size, half_width / 1960)
+    catenary, forces = build_catenary(line), (0.0, *(record.sidecar.force_N or ()))[-2:]
+
+    def predict(factors: RealArray) -> RealArray:
+        mesh = discretise(scale_line(catenary, estimate.parameters, factors.tolist()), element)
+        low, high = (static_uplift(mesh, position, force) if force else 0.0 for force in forces)
+        return np.asarray((high - low) / (forces[1] - forces[0]))
+
+    mechanical = [number for number, each in enumerate(estimate.parameters) if each.group is not None]
+    return update_linear(estimate, "elasticity", predict, mechanical, measured, std, REFINEMENTS)
+
+
+def update_by_passage(estimate: Estimate, line: LineFile, passage: MeasuredPassage) -> Estimate:
+    """Estimate with the bands of a recorded passage."""
+    measured = np.array([value for _, _, value in passage.values])
+    places = list(range(len(estimate.parameters)))
+    predict = simulate_bands(passage, line, estimate)
+    return update_linear(estimate, passage.name, predict, places, measured, BAND_ERROR * measured, 1)
+
+
+def update_linear(
+    estimate: Estimate,
+    name: str,
+    predict: Predict,
+    places: Sequence[int],
+    measured: RealArray,
+    std: RealArray,
+    steps: int,
+) -> Estimate:
+    """Estimate with measured values of independent errors, by Gauss-Newton steps.
+
+    Args:
+        estimate: Estimate before.
+        name: Kind of the data.
+        predict: Model of the values.
+        places: Properties on which they depend.
+        measured: Measured values, (n,).
+        std: Their standard deviations, (n,).
+        steps: Number of steps.
+    """
+    factors, information = estimate.factors, np.linalg.inv(estimate.covariance)
+    for _ in range(steps):
+        value, slope = differentiate(estimate, predict, places, factors)
+        weighted = slope / std[:, None]
+        left = (measured - value + slope @ (factors - estimate.factors)) / std
+        covariance = np.linalg.inv(information + weighted.T @ weighted)
+        factors = estimate.factors + covariance @ weighted.T @ left
+    residual = left - weighted @ (factors - estimate.factors)
+    freedom = max(measured.size - float(np.trace(covariance @ weighted.T @ weighted)), 1.0)
+    misfit = float(residual @ residual) / freedom
+    covariance = np.linalg.inv(information + weighted.T @ weighted / max(misfit, 1.0))
+    used = UsedData(name=name, values=measured.size, misfit=misfit)
+    return Estimate(estimate.parameters, np.asarray(factors), np.asarray(covariance), (*estimate.data, used))
+
+
+def differentiate(
+    estimate: Estimate, predict: Predict, places: Sequence[int], factors: RealArray
+) -> tuple[RealArray, RealArray]:
+    """Values of a model, (n,), and their derivatives by all factors, (n, p): zero but for some properties."""
+    value = predict(factors)
+    slope = np.zeros((value.size, factors.size))
+    for place in places:
+        step = STEP_SHARE * np.sqrt(estimate.covariance[place, place]) * np.eye(factors.size)[place]
+        slope[:, place] = (predict(factors + step) - predict(factors - step)) / (2 * step[place])
+    return value, slope
+
+
+def simulate_bands(passage: MeasuredPassage, line: LineFile, estimate: Estimate) -> Predict:
+    """Bands of a passage on the line with changed properties, at the uplift forces of the line as it is."""
+    case, places = passage.case, [(owner, name) for owner, name, _ in passage.values]
+    discretisation, catenary = case.file.discretisation, build_catenary(line)
+    forces = run_passage(case, discretise(catenary, discretisation.element_m), discretisation).uplift_forces
+
+    def predict(factors: RealArray) -> RealArray:
+        built = scale_line(catenary, estimate.parameters, factors.tolist())
+        run = run_passage(case, discretise(built, discretisation.element_m), discretisation, forces)
+        found = {(owner, name): value for owner, name, value in _list_bands(case, run.record)}
+        return np.array([found[place] for place in places])
+
+    return predict
+
+
+def judge_held_out(
+    estimate: Estimate, line: LineFile, passage: MeasuredPassage
+) -> tuple[tuple[HeldOutValue, ...], float]:
+    """Bands of a passage that took no part in the estimate, and the probability of their distance from it."""
+    measured = np.array([value for _, _, value in passage.values])
+    predict = simulate_bands(passage, line, estimate)
+    value, slope = differentiate(estimate, predict, range(len(estimate.parameters)), estimate.factors)
+    stated = predict(np.ones(len(estimate.parameters)))
+    by_line, own = slope @ estimate.covariance @ slope.T, BAND_ERROR * measured
+    distance = measured - value
+    statistic = float(distance @ np.linalg.solve(by_line + np.diag(own**2), distance))
+    rows = tuple(
+        HeldOutValue(
+            pantograph=owner,
+            quantity=name,
+            measured=each,
+            predicted=float(value[n]),
+            stated=float(stated[n]),
+            line_std=float(np.sqrt(by_line[n, n])),
+            model_std=float(own[n]),
+        )
+        for n, (owner, name, each) in enumerate(passage.values)
+    )
+    return rows, float(scipy.stats.chi2.sf(statistic, measured.size))
+
+
+def _list_bands(case: Case, record: Record) -> tuple[tuple[int, str, float], ...]:
+    signals = RecordSignals(record, case.file.filter, case.line.geometry.supports, case.line.overlaps)
+    values = signals.evaluation.values
+    return tuple(
+        (owner, name, float(value))
+        for owner, quantities in sorted(values.items())
+        for name in BANDS
+        if isinstance(value := quantities.get(name), float | int)
+    )
+
+
+def _read_coefficient(line: Catenary, parameter: LineParameter) -> float:
+    """Stated value of a coefficient of damping."""
+    kind = next(kind for kind in (Kind.CONTACT_WIRE, Kind.MESSENGER_WIRE) if parameter.name.startswith(kind))
+    return float(getattr(line.rayleigh(kind), parameter.name.removeprefix(f"{kind}_")))
+
+
+def measure_dropper_heights(line: LineFile, record: StaticRecord) -> list[RealArray]:
+    """Heights of the contact wire at the droppers of every span from measured heights [m].
+
+    Between droppers and supports, a deviation of the wire is straight: it hardly bends under its tension.
+    """
+    measured = record.values["contact_wire_height"]
+    known = np.isfinite(measured)
+    layout, half_width = line.layout, record.sidecar.height_uncertainty_mm
+    stated = [span.contact_wire_height for span in layout.spans]
+    droppers = np.concatenate([span.dropper_position for span in layout.spans])
+    ends = np.array([limit.position for limit in layout.limits])
+    mesh = discretise(build_catenary(line), 0.5)
+    deviation = measured[known] - rest_height(mesh, record.position[known])
+    places = np.sort(np.concatenate([droppers, ends]))
+    hats = np.array([np.interp(record.position[known], places, row) for row in np.eye(places.size)]).T
+    hats = hats[:, np.searchsorted(places, droppers)]
+    std = HEIGHT_ERROR_M if half_width is None else half_width / 1960
+    normal = hats.T @ hats / std**2 + np.eye(droppers.size) / HEIGHT_TOLERANCE_M**2
+    change = np.linalg.solve(normal, hats.T @ deviation / std**2)
+    counts = np.cumsum([heights.size for heights in stated])[:-1]
+    return [heights + part for heights, part in zip(stated, np.split(change, counts), strict=True)]

@@ -1,0 +1,190 @@
+"""Line as built: planted errors are found by static measurements, modes and passages; another passage judges it."""
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers.command_line import pantocheck
+from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
+from helpers.toml_edit import edit_toml
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.catalogue import open_catalogue
+from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.comparison.line_update import begin_estimate, update_linear
+from pantocheck.conformance.core.json_file import write_model
+from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_parameters import DAMPING, MECHANICAL, scale_line
+from pantocheck.conformance.records.record_writing import write_record
+from pantocheck.conformance.results.identified_modes import ModesFile
+from pantocheck.conformance.runs.case_run import run_passage
+from pantocheck.model import Catenary, discretise
+from pantocheck.model.statics.elasticity import rest_height, static_uplift
+from verification.tables.line_coverage import measure_modes
+
+SPLIT = (1.015, 0.988)
+"""Factors of the tensions of contact and messenger wire."""
+
+MOVED = {7: 0.006, 20: -0.005, 41: 0.006}
+"""Heights of the wire above the stated ones at three wrong droppers [m]."""
+
+
+@pytest.fixture(scope="module")
+def updated(tmp_path_factory: pytest.TempPathFactory) -> tuple[int, dict, LineFile]:
+    """Exit code, covariance file and line file of an update by heights, elasticities and modes."""
+    folder = tmp_path_factory.mktemp("update")
+    stated, random = build_catenary(read_unequal_line()), np.random.default_rng(4)
+    built = scale_line(stated, MECHANICAL[:2], SPLIT)
+    droppers = (
+        replace(dropper, contact_wire_height=(dropper.contact_wire_height or 0.0) + MOVED.get(number, 0.0))
+        for number, dropper in enumerate(built.droppers)
+    )
+    built = replace(built, droppers=tuple(droppers))
+    mesh = discretise(built, 0.5)
+    position = np.arange(0.5, mesh.mesh.position[-1], 1.5)
+    (folder / "heights").mkdir()
+    (folder / "elasticity").mkdir()
+    heights = rest_height(mesh, position) + 0.001 * random.standard_normal(position.size)
+    survey = write_static_record(
+        folder / "heights",
+        {"position_m": position, "contact_wire_height_m": heights},
+        force_N=None,
+        height_uncertainty_mm=1.96,
+    )
+    places = measure_line()["position_m"]
+    elasticity = 10 * static_uplift(mesh, places, 100.0) * (1 + 0.01 * random.standard_normal(places.size))
+    pushed = write_static_record(
+        folder / "elasticity",
+        {"position_m": places, "elasticity_mm_N": elasticity},
+        elasticity_uncertainty_mm_N=float(0.0196 * elasticity.mean()),
+    )
+    write_model(folder / "modes.json", ModesFile(measure_modes(built, random)))
+    result = pantocheck(
+        *("line", "update", LINE_PATH, "--heights", survey, "--elasticity", pushed),
+        *("--modes", folder / "modes.json", "--element", "0.75", "--out", folder / "as-built.toml"),
+    )
+    data = json.loads((folder / "as-built.covariance.json").read_text())
+    return result.exit_code, data, read_model(folder / "as-built.toml", LineFile, "line")
+
+
+def test_intervals_of_the_tensions_contain_the_truth_and_reach_the_line(updated: tuple[int, dict, LineFile]) -> None:
+    """Modes alone know the tensions to 0.4 %; the line file has values, tolerances and correlations of the estimate."""
+    code, data, line = updated
+    assert (code, data["verdict"], data["held_out"]) == (3, "info", [])
+    assert [part["name"] for part in data["data"]] == ["modes", "elasticity"]
+    rows = {row["name"]: row for row in data["properties"]}
+    assert list(rows) == [parameter.name for parameter in (*MECHANICAL, *DAMPING)]
+    stated = read_unequal_line()
+    for wire, true in zip(("contact_wire", "messenger_wire"), SPLIT, strict=True):
+        row = rows[f"{wire}_tension"]
+        assert row["low_95"] <= true <= row["high_95"]
+        assert row["high_95"] - row["low_95"] < 0.02
+        assert row["determined"]
+        found = getattr(line, wire).tension_N / getattr(stated, wire).tension_N
+        assert found == pytest.approx(row["factor"], rel=1e-6)
+    assert line.tolerance is not None
+    assert line.tolerance.correlation is not None
+    matrix = np.array(data["covariance"]["rows"])
+    factors = np.array([row["factor"] for row in data["properties"]])
+    names = [parameter.name for parameter in (*MECHANICAL, *DAMPING)]
+    read = line.covariance_of(names, [0.01] * len(names))
+    assert read == pytest.approx(matrix / np.outer(factors, factors), rel=2e-3, abs=1e-8)
+
+
+def test_measured_heights_move_the_droppers(updated: tuple[int, dict, LineFile]) -> None:
+    """Heights every 1.5 m with 1 mm noise: a dropper has about four of them; five standard deviations of 0.5 mm."""
+    _, data, line = updated
+    stated = np.concatenate([span.contact_wire_height for span in read_unequal_line().layout.spans])
+    found = np.concatenate([span.contact_wire_height for span in line.layout.spans])
+    moved = np.array([MOVED.get(number, 0.0) for number in range(stated.size)])
+    assert data["moved_droppers"] == stated.size
+    assert found - stated == pytest.approx(moved, abs=2.5e-3)
+
+
+def write_passages(folder: Path) -> dict[str, Case]:
+    """Cases at three speeds on ten spans, with a coarse mesh; by the names of their files."""
+    shutil.copytree(library_folder() / "en50318-2002", folder)
+    shutil.rmtree(folder / "known-passing-code")
+    (folder / "300.toml").unlink()
+    mesh = {"discretisation.element_m": 2.0, "discretisation.time_step_s": 0.004}
+    for name, speed in {"a": 250.0, "b": 200.0, "c": 225.0}.items():
+        shutil.copy(folder / "250.toml", folder / f"{name}.toml")
+        edit_toml(folder / f"{name}.toml", {"id": f"own/{name}", "speed_km_h": speed, **mesh})
+    (folder / "250.toml").unlink()
+    catalogue = open_catalogue([folder])
+    return {name: select_cases([f"own/{name}"], (), catalogue)[-1] for name in "abc"}
+
+
+def record_passages(folder: Path, cases: dict[str, Case], built: Catenary) -> list[Path]:
+    """Sidecars of the passages on a built line."""
+    folder.mkdir()
+    paths = []
+    for name, case in cases.items():
+        discretisation = case.file.discretisation
+        run = run_passage(case, discretise(built, discretisation.element_m), discretisation)
+        paths.append(write_record(folder / f"{name}.csv", run.record, case=case.id))
+    return paths
+
+
+@pytest.mark.parametrize(("clamp_kg", "verdict", "code"), [(0.0, "pass", 0), (0.4, "fail", 1)])
+def test_the_held_out_passage_judges_the_form_of_the_model(
+    tmp_path: Path, clamp_kg: float, verdict: str, code: int
+) -> None:
+    """Tensions wrong by 1 % lie within the tolerances; clamps of 0.4 kg that the line lacks do not.
+
+    Passages at 250 and 200 km/h update the line, that at 225 km/h judges it.
+    """
+    cases = write_passages(tmp_path / "cases")
+    stated = build_catenary(cases["a"].line)
+    built = scale_line(stated, MECHANICAL[:2], (1.01, 0.99))
+    heavier = (replace(d, lower_clamp_mass=d.lower_clamp_mass + clamp_kg) for d in built.droppers)
+    a, b, c = record_passages(tmp_path / "records", cases, replace(built, droppers=tuple(heavier)))
+    result = pantocheck(
+        *("line", "update", tmp_path / "cases" / "line.toml", "--passages", a, "--passages", b, "--hold-out", c),
+        *("--cases", tmp_path / "cases", "--out", tmp_path / "as-built.toml"),
+    )
+    data = json.loads((tmp_path / "as-built.covariance.json").read_text())
+    assert (data["verdict"], result.exit_code) == (verdict, code)
+    assert [part["name"] for part in data["data"]] == ["a", "b"]
+    assert (data["probability"] >= 0.01) == (verdict == "pass")
+    assert {row["quantity"] for row in data["held_out"]} == {"rms_0_5_N", "rms_5_20_N", "rms_20_50_N"}
+    assert all(row["line_std"] > 0 for row in data["held_out"])
+    other = pantocheck(
+        *("line", "update", LINE_PATH, "--passages", a),
+        *("--cases", tmp_path / "cases", "--out", tmp_path / "other.toml"),
+    )
+    assert other.exit_code == 2
+    assert "is on another line" in " ".join(other.output.split())
+    assert not (tmp_path / "other.toml").exists()
+
+
+def test_linear_update_is_the_posterior_of_a_normal_model() -> None:
+    """Closed form for one factor: the precisions of prior and data add up; a misfit above 1 widens the data."""
+    estimate = begin_estimate(read_unequal_line())
+    slope = np.array([2.0, -1.0])
+    std = np.array([0.02, 0.03])
+
+    def predict(factors: np.ndarray) -> np.ndarray:
+        return slope * (factors[0] - 1)
+
+    measured = slope * 0.004
+    found = update_linear(estimate, "test", predict, [0], measured, std, 1)
+    information = 1 / 0.01**2 + np.sum((slope / std) ** 2)
+    assert found.covariance[0, 0] == pytest.approx(1 / information, rel=1e-6)
+    assert found.factors[0] - 1 == pytest.approx(0.004 * np.sum((slope / std) ** 2) / information, rel=1e-6)
+    assert np.diag(found.covariance)[1:] == pytest.approx(np.diag(estimate.covariance)[1:])
+    far = update_linear(estimate, "test", predict, [0], np.array([0.3, 0.3]), std, 1)
+    assert far.data[0].misfit > 10
+    assert found.covariance[0, 0] < far.covariance[0, 0] < estimate.covariance[0, 0]
+
+
+def test_update_without_measurements_is_refused(tmp_path: Path) -> None:
+    result = pantocheck("line", "update", LINE_PATH, "--out", tmp_path / "x.toml")
+    assert result.exit_code == 2
+    assert "has no measurement" in " ".join(result.output.split())
