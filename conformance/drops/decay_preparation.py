@@ -1,6 +1,6 @@
 """Preparation of a mass-drop record: release, linear decay of the vertical channels, lateral channels."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
 from pantocheck.conformance.drops.decay_search import SHORTEST_DECAY, DecaySearch
 from pantocheck.conformance.drops.drop_record import DropChannel, DropRecord
+from pantocheck.conformance.drops.noise_estimate import shows_motion
 from pantocheck.conformance.records.force_checks import find_clipping
 
 # Release of the mass: the first sustained movement of a sensor.
@@ -141,6 +142,8 @@ class PreparedDecay:
     """Lateral channels with the same filter, at the same times, (n, l)."""
     warnings: tuple[str, ...]
     """Caveats on the record."""
+    driven: bool = False
+    """Whether the line moves at rest before the release; its decay is used as a whole."""
 
     @property
     def channels(self) -> tuple[DropChannel, ...]:
@@ -186,10 +189,19 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
         raise InputError(name, "all vertical channels are clipped", "Repeat the drop with a larger measuring range.")
     if len(columns) == 1:
         warnings.append(f"{name}: a single channel does not show modes with a node there, and gives no mode shape")
-    linear = find_linear_decay(record, tuple(columns), release, band, clipped_until)
-    return PreparedDecay(
-        record, tuple(columns), release, linear, _filter_lateral(record, linear), (*warnings, *linear.warnings)
-    )
+    used = tuple(columns)
+    driven = shows_motion(record.signals[: int(release.rest_end * record.rate), columns], record.rate, band)
+    search = use_whole_decay if driven else find_linear_decay
+    linear = search(record, used, release, band, clipped_until)
+    lateral = _filter_lateral(record, linear)
+    return PreparedDecay(record, used, release, linear, lateral, (*warnings, *linear.warnings), driven)
+
+
+def extend_decay(decay: PreparedDecay, band: FrequencyBand) -> PreparedDecay:
+    """Decay of a record whose residual shows ambient motion: as a whole, without the search for disturbances."""
+    linear = use_whole_decay(decay.record, decay.columns, decay.release, band, decay.linear.start)
+    kept = tuple(text for text in decay.warnings if text not in decay.linear.warnings)
+    return replace(decay, linear=linear, lateral=_filter_lateral(decay.record, linear), warnings=kept, driven=True)
 
 
 def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
@@ -200,21 +212,22 @@ def _filter_lateral(record: DropRecord, linear: LinearDecay) -> RealArray:
     return filter_full_overlap(signals, linear.taps)[::step] if signals.shape[1] else np.zeros((n, 0))
 
 
-def find_linear_decay(
+@dataclass(frozen=True)
+class _FilteredRecord:
+    """Channels after the release, low-pass filtered and decimated: samples, (n, c), and the first linear one."""
+
+    begin: int
+    """First sample of the record after the release."""
+    samples: RealArray
+    guard: int
+    """First of the samples that may be linear."""
+    taps: RealArray
+    step: int
+
+
+def _filter_record(
     record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
-) -> LinearDecay:
-    """Find the longest part after the release that equals a sum of decays within the noise.
-
-    Args:
-        record: The record.
-        columns: Indices of the vertical channels that are used.
-        release: Release of the mass.
-        band: Band of the identification.
-        clipped_until: Time of the last clipped sample [s]; 0: no sample is clipped.
-
-    Raises:
-        InputError: The linear decay is shorter than `SHORTEST_DECAY`, or a channel is constant after the release.
-    """
+) -> _FilteredRecord:
     signals, rate, name = record.signals[:, list(columns)], record.rate, record.name
     begin = int(release.time * rate)
     taps = low_pass_taps(rate, band.fitted, band.stop, 80.0)
@@ -238,13 +251,33 @@ def find_linear_decay(
             "is constant after the release",
             "Leave this channel out; its sensor failed.",
         )
-    start, end, poles = DecaySearch(samples, guard, dt, band).find_linear_part()
+    return _FilteredRecord(begin, samples, guard, taps, step)
+
+
+def find_linear_decay(
+    record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
+) -> LinearDecay:
+    """Find the longest part after the release that equals a sum of decays within the noise.
+
+    Args:
+        record: The record.
+        columns: Indices of the vertical channels that are used.
+        release: Release of the mass.
+        band: Band of the identification.
+        clipped_until: Time of the last clipped sample [s]; 0: no sample is clipped.
+
+    Raises:
+        InputError: The linear decay is shorter than `SHORTEST_DECAY`, or a channel is constant after the release.
+    """
+    filtered = _filter_record(record, columns, release, band, clipped_until)
+    name, total, dt = record.name, filtered.samples.shape[0], filtered.step / record.rate
+    start, end, poles = DecaySearch(filtered.samples, filtered.guard, dt, band).find_linear_part()
     if clipped_until > release.time:
-        start = max(start, guard)
+        start = max(start, filtered.guard)
     warnings = []
     if end < total:
         warnings.append(f"{name}: used up to {end * dt:.0f} s after the release; later it is not a free decay")
-    if (end - start) * dt < shortest:
+    if (end - start) * dt < SHORTEST_DECAY - filtered.taps.size / record.rate:
         raise InputError(
             name,
             f"is a free decay for only {(end - start) * dt:.1f} s",
@@ -252,15 +285,30 @@ def find_linear_decay(
         )
     if start * dt > GUARD + 1.0:
         warnings.append(f"{name}: the decay is linear only from {start * dt:.1f} s after the release")
-    half_filter = (taps.size - 1) / 2 / rate
+    return _cut_record(record, filtered, start, end, poles, tuple(warnings))
+
+
+def use_whole_decay(
+    record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
+) -> LinearDecay:
+    """Decay from the estimated end of slack droppers to the end of the record; parameters as in `find_linear_decay`."""
+    filtered = _filter_record(record, columns, release, band, clipped_until)
+    none = np.zeros(0, dtype=np.complex128)
+    return _cut_record(record, filtered, filtered.guard, filtered.samples.shape[0], none, ())
+
+
+def _cut_record(
+    record: DropRecord, filtered: _FilteredRecord, start: int, end: int, poles: ComplexArray, warnings: tuple[str, ...]
+) -> LinearDecay:
+    rate, dt, half_filter = record.rate, filtered.step / record.rate, (filtered.taps.size - 1) / 2 / record.rate
     return LinearDecay(
-        samples=samples[start:end],
+        samples=filtered.samples[start:end],
         dt=dt,
-        taps=taps,
+        taps=filtered.taps,
         rate=rate,
-        start=begin / rate + start * dt,
-        end=begin / rate + end * dt + 2 * half_filter,
-        first=begin / rate + start * dt + half_filter,
+        start=filtered.begin / rate + start * dt,
+        end=filtered.begin / rate + end * dt + 2 * half_filter,
+        first=filtered.begin / rate + start * dt + half_filter,
         poles=poles,
-        warnings=tuple(warnings),
+        warnings=warnings,
     )

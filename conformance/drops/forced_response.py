@@ -26,6 +26,7 @@ from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.line_fit import UNCERTAIN, phase_collinearity
 from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.model_order import FALSE_ALARM
+from pantocheck.conformance.drops.pole_refinement import NormalEquations, minimise_cost
 from pantocheck.conformance.drops.projection import factor_columns, solve_factor
 from pantocheck.conformance.drops.start_poles import find_start_poles
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
@@ -195,26 +196,13 @@ def _linearise(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> _Li
 
 
 def _refine(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> ComplexArray:
-    """Minimise the residual over the poles (Levenberg and Marquardt)."""
-    current, damping = _linearise(poles, block, noise), 1e-3
-    for _ in range(REFINING_STEPS):
-        matrix, gradient = current.jacobian.T @ current.jacobian, current.jacobian.T @ current.residual.ravel()
-        matrix[np.diag_indices_from(matrix)] *= 1 + damping
-        step = -np.linalg.lstsq(matrix, gradient, rcond=1e-14)[0]
-        m, decay = current.poles.size, -current.poles.real
-        moved = np.clip(decay + step[:m], decay / 3, 3 * decay)
-        reach = 3 * np.maximum(decay, 0.02)
-        trial = _linearise(-moved + 1j * (current.poles.imag + np.clip(step[m:], -reach, reach)), block, noise)
-        gain = current.cost - trial.cost
-        if gain > 0:
-            current, damping = trial, max(damping / 10, 1e-9)
-            if gain < 1e-3:
-                break
-        elif damping > 1e6:
-            break
-        else:
-            damping *= 10
-    return current.poles[np.argsort(current.poles.imag)]
+    """Minimise the residual over the poles."""
+
+    def build(trial: ComplexArray) -> NormalEquations:
+        fit = _linearise(trial, block, noise)
+        return NormalEquations(fit.cost, fit.jacobian.T @ fit.jacobian, -(fit.jacobian.T @ fit.residual.ravel()))
+
+    return minimise_cost(poles, build, REFINING_STEPS, tolerance=1e-3).poles
 
 
 def _remove_weak(poles: ComplexArray, block: ForcedBlock, noise: RealArray) -> ComplexArray:

@@ -13,7 +13,7 @@ from pantocheck.conformance.drops.decay_kernel import filter_gain
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER
 from pantocheck.conformance.drops.identify import Identification, PoleSearch
-from pantocheck.conformance.drops.line_fit import LineFit, RecordFit
+from pantocheck.conformance.drops.line_fit import LineFit, RecordFit, measure_ambient_motion
 from pantocheck.conformance.drops.mode_groups import warn_about_overlap
 from pantocheck.conformance.drops.repeatability import compare_records, overlay_records, round_curve
 from pantocheck.conformance.drops.start_poles import BandTrials
@@ -51,7 +51,7 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         warnings=(*identification.warnings, *warn_about_overlap(modes)),
         spans_m=decays[0].record.line.spans_m,
         records=tuple(_record(decay) for decay in decays),
-        groups=_groups(modes),
+        groups=_groups(fit, modes),
         modes=modes,
         half_power=count_half_power_lines(modes),
         repeatability=tuple(compare_records(repeats) for repeats in repeated),
@@ -84,11 +84,17 @@ def _record(decay: PreparedDecay) -> IdentifiedRecord:
     )
 
 
-def _groups(modes: tuple[Mode, ...]) -> tuple[ModeGroup, ...]:
+GROUP_MARGIN = 0.05
+"""Frequencies on both sides of a group whose ambient motion counts as that of the group [Hz]."""
+
+
+def _groups(fit: LineFit, modes: tuple[Mode, ...]) -> tuple[ModeGroup, ...]:
     groups = []
     for number in sorted({mode.group for mode in modes if mode.group is not None}):
         members = [mode for mode in modes if mode.group == number]
         ratios = [mode.damping_ratio for mode in members if mode.certain]
+        edges = members[0].frequency_Hz - GROUP_MARGIN, members[-1].frequency_Hz + GROUP_MARGIN
+        ambient, noise = measure_ambient_motion(fit, *edges) or (None, None)
         groups.append(
             ModeGroup(
                 group=number,
@@ -99,6 +105,8 @@ def _groups(modes: tuple[Mode, ...]) -> tuple[ModeGroup, ...]:
                 median_damping_ratio=float(np.median(ratios)) if ratios else None,
                 lowest=min(ratios, default=None),
                 highest=max(ratios, default=None),
+                ambient_rms=ambient,
+                noise_rms=noise,
             )
         )
     return tuple(groups)

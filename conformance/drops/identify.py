@@ -9,7 +9,7 @@ from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.classical_poles import find_classical_poles
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, prepare_decay
+from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, extend_decay, prepare_decay
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_plan import (
     IdentificationPlan,
@@ -26,6 +26,7 @@ from pantocheck.conformance.drops.line_fit import (
     build_modes,
     fit_line,
     group_into_blocks,
+    measure_ambient_motion,
 )
 from pantocheck.conformance.drops.model_order import (
     PoleSelection,
@@ -33,13 +34,22 @@ from pantocheck.conformance.drops.model_order import (
     find_hidden_poles,
     select_poles,
 )
+from pantocheck.conformance.drops.noise_estimate import LEAST_EXCESS, residual_excess, select_driven_poles
 from pantocheck.conformance.drops.projection import DataBlock, build_block
 from pantocheck.conformance.drops.start_poles import BandTrials, join_start_poles, try_orders
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
+DRIVEN_STEPS = 4
+"""Largest number of steps of the last refinement beside process noise; the search leaves little to refine."""
 SHARED_POLES = 1.5
-"""Misfit above which the line is not linear, or its records have different poles [-]."""
+"""Misfit above which a warning names the band and the sensor with the largest residual [-]."""
+CLEAR_MOTION = 0.5
+"""Ambient motion over sensor noise, from which on the motion is named as the cause [-]."""
+NOT_CONTAINED = (
+    "the residual follows the modes, as if the line moved by itself (light wind); with poles or a method chosen by the "
+    "user, the intervals do not contain this motion"
+)
 NO_PLAN = IdentificationPlan()
 """Plan that changes nothing."""
 
@@ -138,6 +148,47 @@ def identify_decays(
     plan: IdentificationPlan = NO_PLAN,
 ) -> Identification:
     """Identify the modes of a line from decays in one band; further parameters as in `identify_modes`."""
+    is_free = start is None and not plan.changes_poles and plan.method != "classical"
+    if not (is_free and any(decay.driven for decay in decays)):
+        identification = _identify_free_decays(decays, band, start, progress, plan)
+        fit = identification.fit
+        if residual_excess(fit.poles, [block.data for block in fit.blocks]) < LEAST_EXCESS:
+            return identification
+        if not is_free:
+            return replace(identification, warnings=(*identification.warnings, NOT_CONTAINED))
+    whole = [decay if decay.driven else exclude_stretches(extend_decay(decay, band), plan) for decay in decays]
+    return _identify_driven_decays(whole, band, progress, plan)
+
+
+def _identify_driven_decays(
+    decays: list[PreparedDecay], band: FrequencyBand, progress: Callable[[str], None], plan: IdentificationPlan
+) -> Identification:
+    """Identify decays with ambient motion: the records are blocks of their own, because their motion differs."""
+    name, spans = decays[0].record.name, decays[0].record.line.spans_m
+    samples = [(decay.linear.samples, decay.linear.dt) for decay in decays]
+    places = [(number, slice(0, channels.shape[1])) for number, (channels, _) in enumerate(samples)]
+    data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
+    progress(f"{name}: poles beside ambient motion")
+    placed = plan.list_poles("start")
+    longest = max(samples, key=lambda part: part[0].shape[0] * part[1])
+    trials = () if placed.size else _try_start_orders(samples, band) or _try_start_orders([longest], band)
+    start = placed if placed.size else join_start_poles(trials)
+    selection = select_driven_poles(start, data)
+    search = PoleSearch(trials, (("start poles", start), ("added and removed", selection.poles)))
+    progress(f"{name}: uncertainty")
+    fit = fit_line(decays, places, data, selection.poles, selection.noise, band, DRIVEN_STEPS)
+    modes = select_reported(build_modes(fit, len(spans) or None), plan, np.zeros(0, dtype=np.complex128))
+    return Identification(fit, modes, _list_warnings(fit), search)
+
+
+def _identify_free_decays(
+    decays: list[PreparedDecay],
+    band: FrequencyBand,
+    start: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan,
+) -> Identification:
+    """Identify decays without ambient motion; parameters as in `identify_decays`."""
     name, spans = decays[0].record.name, decays[0].record.line.spans_m
     samples, places = group_into_blocks(decays)
     data = [build_block(channels, dt, band.low, band.fitted) for channels, dt in samples]
@@ -224,14 +275,44 @@ def _find_peaks(data: list[DataBlock]) -> tuple[PoleSelection, PoleSearch]:
     return PoleSelection(poles, estimate_block_noise(poles, data)), PoleSearch((), (("peaks of the spectrum", poles),))
 
 
+def _describe_ambient(fit: LineFit, ambient: float, noise: float) -> str:
+    """Sentence on the ambient motion and the noise of the sensors [unit of the record]."""
+    unit = {"acceleration": "mm/s2", "velocity": "mm/s", "displacement": "mm"}[fit.records[0].decay.record.quantity]
+    levels = f"{1e3 * ambient:.2g} {unit} RMS, beside {1e3 * noise:.2g} {unit} of sensor noise in the same band"
+    if ambient < CLEAR_MOTION * noise:
+        return f"the noise is not white: coloured, or the line moved by up to {levels}; the intervals contain it"
+    return (
+        f"the line moved by itself during the records, as in light wind: {levels}. The intervals of frequency and "
+        "damping contain this motion, and are wider than in calm air"
+    )
+
+
+def _describe_misfit(fit: LineFit) -> str:
+    """Sentence on the band and the sensor with the largest residual."""
+    bands: dict[int, list[float]] = {}
+    sensors: dict[str, list[float]] = {}
+    for record in fit.records:
+        energy = np.abs(record.block.white_residual[:, record.columns]) ** 2 / 2
+        for band in range(int(fit.band.low), int(fit.band.fitted) + 1):
+            inside = np.floor(record.block.data.omega / (2 * np.pi)) == band
+            bands.setdefault(band, []).extend(energy[inside].mean(axis=1) if inside.any() else ())
+        for name, column in zip(record.decay.channel_names, energy.T, strict=True):
+            sensors.setdefault(name, []).append(float(column.mean()))
+    band = max(bands, key=lambda number: float(np.mean(bands[number] or [0.0])))
+    sensor = max(sensors, key=lambda name: float(np.mean(sensors[name])))
+    return (
+        f"the squared residual of the fit is {fit.misfit:.1f} times that of the noise: "
+        f"{np.mean(bands[band]):.1f} times from {band} to {band + 1} Hz, and {np.mean(sensors[sensor]):.1f} times at "
+        f"channel {sensor}; uncertainties are increased"
+    )
+
+
 def _list_warnings(fit: LineFit) -> tuple[str, ...]:
     warnings = [text for record in fit.records for text in record.decay.warnings]
+    if ambient := measure_ambient_motion(fit, fit.band.low, fit.band.high):
+        warnings.append(_describe_ambient(fit, *ambient))
     if fit.misfit > SHARED_POLES:
-        several = " or the records have different poles" if len(fit.records) > 1 else ""
-        warnings.append(
-            f"the squared residual of the fit is {fit.misfit:.1f} times that of the noise: the line is not "
-            f"linear{several}; uncertainties are increased"
-        )
+        warnings.append(_describe_misfit(fit))
     lengths = [record.decay.linear.duration for record in fit.records]
     if max(lengths) > (1 + SAME_LENGTH) * min(lengths):
         durations = ", ".join(f"{length:.0f} s" for length in lengths)

@@ -1,8 +1,10 @@
 """Fit of one line: common poles of all its records, residues of each record, and its modes with their uncertainty."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
@@ -10,13 +12,16 @@ from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_gain
 from pantocheck.conformance.drops.decay_preparation import PreparedDecay
 from pantocheck.conformance.drops.mode_groups import assign_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
+from pantocheck.conformance.drops.process_noise import PRIOR_FREEDOM, ProcessNoise
 from pantocheck.conformance.drops.projection import (
     DataBlock,
+    Noise,
     ProjectionFit,
     build_block,
     estimate_noise,
     residue_deviation,
     solve_residues,
+    solve_weighted_residues,
     whiten,
 )
 from pantocheck.conformance.results.identified_modes import Mode, SensorShape
@@ -30,15 +35,21 @@ LAST_STEPS = 10
 
 @dataclass(frozen=True)
 class FittedBlock:
-    """Spectra of a block, their fit, noise of the channels, (c,), and standard deviation of the residues, (m,).
-
-    The standard deviation of the residues is that for unit noise.
-    """
+    """Spectra of a block and their fit."""
 
     data: DataBlock
     fit: ProjectionFit
     noise: RealArray
+    """Standard deviation of the real or imaginary part of a line from the sensors, (c,) [unit of the spectrum]."""
     residue_std: RealArray
+    """Standard deviation of the real or imaginary part of a residue, (m, c) [unit of the spectrum]."""
+    process: ProcessNoise | None = None
+    """Ambient motion of the modes; None: the record shows none."""
+
+    @property
+    def white_residual(self) -> ComplexArray:
+        """Residual in units of the noise, (k, c)."""
+        return self.fit.residual / self.noise if self.process is None else self.data.weigh(self.fit.residual)
 
 
 @dataclass(frozen=True)
@@ -58,6 +69,11 @@ class RecordFit:
     def noise(self) -> RealArray:
         """Standard deviation of the real or imaginary part of a spectral line, (c,) [unit of the spectrum]."""
         return self.block.noise[self.columns]
+
+    @property
+    def residue_std(self) -> RealArray:
+        """Standard deviation of the real or imaginary part of a residue, (m, c) [unit of the spectrum]."""
+        return self.block.residue_std[:, self.columns]
 
 
 @dataclass(frozen=True)
@@ -106,7 +122,7 @@ def fit_line(
     places: list[tuple[int, slice]],
     data: list[DataBlock],
     poles: ComplexArray,
-    noise: list[RealArray],
+    noise: Sequence[Noise],
     band: FrequencyBand,
     last_steps: int = LAST_STEPS,
 ) -> LineFit:
@@ -117,22 +133,39 @@ def fit_line(
         places: Block of each record, and its channels in the block.
         data: The blocks.
         poles: Selected poles, (m,) [1/s].
-        noise: Noise of the channels of each block, each (c,) [unit of the spectrum].
+        noise: Noise of each block.
         band: Band of the identification.
         last_steps: Largest number of steps of the last refinement; 0: the poles stay as they are.
     """
     white = whiten(data, noise)
     refined = refine_poles(poles, white, iterations=last_steps)
     poles = refined.poles
-    blocks = tuple(
-        FittedBlock(block, solve_residues(poles, block), sigma, residue_deviation(poles, block))
-        for block, sigma in zip(data, noise, strict=True)
-    )
+    blocks = tuple(_fit_block(poles, block, sigma) for block, sigma in zip(data, noise, strict=True))
     records = tuple(RecordFit(decay, blocks[b], columns) for decay, (b, columns) in zip(decays, places, strict=True))
     unknowns = sum((2 * poles.size + block.residual_terms.shape[1]) * block.spectrum.shape[1] for block in white)
     rows = sum(2 * block.spectrum.size for block in white)
     misfit = float(refined.cost / max(rows - unknowns - 2 * poles.size, 1))
     return LineFit(band, poles, refined.covariance, blocks, records, misfit)
+
+
+def _fit_block(poles: ComplexArray, data: DataBlock, noise: Noise) -> FittedBlock:
+    if not isinstance(noise, ProcessNoise):
+        assert isinstance(noise, np.ndarray)
+        deviation = np.outer(residue_deviation(poles, data), noise)
+        return FittedBlock(data, solve_residues(poles, data), noise, deviation)
+    white = noise.whiten(data)
+    floor = np.sqrt(np.mean(noise.floor_at(data.omega) ** 2, axis=0))
+    fit, deviation = solve_weighted_residues(poles, white)
+    return FittedBlock(white, fit, floor, deviation, noise)
+
+
+def measure_ambient_motion(fit: LineFit, low: float, high: float) -> tuple[float, float] | None:
+    """RMS of ambient motion and of sensor noise in a band [Hz], over all channels; None without process noise."""
+    levels = [block.process.levels(block.data, low, high) for block in fit.blocks if block.process is not None]
+    if not levels:
+        return None
+    ambient, floor = (np.concatenate(parts) for parts in zip(*levels, strict=True))
+    return float(np.sqrt(np.mean(ambient**2))), float(np.sqrt(np.mean(floor**2)))
 
 
 # Modes of a line from its fit: frequency, damping ratio, shape, and their uncertainty.
@@ -219,12 +252,19 @@ def _list_warnings(mode: Mode, duration: float, nearest: float) -> tuple[str, ..
 
 
 def _inflation(blocks: tuple[FittedBlock, ...], pole: complex) -> float:
-    """Factor by which standard deviations are increased if the residual near a mode exceeds the noise."""
+    """Factor by which standard deviations are increased if the residual near a mode exceeds the noise.
+
+    Process noise is estimated from this residual: the interval is that of Student's distribution instead.
+    """
+    driven = [block.process for block in blocks if block.process is not None]
+    if driven:
+        freedom = sum(PRIOR_FREEDOM + noise.freedom[np.argmin(np.abs(noise.poles - pole))] for noise in driven)
+        return float(scipy.stats.t.isf(0.025, freedom) / scipy.stats.norm.isf(0.025))
     energy, count = 0.0, 0
     for block in blocks:
         reach = max(FREQUENCY_REACH * 2 * np.pi / block.data.duration, -2 * pole.real)
         near = np.abs(block.data.omega - pole.imag) < reach
-        energy += float(np.sum(np.abs(block.fit.residual[near] / block.noise) ** 2))
+        energy += float(np.sum(np.abs(block.white_residual[near]) ** 2))
         count += 2 * int(near.sum()) * block.noise.size
     return float(np.sqrt(max(1.0, energy / count))) if count else 1.0
 
@@ -237,7 +277,7 @@ def _shared_shape(repeats: list[RecordFit], best: RecordFit, j: int) -> tuple[Co
     table = np.array([record.residues[j] for record in repeats]).T
     left, values, right = np.linalg.svd(table, full_matrices=False)
     scale = right[0, next(i for i, record in enumerate(repeats) if record is best)]
-    noise = [record.noise * record.block.residue_std[j] for record in repeats]
+    noise = [record.residue_std[j] for record in repeats]
     return left[:, 0] * values[0] * scale, np.asarray(np.mean(noise, axis=0) * np.abs(scale))
 
 

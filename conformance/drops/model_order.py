@@ -4,6 +4,7 @@ A pole is kept if it reduces the squared residual by more than noise does in one
 two parameters for the pole and two for each channel). Each pole is tried in a local fit.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,11 +17,11 @@ from pantocheck.conformance.drops.decay_kernel import (
     decay_kernel,
     far_pole_columns,
     join_conjugates,
-    stack_real_imaginary,
 )
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import (
     DataBlock,
+    Noise,
     ProjectionFit,
     estimate_noise,
     factor_columns,
@@ -45,26 +46,41 @@ MAX_TRIALS = 40
 
 @dataclass(frozen=True)
 class PoleSelection:
-    """Selected poles in the order of frequency [1/s], and the noise of the c channels of each block, (c,)."""
+    """Selected poles in the order of frequency [1/s], and the noise of each block."""
 
     poles: ComplexArray
-    noise: list[RealArray]
+    noise: list[Noise]
+
+
+NoiseEstimate = Callable[[ComplexArray, list[DataBlock], list[Noise] | None], list[Noise]]
+"""Noise of each block from the poles of the decays, the blocks, and the noise estimated before."""
 
 
 def select_poles(poles: ComplexArray, blocks: list[DataBlock], rounds: int = 8) -> PoleSelection:
-    """Refine start poles [1/s], and add and remove poles, until they no longer change, in at most `rounds` rounds."""
-    noise = estimate_block_noise(poles, blocks)
+    """Refine start poles [1/s], and add and remove poles, until they no longer change, in at most `rounds` rounds.
+
+    The noise of each channel is white.
+    """
+    found = repeat_selection(poles, blocks, rounds, lambda trial, data, _: estimate_block_noise(trial, data), 0.01)
+    poles = refine_poles(_keep_in_band(found.poles, blocks), whiten(blocks, found.noise)).poles
+    return PoleSelection(poles, estimate_block_noise(poles, blocks))
+
+
+def repeat_selection(
+    poles: ComplexArray, blocks: list[DataBlock], rounds: int, estimate: NoiseEstimate, equal: float
+) -> PoleSelection:
+    """Select poles as `select_poles`, with any noise, until they change by less than a share of their decay rates."""
+    noise = estimate(poles, blocks, None)
     previous: ComplexArray | None = None
     for _ in range(rounds):
         poles = _keep_in_band(_refine_sections(_keep_in_band(poles, blocks), whiten(blocks, noise)), blocks)
-        if previous is not None and _are_equal(poles, previous):
+        if previous is not None and _are_equal(poles, previous, equal):
             break
         previous = poles
-        noise = estimate_block_noise(poles, blocks)
+        noise = estimate(poles, blocks, noise)
         white = whiten(blocks, noise)
         poles = _remove_poles(_add_poles(poles, white, None), white)
-    poles = refine_poles(_keep_in_band(poles, blocks), whiten(blocks, noise)).poles
-    return PoleSelection(poles, estimate_block_noise(poles, blocks))
+    return PoleSelection(poles, noise)
 
 
 def find_hidden_poles(selection: PoleSelection, blocks: list[DataBlock]) -> PoleSelection:
@@ -76,7 +92,7 @@ def find_hidden_poles(selection: PoleSelection, blocks: list[DataBlock]) -> Pole
     return select_poles(extended, blocks, rounds=3)
 
 
-def estimate_block_noise(poles: ComplexArray, blocks: list[DataBlock]) -> list[RealArray]:
+def estimate_block_noise(poles: ComplexArray, blocks: list[DataBlock]) -> list[Noise]:
     """Noise of the channels of each block, from the residual of a fit with the poles [1/s]."""
     return [estimate_noise(solve_residues(poles, data), poles.size, data) for data in blocks]
 
@@ -115,9 +131,10 @@ def _add_poles(poles: ComplexArray, blocks: list[DataBlock], centres: list[float
 def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     """Remove the poles that do not reduce the squared residual noticeably."""
     least = _detection_threshold(blocks)
-    contribution = pole_contributions(poles, blocks)
-    doubtful = np.flatnonzero((contribution < 3 * least) | crowded_poles(poles, blocks))
     fits = [solve_residues(poles, data) for data in blocks]
+    white = all(data.whitening is None for data in blocks)
+    contribution = pole_contributions(poles, blocks) if white else _local_contributions(poles, blocks, fits)
+    doubtful = np.flatnonzero((contribution < 3 * least) | crowded_poles(poles, blocks))
     for pole in poles[doubtful[np.argsort(contribution[doubtful])]]:
         nearest = int(np.argmin(np.abs(poles - pole)))
         local = restrict_fit(poles, blocks, fits, poles[nearest].imag)
@@ -135,16 +152,10 @@ def _remove_poles(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
 
 def _refine_sections(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArray:
     """Refine the poles section by section, each with its neighbours; this takes a tenth of the time of a full fit."""
-    width = 2 * np.pi * SECTION
     for _ in range(2):
         fits = [solve_residues(poles, data) for data in blocks]
         refined = [np.zeros(0, dtype=np.complex128)]
-        edges = np.arange(0, poles.imag.max(initial=0.0) + width, width)
-        for low, high in pairwise(edges):
-            if not np.any((poles.imag >= low) & (poles.imag < high)):
-                continue
-            local = restrict_fit(poles, blocks, fits, (low + high) / 2, width)
-            inner = (local.poles.imag >= low) & (local.poles.imag < high)
+        for local, inner in _split_into_sections(poles, blocks, fits):
             section = local.poles
             if local.blocks:
                 section = refine_poles(local.poles, local.blocks, iterations=8, tolerance=0.3).poles
@@ -153,16 +164,36 @@ def _refine_sections(poles: ComplexArray, blocks: list[DataBlock]) -> ComplexArr
     return np.asarray(poles[np.argsort(poles.imag)])
 
 
-def _are_equal(a: ComplexArray, b: ComplexArray) -> bool:
-    """Whether two sets of poles agree to 1 % of their decay rates."""
-    return a.size == b.size and bool(np.all(np.abs(a - b) < 0.01 * np.abs(b.real)))
+def _split_into_sections(
+    poles: ComplexArray, blocks: list[DataBlock], fits: list[ProjectionFit]
+) -> Iterator[tuple["LocalFit", NDArray[np.bool_]]]:
+    """Local fit of each section with poles, and the mask of its own poles among those of the local fit."""
+    width = 2 * np.pi * SECTION
+    for low, high in pairwise(np.arange(0, poles.imag.max(initial=0.0) + width, width)):
+        if np.any((poles.imag >= low) & (poles.imag < high)):
+            local = restrict_fit(poles, blocks, fits, (low + high) / 2, width)
+            yield local, (local.poles.imag >= low) & (local.poles.imag < high)
+
+
+def _local_contributions(poles: ComplexArray, blocks: list[DataBlock], fits: list[ProjectionFit]) -> RealArray:
+    """Reduction of the squared residual by each pole in the fit of its section, (m,)."""
+    contribution = np.full(poles.size, np.inf)
+    for local, inner in _split_into_sections(poles, blocks, fits):
+        if local.blocks:
+            contribution[np.flatnonzero(local.near)[inner]] = pole_contributions(local.poles, local.blocks)[inner]
+    return contribution
+
+
+def _are_equal(a: ComplexArray, b: ComplexArray, share: float = 0.01) -> bool:
+    """Whether two sets of poles agree to a share of their decay rates."""
+    return a.size == b.size and bool(np.all(np.abs(a - b) < share * np.abs(b.real)))
 
 
 def _suspicious_frequencies(blocks: list[DataBlock], fits: list[ProjectionFit]) -> list[float]:
     """Angular frequencies [rad/s] where three neighbouring lines exceed the noise, in descending order of energy."""
     peaks: list[tuple[float, float]] = []
     for data, fit in zip(blocks, fits, strict=True):
-        energy = np.convolve(np.sum(np.abs(fit.residual) ** 2, axis=1), np.ones(3), mode="same")
+        energy = np.convolve(np.sum(np.abs(data.weigh(fit.residual)) ** 2, axis=1), np.ones(3), mode="same")
         limit = scipy.stats.chi2.isf(1e-4, 6 * data.spectrum.shape[1])
         peaks += [(float(energy[k]), float(data.omega[k])) for k in np.flatnonzero(energy > limit)]
     spacing = 6 * 2 * np.pi / max(data.duration for data in blocks)
@@ -229,7 +260,8 @@ def restrict_fit(
         residues = np.concatenate([fit.residues[near], fit.residues[near].conj()])
         kernels = decay_kernel(join_conjugates(poles[near]), omega, data.dt, data.n)
         spectrum = fit.residual[window] + kernels @ residues
-        local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, terms))
+        whitening = None if data.whitening is None else data.whitening[window]
+        local.append(DataBlock(data.lines[window], spectrum, data.dt, data.n, terms, whitening))
     return LocalFit(poles[near], near, local)
 
 
@@ -241,13 +273,16 @@ def find_best_candidate(local: LocalFit, centre: float) -> tuple[complex, float]
     trials = np.array([-decay * factor + 1j * omega for factor in DAMPING_TRIALS for omega in omegas if omega > 0])
     gain = np.zeros(trials.size)
     for data in local.blocks:
-        present = pole_columns(local.poles, data)
-        q, _ = factor_columns(np.hstack([present, data.residual_terms]))
-        x = stack_real_imaginary(data.spectrum)
+        present = np.hstack([pole_columns(local.poles, data), data.residual_terms])
+        q, _ = factor_columns(data.expand(present))
+        x = data.signals
         residual = x - q @ (q.T @ x)
-        new = pole_columns(trials, data)
+        new = data.expand(pole_columns(trials, data))
         new -= q @ (q.T @ new)
-        gain += _pair_gains(new[:, : trials.size], new[:, trials.size :], residual)
+        if data.whitening is None:
+            gain += _pair_gains(new[:, : trials.size], new[:, trials.size :], residual)
+        else:
+            gain += _block_gains(new.reshape(new.shape[0], 2, trials.size, -1), residual[:, 0])
     best = int(np.argmax(gain))
     return (complex(trials[best]), float(gain[best])) if gain[best] > 0 else None
 
@@ -262,18 +297,29 @@ def _pair_gains(first: RealArray, second: RealArray, residual: RealArray) -> Rea
     return np.asarray(np.where(independent, forms / np.where(independent, determinant, 1.0), 0.0))
 
 
+def _block_gains(columns: RealArray, residual: RealArray) -> RealArray:
+    """Reduction of the squared residual, (n,), by the columns of each trial pole at all channels, (n, 2, t, c)."""
+    n, _, trials, channels = columns.shape
+    own = columns.transpose(2, 0, 1, 3).reshape(trials, n, 2 * channels)
+    gram = own.transpose(0, 2, 1) @ own
+    gram += LEAST_DETERMINANT * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(2 * channels)
+    right = own.transpose(0, 2, 1) @ residual
+    return np.asarray(np.sum(right * np.linalg.solve(gram, right[:, :, None])[:, :, 0], axis=1))
+
+
 def pole_contributions(poles: ComplexArray, blocks: list[DataBlock]) -> RealArray:
     """Reduction of the squared residual by each pole, with all other poles present, (m,)."""
     m = poles.size
     reduction = np.zeros(m)
     for data in blocks:
-        q, r = factor_columns(np.hstack([pole_columns(poles, data), data.residual_terms]))
+        q, r = factor_columns(data.expand(np.hstack([pole_columns(poles, data), data.residual_terms])))
         inverse = solve_factor(r, np.eye(r.shape[0]))
-        coefficients = inverse @ (q.T @ stack_real_imaginary(data.spectrum))
+        coefficients = inverse @ (q.T @ data.signals)
+        width = 1 if data.whitening is None else data.spectrum.shape[1]
         for j in range(m):
-            pair = [j, j + m]
-            covariance = inverse[pair] @ inverse[pair].T
-            reduction[j] += float(np.sum(coefficients[pair] * np.linalg.solve(covariance, coefficients[pair])))
+            own = [*range(j * width, (j + 1) * width), *range((j + m) * width, (j + m + 1) * width)]
+            covariance = inverse[own] @ inverse[own].T
+            reduction[j] += float(np.sum(coefficients[own] * np.linalg.solve(covariance, coefficients[own])))
     return reduction
 
 

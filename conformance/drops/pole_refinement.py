@@ -1,5 +1,6 @@
 """Levenberg-Marquardt refinement of poles."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from pantocheck.conformance.drops.decay_kernel import (
     real_columns,
     stack_real_imaginary,
 )
-from pantocheck.conformance.drops.projection import DataBlock, eliminate_columns
+from pantocheck.conformance.drops.projection import REFINEMENTS, DataBlock, eliminate_columns, prepare_elimination
 
 SMALLEST_DAMPING_RATIO = 1e-6
 """Lower limit of a damping ratio [-]; slower decays are not observable in a record of some minutes."""
@@ -49,14 +50,21 @@ def refine_poles(
         iterations: Largest number of steps.
         tolerance: Reduction of the cost in one step, below which the refinement ends [-].
     """
+    return minimise_cost(poles, lambda trial: build_normal_equations(trial, blocks), iterations, tolerance)
+
+
+def minimise_cost(
+    poles: ComplexArray, build: Callable[[ComplexArray], "NormalEquations"], iterations: int, tolerance: float
+) -> RefinedPoles:
+    """Minimise the cost of the normal equations that `build` gives at poles; parameters as in `refine_poles`."""
     poles = poles[np.argsort(poles.imag)]
-    current = build_normal_equations(poles, blocks)
+    current = build(poles)
     if not poles.size:
         return RefinedPoles(poles, current.cost, np.zeros((0, 0)))
     damping = 1e-3
     for _ in range(iterations):
         trial_poles = _step(poles, current.matrix, current.gradient, damping)
-        trial = build_normal_equations(trial_poles, blocks)
+        trial = build(trial_poles)
         gain = current.cost - trial.cost
         if gain > 0:
             poles, current, damping = trial_poles, trial, max(damping / 10, 1e-9)
@@ -110,11 +118,24 @@ def build_normal_equations(poles: ComplexArray, blocks: list[DataBlock]) -> Norm
     for data in blocks:
         value, slope = kernel_and_derivative(join_conjugates(poles), data.omega, data.dt, data.n)
         columns, derivative = np.hstack([real_columns(value), data.residual_terms]), real_columns(slope)
+        if data.whitening is not None:
+            part = _eliminate_whitened(data, columns, derivative)
+            cost, matrix, gradient = cost + part.cost, matrix + part.matrix, gradient + part.gradient
+            continue
         fit = eliminate_columns(columns, stack_real_imaginary(data.spectrum), derivative)
         gram, correlation = fit.remainder.T @ fit.remainder, derivative.T @ fit.residual
         cost += float(np.sum(fit.residual**2))
         _accumulate(matrix, gradient, gram, correlation, fit.coefficients[: 2 * m])
     return NormalEquations(cost, matrix, gradient)
+
+
+def _eliminate_whitened(data: DataBlock, columns: RealArray, derivative: RealArray) -> NormalEquations:
+    """Normal equations of a block whose channels have correlated noise at each line."""
+    solve = prepare_elimination(data.expand(columns))
+    coefficients, residual = solve(data.signals, 1 + REFINEMENTS)
+    residues = coefficients.reshape(-1, data.spectrum.shape[1])[: derivative.shape[1]]
+    jacobian = solve(data.weigh_slopes(derivative, residues), 1)[1]
+    return NormalEquations(float(np.sum(residual**2)), jacobian.T @ jacobian, (jacobian.T @ residual)[:, 0])
 
 
 def _accumulate(

@@ -11,7 +11,9 @@ References:
         XIV (1996) 540-546.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import scipy.linalg
@@ -50,6 +52,8 @@ class DataBlock:
     """Number of samples."""
     residual_terms: RealArray
     """Columns for the drift of the offset and for modes outside the band, (2 k, r)."""
+    whitening: ComplexArray | None = None
+    """Inverse of the triangular factor of the covariance of the channels at each line, (k, c, c); None: white noise."""
 
     @property
     def omega(self) -> RealArray:
@@ -60,6 +64,42 @@ class DataBlock:
     def duration(self) -> float:
         """Duration [s]."""
         return self.n * self.dt
+
+    @property
+    def signals(self) -> RealArray:
+        """Signals of the least-squares problem in units of the noise: (2 k, c), or (2 k c, 1) with a whitening."""
+        if self.whitening is None:
+            return stack_real_imaginary(self.spectrum)
+        return stack_real_imaginary(self.weigh(self.spectrum)).reshape(-1, 1)
+
+    def weigh(self, values: ComplexArray) -> ComplexArray:
+        """Values of the channels in units of the noise, (k, c)."""
+        return self.weigh_directions(values[:, :, None])[:, :, 0]
+
+    def weigh_directions(self, values: ComplexArray) -> ComplexArray:
+        """Directions of the channels at each line, (k, c, v), in units of the noise."""
+        return values if self.whitening is None else np.asarray(self.whitening @ values)
+
+    def expand(self, columns: RealArray) -> RealArray:
+        """Columns of each channel, (2 k, p), as those of all channels, (2 k c, p c); unchanged without a whitening."""
+        if self.whitening is None:
+            return columns
+        k, c = self.spectrum.shape
+        values = self.whitening[:, :, None, :] * (columns[:k] + 1j * columns[k:])[:, None, :, None]
+        return stack_real_imaginary(values).reshape(2 * k * c, -1)
+
+    def weigh_slopes(self, derivative: RealArray, residues: RealArray) -> RealArray:
+        """Derivatives of the signals by decay rates and angular frequencies, (2 k c, 2 m).
+
+        Args:
+            derivative: Derivatives of the columns of the residues, (2 k, 2 m).
+            residues: Real, then imaginary parts of the residues, (2 m, c).
+        """
+        k, m = self.lines.size, residues.shape[0] // 2
+        first, second = np.split(derivative[:k, None] + 1j * derivative[k:, None], 2, axis=2)
+        p, s = residues[:m].T, residues[m:].T
+        slopes = np.concatenate([-(first * p + second * s), second * p - first * s], axis=2)
+        return stack_real_imaginary(self.weigh_directions(slopes)).reshape(2 * k * residues.shape[1], 2 * m)
 
 
 @dataclass(frozen=True)
@@ -106,6 +146,20 @@ def solve_residues(poles: ComplexArray, data: DataBlock) -> ProjectionFit:
     return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual[:k] + 1j * residual[k:])
 
 
+def solve_weighted_residues(poles: ComplexArray, data: DataBlock) -> tuple[ProjectionFit, RealArray]:
+    """Residues of known poles [1/s] in a block with a whitening, and the standard deviation of their parts, (m, c)."""
+    (k, c), m = data.spectrum.shape, poles.size
+    columns = np.hstack([pole_columns(poles, data), data.residual_terms])
+    q, r = factor_columns(data.expand(columns))
+    inverse = solve_factor(r, np.eye(r.shape[0]))
+    coefficients = (inverse @ (q.T @ data.signals)).reshape(-1, c)
+    fitted = columns @ coefficients
+    variance = np.sum(inverse**2, axis=1).reshape(-1, c)
+    deviation = np.sqrt((variance[:m] + variance[m : 2 * m]) / 2)
+    residual = data.spectrum - fitted[:k] - 1j * fitted[k:]
+    return ProjectionFit(coefficients[:m] + 1j * coefficients[m : 2 * m], residual), np.asarray(deviation)
+
+
 def residue_deviation(poles: ComplexArray, data: DataBlock) -> RealArray:
     """Standard deviation of the real or imaginary part of a residue for unit noise and known poles, (m,)."""
     r = scipy.linalg.qr(np.hstack([pole_columns(poles, data), data.residual_terms]), mode="r", check_finite=False)[0]
@@ -128,9 +182,23 @@ def estimate_noise(fit: ProjectionFit, poles: int, data: DataBlock) -> RealArray
     return np.asarray(np.sqrt(np.maximum(median, np.finfo(float).tiny) / (2 * np.log(2) * share_left)))
 
 
-def whiten(blocks: list[DataBlock], noise: list[RealArray]) -> list[DataBlock]:
-    """Scale each channel of the blocks to units of its noise."""
-    return [replace(data, spectrum=data.spectrum / sigma) for data, sigma in zip(blocks, noise, strict=True)]
+class LineNoise(Protocol):
+    """Noise with a covariance of the channels at each line."""
+
+    def whiten(self, data: DataBlock) -> DataBlock:
+        """Block with the whitening of this noise."""
+
+
+Noise = RealArray | LineNoise
+"""Standard deviation of the real or imaginary part of a line of each channel, (c,), or a covariance at each line."""
+
+
+def whiten(blocks: list[DataBlock], noise: Sequence[Noise]) -> list[DataBlock]:
+    """Blocks in units of their noise."""
+    return [
+        replace(data, spectrum=data.spectrum / sigma) if isinstance(sigma, np.ndarray) else sigma.whiten(data)
+        for data, sigma in zip(blocks, noise, strict=True)
+    ]
 
 
 # Factors of the columns of a least-squares problem, from their Gram matrix.
@@ -178,14 +246,23 @@ def eliminate_columns(columns: RealArray, x: RealArray, others: RealArray) -> El
     Returns:
         Coefficients and residual of x, and remainder of the other signals.
     """
+    solve = prepare_elimination(columns)
+    coefficients, residual = solve(x, 1 + REFINEMENTS)
+    return Elimination(coefficients, residual, solve(others, 1)[1])
+
+
+def prepare_elimination(columns: RealArray) -> Callable[[RealArray, int], tuple[RealArray, RealArray]]:
+    """Function of right-hand sides and a number of passes that returns their coefficients and residual."""
     try:
-        factor = _factor_gram_matrix(columns)
+        return _factor_gram_matrix(columns).solve
     except np.linalg.LinAlgError:
         q, r = _factor_by_householder(columns)
+
+    def solve(x: RealArray, passes: int) -> tuple[RealArray, RealArray]:
         projected = q.T @ x
-        return Elimination(solve_factor(r, projected), x - q @ projected, others - q @ (q.T @ others))
-    coefficients, residual = factor.solve(x, 1 + REFINEMENTS)
-    return Elimination(coefficients, residual, factor.solve(others, 1)[1])
+        return solve_factor(r, projected), x - q @ projected
+
+    return solve
 
 
 def solve_least_squares(columns: RealArray, x: RealArray) -> tuple[RealArray, RealArray]:

@@ -74,7 +74,8 @@ def _order_figure(search: OrderSearch) -> doc.Figure:
 # Modes: half-power bands, shapes at the sensors, table.
 MODES_TEXT = (
     "Uncertainties are one standard deviation: the Cramér-Rao bound with the noise estimated from the residual, "
-    "widened where the residual around a mode exceeds noise. Error: residual of the fit in the band of the mode, "
+    "widened where the residual around a mode exceeds noise. If the line moved by itself, the bound contains this "
+    "motion. Error: residual of the fit in the band of the mode, "
     "relative to the measured spectrum; by sensor in the order of modes.json."
 )
 
@@ -255,7 +256,9 @@ def collect_warnings(lines: Sequence[IdentifiedLine]) -> tuple[str, ...]:
 
 
 def _list_sections(line: IdentifiedLine, suffix: str) -> Iterator[doc.Section]:
-    yield doc.Section(f"Damping{suffix}", (*_damping_figures(line.modes), _group_table(line.groups)))
+    yield doc.Section(
+        f"Damping{suffix}", (*_damping_figures(line.modes), _group_table(line.groups, UNITS[line.quantity]))
+    )
     yield doc.Section(f"Modes{suffix}", tuple(list_mode_blocks(line)))
     # The records stand before the fit: its tall figure starts a page, and they fill the one before.
     yield doc.Section(f"Records{suffix}", tuple(list_record_blocks(line)))
@@ -284,7 +287,7 @@ def _damping_figures(modes: Sequence[Mode]) -> tuple[doc.Figures, ...]:
     return (doc.Figures((boxes, ratios)),)
 
 
-def _group_table(groups: Sequence[ModeGroup]) -> doc.Table:
+def _group_table(groups: Sequence[ModeGroup], unit: str) -> doc.Table:
     cells: dict[str, Callable[[ModeGroup], str]] = {
         "Group": lambda group: str(group.group),
         "Frequency [Hz]": lambda group: f"{format_value(group.from_Hz)}–{format_value(group.to_Hz)}",
@@ -292,7 +295,14 @@ def _group_table(groups: Sequence[ModeGroup]) -> doc.Table:
         "Median damping ratio [%]": lambda group: format_percent(group.median_damping_ratio),
         "Range [%]": lambda group: f"{format_percent(group.lowest)} to {format_percent(group.highest)}",
     }
+    if any(group.ambient_rms is not None for group in groups):
+        cells[f"Ambient motion [m{unit}]"] = lambda group: _milli(group.ambient_rms)
+        cells[f"Sensor noise [m{unit}]"] = lambda group: _milli(group.noise_rms)
     return doc.make_grid("Groups of span modes", groups, cells)
+
+
+def _milli(value: float | None) -> str:
+    return format_value(None if value is None else 1e3 * value, 2)
 
 
 def _list_motion_figures(overlays: Sequence[Overlay]) -> Iterator[doc.Figure]:

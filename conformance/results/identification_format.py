@@ -63,6 +63,10 @@ class ModeGroup(RoundedModel):
     """Lowest damping ratio of the certain modes [-]."""
     highest: Rounded | None
     """Highest damping ratio of the certain modes [-]."""
+    ambient_rms: Rounded | None = None
+    """RMS of the ambient motion in the frequencies of the group, over sensors and records; null: none found."""
+    noise_rms: Rounded | None = None
+    """RMS of the noise of the sensors in the same frequencies; null as above."""
 
 
 class Comparison(RoundedModel):
