@@ -144,7 +144,7 @@ def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: flo
     of_halves = f"range of the values of half records, spans of {span_m:g} m"
     if len(ranges) == len(found):
         return f"{of_halves}; fewer than {FEWEST_SPANS_INTERVAL} spans are too few for an interval of stated coverage"
-    interval = f"interval from the fluctuations along the record, measured coverage 93 to 97 %, spans of {span_m:g} m"
+    interval = f"interval from the fluctuations along the record, measured coverage 89 to 99 %, spans of {span_m:g} m"
     extremes = [name for name, uncertainty in found if isinstance(uncertainty, ExtremeInterval)]
     if extremes:
         interval += f"; interval without a stated share for {', '.join(dict.fromkeys(extremes))}"

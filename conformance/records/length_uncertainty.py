@@ -14,7 +14,7 @@ from the extremes of the spans by a generalised extreme value distribution (Hosk
 doi:10.1080/00401706.1985.10488049). Their interval has no stated share: it depends on the tail of the distribution.
 
 The settings were chosen on records of the process of verification/tables/coverage.py with other seeds.
-docs/tables/coverage.csv shows how often the intervals contain the true value.
+docs/tables/coverage.csv and coverage-simulated.csv show how often the intervals contain the true value.
 """
 
 import math
@@ -88,7 +88,7 @@ class SpanInterval:
 
 
 class StatisticInterval(SpanInterval):
-    """Interval of a statistic, which contains the true value in 93 to 97 % of the records of a benchmark."""
+    """Interval of a statistic, which contains the true value in 89 to 99 % of the records of two benchmarks."""
 
 
 class ExtremeInterval(SpanInterval):

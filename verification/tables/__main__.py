@@ -57,6 +57,7 @@ PROGRAMS = {
     "calibration-run-in": Program("tables.uncertainty_coverage", ("calibration-run-in",), "run-in"),
     "calibration-section": Program("tables.uncertainty_coverage", ("calibration-section",), "section"),
     "calibration-mesh": Program("tables.uncertainty_coverage", ("calibration-mesh",), "discretisation"),
+    "coverage-simulated": Program("tables.coverage_simulated", ("coverage-simulated",)),
     "coverage": Program("tables.coverage", ("coverage", "coverage-worst")),
     "exact-model": Program("formulations.exact_model", ("exact-plane", "exact-stagger", "exact-change")),
     "exact-model-fine": Program("formulations.exact_model", ("exact-fine",), "--element 0.125 --stagger 0"),

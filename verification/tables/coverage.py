@@ -23,7 +23,7 @@ of all records of the row.
 
 Outcomes of a row, by the share of intervals that contain the true value and its 95 % confidence interval (Wilson):
 
-    FAIL             the share is outside of 93 % to 97 %, which the product states
+    FAIL             the share is outside of 93 % to 97 %
     93 to 97 %       the share is inside, but the confidence interval excludes 95 %
     shortfall width  the median half-width is more than 1.5 times the smallest one with correct coverage, which is the
                      95 % quantile of the distance between value and true value in the row
@@ -154,6 +154,12 @@ def _noise(random: np.random.Generator, count: int, samples: int) -> RealArray:
     return np.asarray(irfft(lines * np.sqrt(size / 2 * density), size)[:, :samples])
 
 
+HEADING = """\
+| quantity | spans | correlation | intervals | contained [%] | confidence [%] | width ratio | outcome |
+|---|--:|--:|--:|--:|---|--:|---|"""
+"""Head of a table of rows in Markdown."""
+
+
 class Row(NamedTuple):
     """Intervals of one quantity with one number of spans and one correlation."""
 
@@ -179,6 +185,15 @@ class Row(NamedTuple):
         """95 % confidence interval of the share (Wilson) [%]."""
         lower, upper = wilson_interval(self.contained, self.count)
         return 100 * lower, 100 * upper
+
+    @property
+    def text(self) -> str:
+        """Row of a table in Markdown."""
+        lower, upper = self.confidence
+        return (
+            f"| {self.quantity} | {self.spans} | {self.rho:g} | {self.count} | {self.share:.1f} "
+            f"| {lower:.1f} to {upper:.1f} | {self.width_ratio:.2f} | {self.outcome} |"
+        )
 
     @property
     def outcome(self) -> str:
@@ -277,16 +292,10 @@ def build_row(
 
 def print_rows(rows: Iterable[Row]) -> list[Row]:
     """Print a table of rows as they come, and return them."""
-    print("| quantity | spans | correlation | intervals | contained [%] | confidence [%] | width ratio | outcome |")
-    print("|---|--:|--:|--:|--:|---|--:|---|")
+    print(HEADING)
     printed = []
     for row in rows:
-        lower, upper = row.confidence
-        print(
-            f"| {row.quantity} | {row.spans} | {row.rho:g} | {row.count} | {row.share:.1f} "
-            f"| {lower:.1f} to {upper:.1f} | {row.width_ratio:.2f} | {row.outcome} |",
-            flush=True,
-        )
+        print(row.text, flush=True)
         printed.append(row)
     return printed
 

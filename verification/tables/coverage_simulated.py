@@ -44,7 +44,7 @@ from pantocheck.model import History, Kind, discretise, simulate_passage
 from pantocheck.model.description.irregularity import Irregularity
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from verification.speed.passage_lines import ac_simple, passage, staggered
-from verification.tables.coverage import SEED, Row, build_row, draw_autoregression, print_rows
+from verification.tables.coverage import HEADING, SEED, Row, build_row, draw_autoregression
 
 SPANS, RECORDS = 60, 5
 """Spans of a record; records of a passage with a long run-in."""
@@ -194,15 +194,15 @@ def main() -> None:
     parser.add_argument("--run-in", nargs="*", default=list(RUN_IN), choices=RUN_IN)
     parser.add_argument("--correlation", nargs="*", type=float, default=[0.0, 0.7])
     options, begin = parser.parse_args(), time.process_time()
+    for columns, line in zip(("| run-in [spans] | pantograph ", "|--:|--:"), HEADING.splitlines(), strict=True):
+        print(columns + line)
     for rho in options.correlation:
         truth = run_passages("long", rho, options.passages)
         for run_in in options.run_in:
             count = options.passages * RECORDS
             samples = truth if run_in == "long" else run_passages(run_in, rho, count)
-            rows = list(list_rows(samples, truth, rho))
-            for pantograph in (1, 2):
-                print(f"\n{run_in.capitalize()} run-in of {RUN_IN[run_in]} spans, pantograph {pantograph}\n")
-                print_rows(row for number, row in rows if number == pantograph)
+            for pantograph, row in list_rows(samples, truth, rho):
+                print(f"| {RUN_IN[run_in]} | {pantograph} {row.text}", flush=True)
     print(f"\n{time.process_time() - begin:.0f} s of process time.")
 
 
