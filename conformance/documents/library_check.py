@@ -24,6 +24,7 @@ from pantocheck.conformance.grading.case_verification import (
     find_obstacle,
     include_start,
     verification_digest,
+    verify_ungraded,
 )
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.input_sensitivity import list_possible_sentences
@@ -31,6 +32,7 @@ from pantocheck.conformance.grading.validity_warnings import validity_warnings, 
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.runs.system import note_case_version
 
 STATED_FACTS = {
     "title": "title",
@@ -58,6 +60,8 @@ def check_library(results: Results) -> list[DocumentCheck]:
     modified copies are named, because nothing shows that their inputs and limits are those of a standard.
     """
     differences = [f"{case.id}, {text}" for case in results.cases for text in _compare_case(case)]
+    if results.system.kind != "command":  # a program may state notes of its own
+        differences += [f"{case.id}, {text}" for case in results.cases for text in _list_foreign_notes(case)]
     others = [f"{case.id}: {text}" for case in results.cases for text in _describe_others(case)]
     checks = []
     if differences and list_suite_differences(results):
@@ -95,7 +99,7 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     """Differences of a result from the facts and limits of its case, one sentence each."""
     expected = build_ungraded(case, "skip", "only the facts of the case are compared")
     for key, words in STATED_FACTS.items():
-        if (stated := getattr(result, key)) != (wanted := getattr(expected, key)) and stated is not None:
+        if (stated := getattr(result, key)) != (wanted := getattr(expected, key)):
             yield f"{words}: {_name(wanted)} in the library, {_name(stated)} in the certificate"
     for key, words in RUN_FACTS.items():
         if getattr(result.run, key) != getattr(expected.run, key):
@@ -120,6 +124,17 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     yield from compare_limits(case, result)
     yield from compare_verification_limits(case, result)
     yield from _compare_warnings(case, result)
+
+
+def _list_foreign_notes(result: CaseResult) -> Iterator[str]:
+    """Notes of a library case that follow neither from it nor from its record, whose samples were checked."""
+    case, record = find_library_case(result.id), result.record
+    if case is None or result.library != "identical" or result.profile or record is None or not record.checks:
+        return
+    if result.charts or result.tables:
+        return  # a study states notes of its own
+    known = {*case.notes, record.start_text, *(row.text for row in record.checks), *note_case_version(None)}
+    yield from (f"the note '{_name(note)}' is none of the library" for note in result.notes if note not in known)
 
 
 def _compare_warnings(case: Case, result: CaseResult) -> Iterator[str]:
@@ -244,11 +259,21 @@ def compare_limits(case: Case, result: CaseResult) -> Iterator[str]:
             yield f"{criterion_name(rows[target])}: no limit in the library, {_bounds(rows[target])} in the certificate"
         for target, limit in limits.items():
             yield from _compare_limit(limit, rows.get(target))
+        yield from (
+            f"'{_name(text)}' is stated, but the limits are those of the library" for text in result.limit_changes
+        )
         return
-    for target, limit in limits.items():
-        change = describe_limit_change(limit, _replacing_limit(limit, rows.get(target)))
-        if change is not None and change not in result.limit_changes:
-            yield f"{change}, which the certificate does not state"
+    if not list_own_limits(case, result) and not limits.keys() - rows.keys():
+        yield "digest of the limits: another one in the certificate, but every limit is that of the library"
+    changes = [
+        describe_limit_change(limit, _replacing_limit(limit, rows.get(target))) for target, limit in limits.items()
+    ]
+    yield from (
+        f"{text}, which the certificate does not state" for text in changes if text and text not in result.limit_changes
+    )
+    yield from (
+        f"'{_name(text)}' does not follow from the limits" for text in result.limit_changes if text not in changes
+    )
 
 
 def list_own_limits(case: Case, result: CaseResult) -> list[str]:
@@ -280,6 +305,13 @@ def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]
     requirements = build_requirements(converged, case.is_static)
     if result.record is not None and result.record.start == "differs":
         requirements = tuple(include_start(requirement, converged) for requirement in requirements)
+    again = verify_ungraded(case, stated.verdict, "")
+    if again is not None and (stated.omitted, stated.confirmed_by, stated.reason) != (
+        again.omitted,
+        again.confirmed_by,
+        None,
+    ):
+        yield "verification: omitted quantities, second formulation or reason are not those of the library"
     rows, wanted = _by_target(stated.criteria), {item.target: item for item in requirements}
     for target in rows.keys() - wanted.keys():
         yield f"{criterion_name(rows[target])}: no converged value in the library, a limit in the certificate"
@@ -291,6 +323,8 @@ def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]
             bounds = format_bounds(requirement.lower, requirement.upper)
             name = criterion_name(row)
             yield f"verification of {name}: {bounds} in the library, {_bounds(row)} in the certificate"
+        elif any(getattr(row, key) != part for key, part in requirement if key != "finding"):
+            yield f"verification of {criterion_name(row)}: trust or source of the limit is not that of the library"
 
 
 def _compare_limit(limit: Limit, row: Criterion | None) -> Iterator[str]:

@@ -19,6 +19,11 @@ from pantocheck.conformance.core.verdicts import Verdict, margin
 from pantocheck.conformance.documents.authenticity_check import EXACT, format_exact, same_number, select_first
 from pantocheck.conformance.documents.signal_check import check_signals
 from pantocheck.conformance.documents.state_check import check_state
+from pantocheck.conformance.documents.statement_check import (
+    check_case_statements,
+    check_criterion_statements,
+    check_run_statements,
+)
 from pantocheck.conformance.documents.trace_check import check_trace, check_uplift
 from pantocheck.conformance.grading.baseline import bound_drift
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
@@ -45,7 +50,8 @@ ROUNDING_OF_DRAWS = 1e-5
 def find_discrepancies(results: Results) -> list[str]:
     """Find contradictions between the numbers and verdicts of results."""
     rule = parse_decision(results.decision, "results, key decision")
-    discrepancies = [text for case in results.cases for text in _check_case(case, results.trust, rule)]
+    discrepancies = list(check_run_statements(results))
+    discrepancies += [text for case in results.cases for text in _check_case(case, results.trust, rule)]
     decided = read_participation(results).decide_run(results)
     pairs: list[tuple[str, Verdict | None, Verdict | None]] = [
         (f"{case.id}: ", case.verdict, other.verdict) for case, other in zip(results.cases, decided.cases, strict=True)
@@ -82,7 +88,7 @@ def _check_case(case: CaseResult, trust: Trust | Computed, rule: DecisionRule) -
     yield from _check_conformity(case)
     yield from (f"{case.id}, {text}" for text in _check_readings(case))
     yield from (f"{case.id}: {text}" for text in check_baseline(case))
-    yield from (f"{case.id}: {text}" for text in check_state(case))
+    yield from (f"{case.id}: {text}" for text in (*check_state(case), *check_case_statements(case)))
     verdict = judge_case([judge_criteria(graded)], record)
     if stated != verdict and not ungraded:
         yield f"{case.id}: verdict '{stated}' stated, '{verdict}' follows from the criteria and the record"
@@ -110,7 +116,9 @@ def _check_criteria(
         components = check_components(row, case.uncertainty_components, names)
         if row.doubt is None and (doubt := doubt_limit(case.id, row)) is not None:
             yield f"{where}: {doubt}, which the criterion does not state"
-        for text in (*_check_value(row, case.quantities), *components, *_check_grade(row, trust, rule, unknown)):
+        stated = check_criterion_statements(case, row, _gather_errors(row, unknown), trust, rule)
+        grade = _check_grade(row, trust, rule, unknown)
+        for text in (*_check_value(row, case.quantities), *components, *grade, *stated):
             yield f"{where}: {text}"
 
 
@@ -161,9 +169,7 @@ def _check_grade(
     if lower is not None and upper is not None and lower > upper:
         yield f"lower limit {format_exact(lower)} above upper limit {format_exact(upper)}"
         return
-    errors = ValueErrors(
-        row.discretisation_error, row.spread, row.components, row.limit_uncertainty, tuple(row.draws), unknown
-    )
+    errors = _gather_errors(row, unknown)
     judged: Verdict = "skip" if value is None else judge_by_rule(value, (lower, upper), errors, rule)[0]
     finding = row.finding
     if finding is not None and finding.outcome != judge_finding(finding.role, judged):
@@ -189,6 +195,12 @@ def _check_grade(
         stated, follow = len(row.close), len(remarks)
         texts = " with other texts" if stated == follow else ""
         yield f"{stated} remarks on a close limit stated, {follow}{texts} follow from value, limits and errors"
+
+
+def _gather_errors(row: Criterion, unknown: tuple[ComponentName, ...]) -> ValueErrors:
+    return ValueErrors(
+        row.discretisation_error, row.spread, row.components, row.limit_uncertainty, tuple(row.draws), unknown
+    )
 
 
 def _check_conformity(case: CaseResult) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.runs.force_dynamics import DYNAMICS
 from pantocheck.conformance.runs.record_checks import RECORD_CHECKS, judge_record_state
 
 REMARKS = {"doubt": "warnings", "unchecked": "notes"}
@@ -31,6 +32,9 @@ def check_state(case: CaseResult) -> Iterator[str]:
             yield f"check '{row.check}': outcome '{row.outcome}' does not fit its text"
         if row.outcome in REMARKS and row.text not in getattr(case, REMARKS[row.outcome]):
             yield f"check '{row.check}': its text is missing among the {REMARKS[row.outcome]}"
+    heights = () if case.signals is None else [part.contact_height_m for part in case.signals.pantographs.values()]
+    if None in heights and any((row.check, row.outcome) == (DYNAMICS.name, "confirmed") for row in record.checks):
+        yield f"check '{DYNAMICS.name}': confirmed without a contact height among the embedded signals"
     state, reason = judge_record_state(record.checks)
     if (record.state, record.reason) != (state, reason):
         stated = f"state '{record.state}' of the record stated ({record.reason})"

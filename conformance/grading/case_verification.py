@@ -42,11 +42,15 @@ def verify_evaluation(evaluation: CaseEvaluation) -> CaseVerification | None:
     return _build_verification(converged, verdict, None).model_copy(update={"criteria": criteria})
 
 
+UNCHECKED_START = "without the stated start, which is not checked"
+"""End of the reason of a criterion that passes only inside the limits that the stated start widens."""
+
+
 def _name_statement(criterion: Criterion, widened: Criterion) -> Criterion:
     """Criterion with widened limits; if it passes only inside them, its reason says so."""
     if (criterion.verdict, widened.verdict) != ("fail", "pass"):
         return widened
-    return widened.model_copy(update={"reason": f"{criterion.reason} without the stated start, which is not checked"})
+    return widened.model_copy(update={"reason": f"{criterion.reason} {UNCHECKED_START}"})
 
 
 def verify_ungraded(case: Case, verdict: Verdict, reason: str) -> CaseVerification | None:

@@ -31,9 +31,13 @@ from pantocheck.conformance.results.scope import build_scope
 Content = TypeVar("Content")
 
 
+TIME_FORMAT = "%Y-%m-%dT%H:%M:%SZ"
+"""Format of the start of a run, in UTC."""
+
+
 def utc_now() -> str:
     """Current time in the format of results.json."""
-    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return datetime.now(UTC).strftime(TIME_FORMAT)
 
 
 def key_by_owner(parts: Mapping[int, Mapping[str, Content]]) -> dict[str, dict[str, Content]]:

@@ -1,6 +1,7 @@
 """Forgeries: each kind is found in results.json, a few in PDF and HTML; `.ci/thorough forgeries` tries all of them."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,9 +19,11 @@ from verification.attacks.forgeries import (
     Genuine,
     attempt,
     build_genuine,
+    grade_record,
     list_forgeries,
     list_result_forgeries,
 )
+from verification.attacks.raised_statements import EVERY_CHANGE, STATE_CHANGES
 from verification.tables.__main__ import TABLES
 
 PDF_KINDS = [
@@ -36,10 +39,19 @@ def genuine() -> Genuine:
     return build_genuine(run_cases([case], Wave(mean=119.9, sigma=30.9)).to_dict())
 
 
-@pytest.mark.parametrize("kind", CHANGES)
-def test_forged_results_are_found(genuine: Genuine, tmp_path: Path, kind: str) -> None:
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Genuine:
+    """Documents of the same run without contact height, whose record is unconfirmed."""
+    case = load_case(library_folder() / "en50318-2002" / "250.toml")
+    record = replace(Wave(mean=119.9, sigma=30.9).record(case), contact_height=None)
+    return build_genuine(grade_record(record, tmp_path_factory.mktemp("bare")))
+
+
+@pytest.mark.parametrize("kind", EVERY_CHANGE)
+def test_forged_results_are_found(genuine: Genuine, bare: Genuine, tmp_path: Path, kind: str) -> None:
     """A forged results.json is consistent only for the kinds that need a record, a new run or a signature."""
-    carrier, content, suffix = next(list_result_forgeries(genuine, kind, SEED))
+    base = bare if kind in STATE_CHANGES else genuine
+    carrier, content, suffix = next(list_result_forgeries(base, kind, SEED))
     outcome = attempt(kind, carrier, content, suffix, tmp_path).outcome
     assert (outcome == "consistent") == (kind in OUTSIDE), outcome
 

@@ -9,14 +9,18 @@ from collections.abc import Callable
 from typing import Any
 
 from pantocheck.conformance.cases.library import list_library, load_case
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import Criterion
-from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.near_limit import ValueErrors
 from pantocheck.conformance.core.packed_samples import PackedSamples, SignalSamples, pack_samples
-from pantocheck.conformance.core.trust import decides_verdict
-from pantocheck.conformance.core.verdicts import judge, margin
+from pantocheck.conformance.core.trust import Computed, Trust
+from pantocheck.conformance.documents.statement_check import extract_requirement
 from pantocheck.conformance.grading.case_conformity import find_case_conformity
 from pantocheck.conformance.grading.case_identity import describe_limit_change
 from pantocheck.conformance.grading.case_verdict import judge_case, read_participation
+from pantocheck.conformance.grading.contact_loss_list import find_force_places
+from pantocheck.conformance.grading.criterion_grading import build_criterion
+from pantocheck.conformance.grading.results_building import key_by_owner, select_finite
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.evaluated_signals import unpack_signals
@@ -51,18 +55,15 @@ def regrade(results: Tree) -> None:
     results.update(decided.model_copy(update={"scope": build_scope(decided.cases)}).to_dict())
 
 
-def regrade_row(row: Tree, trust: str) -> None:
+def regrade_row(row: Tree, trust: Trust | Computed) -> None:
     """Grade one criterion again."""
-    value, lower, upper = row["value"], row["lower"], row["upper"]
-    judged = "skip" if value is None else judge(value, lower, upper)
-    row["verdict"] = judged if decides_verdict(row["trust"], trust) else "info"
-    row["margin"] = None if value is None else margin(value, lower, upper)
-    draws = tuple(row.get("draws", ()))
-    errors = ValueErrors(row["discretisation_error"], row["spread"], row["components"], row["limit_uncertainty"], draws)
-    row["uncertainty"] = None if value is None else errors.find_half_width(value)
-    row["conformity"] = None if value is None else errors.find_conformity((lower, upper))
-    row["close"] = near_limit_remarks(value, (lower, upper), row["unit"], errors)
-    row["reason"] = None if judged == "pass" else row["reason"]
+    stated = Criterion.model_validate(row)
+    missing = stated.reason if stated.value is None else None
+    errors = ValueErrors(
+        stated.discretisation_error, stated.spread, stated.components, stated.limit_uncertainty, tuple(stated.draws)
+    )
+    again = build_criterion(extract_requirement(stated), stated.value, missing, trust, errors, doubt=stated.doubt)
+    row.update(again.model_copy(update={"readings": stated.readings}).model_dump(mode="json"))
 
 
 def failing(results: Tree) -> list[Tree]:
@@ -237,33 +238,31 @@ def lower_uplift(results: Tree, _: random.Random) -> None:
     regrade(results)
 
 
-def scale_signals(case: Tree, factor: float) -> None:
-    """Scale the force of the embedded signals, and draw its curves again."""
+def follow_signals(case: Tree, change: Callable[[RealArray], RealArray]) -> None:
+    """Change the force of the embedded signals, and make every number that follows from it again."""
     for part in case["signals"]["pantographs"].values():
-        force = PackedSamples.model_validate(part["force_N"]).unpack()
-        part["force_N"] = pack_samples(factor * force).model_dump()
+        force = change(PackedSamples.model_validate(part["force_N"]).unpack())
+        part["force_N"] = pack_samples(force).model_dump()
     samples = SignalSamples.model_validate(case["signals"])
     signals = unpack_signals(samples, Filter.model_validate(case["run"]["filter"]))
+    for owner, values in key_by_owner(select_finite(signals.evaluation.values)).items():
+        case["quantities"][owner].update(values)
+    for row in [*case["criteria"], *((case["verification"] or {}).get("criteria") or [])]:
+        value = case["quantities"].get(str(row["pantograph"]), {}).get(row["quantity"])
+        if value is not None and row["value"] is not None:
+            row["draws"] = [draw + value - row["value"] for draw in row.get("draws", ())]
+            row["value"] = value
     supports = [support for trace in case["traces"].values() for support in trace["supports_m"]]
     traces = build_pantograph_traces(signals.pantographs, sorted(set(supports)))
     case["traces"] = {key: trace.model_dump(mode="json") for key, trace in traces.items()}
+    for key, places in find_force_places(signals.pantographs).items():
+        case["places"][key].update({name: place.model_dump(mode="json") for name, place in places.items()})
 
 
 def invent(results: Tree, chance: random.Random) -> None:
-    """Scale every force of quantities, signals and curves, so that all numbers stay consistent."""
+    """Scale every force, so that all numbers stay consistent."""
     factor = 1 - 1e-3 * chance.random()
-    case = case_of(results)
-    names = [
-        name for name in case["quantities"]["1"] if name.endswith("_N") and name.startswith(("rms", "std", "mean"))
-    ]
-    names += ["statistical_max_N", "statistical_min_N", "max_force_N", "min_force_N"]
-    for name in names:
-        case["quantities"]["1"][name] *= factor
-    for row in [*case["criteria"], *((case["verification"] or {}).get("criteria") or [])]:
-        if row["quantity"] in names:
-            row["value"] *= factor
-            row["draws"] = [factor * draw for draw in row.get("draws", ())]
-    scale_signals(case, factor)
+    follow_signals(case_of(results), lambda force: factor * force)
     regrade(results)
     adopt_widths(case_of(results))
 
@@ -372,11 +371,4 @@ CHANGES: dict[str, Change] = {
     "administrative data": of_results(administration={"issuer": "Notified body", "report_number": "1"}),
     "all forces scaled, regraded": invent,
 }
-"""Kinds of forged results by name."""
-
-
-def forge_results(results: Tree, name: str, seed: int) -> Tree:
-    """Results with one kind of forgery."""
-    forged = copy.deepcopy(results)
-    CHANGES[name](forged, random.Random(f"{seed} {name}"))
-    return Results.model_validate(forged).to_dict()
+"""Kinds of forged results by name, without those of `raised_statements.py`."""

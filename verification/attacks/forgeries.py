@@ -18,8 +18,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,19 +35,21 @@ from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.document import encode_attachment, encode_data_block
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from verification.attacks.forged_pages import HTML_FORGERIES
 from verification.attacks.forged_pdfs import PDF_FORGERIES, replace_attachment
-from verification.attacks.forged_results import CHANGES, forge_results
+from verification.attacks.raised_statements import EVERY_CHANGE, STATE_CHANGES, forge_results
 
 SEED = 20261122
 CASE = "en50318-2002/250"
 
 OUTSIDE = {
     "limits widened and stated": "page 1 names the limits of the user",
+    "unconfirmed records accepted": "page 1 names the accepted system",
     "trust of the run": "page 1 states the trust; the verdict is `info`",
     "case for information": "page 1 names the case; the verdict is `info`",
     "uncertainty divided by ten": "",
@@ -102,17 +103,18 @@ def build_genuine(results: dict[str, Any]) -> Genuine:
     return Genuine(results, render_pdf(certificate), render_html(certificate))
 
 
-def run_failing(folder: Path) -> dict[str, Any]:
-    """Results of a record that fails: another start of the train, where the standard deviation is below its limit.
-
-    Args:
-        folder: Folder of the record, `run.h5`.
-    """
+def simulate_failing() -> Record:
+    """Record that fails: another start of the train, where the standard deviation is below its limit."""
     path = library_folder() / f"{CASE}.toml"
     simulated = ReferenceSimulator().run_unrefined(load_case(path, parse_changes(["start_m=120"]))).record
     assert simulated is not None
-    write_record(folder / "run.h5", simulated, case=CASE, system={"name": "Simulator A", "version": "1"}, run={})
-    return run_cases([load_case(path)], open_record_folder(folder)).to_dict()
+    return simulated
+
+
+def grade_record(record: Record, folder: Path) -> dict[str, Any]:
+    """Results of a record, which is written into a folder as `run.h5`."""
+    write_record(folder / "run.h5", record, case=CASE, system={"name": "Simulator A", "version": "1"}, run={})
+    return run_cases([load_case(library_folder() / f"{CASE}.toml")], open_record_folder(folder)).to_dict()
 
 
 def list_result_forgeries(genuine: Genuine, kind: str, seed: int) -> Iterator[tuple[str, bytes, str]]:
@@ -142,7 +144,7 @@ def list_result_forgeries(genuine: Genuine, kind: str, seed: int) -> Iterator[tu
 
 def list_forgeries(genuine: Genuine, kind: str, seed: int) -> Iterator[tuple[str, bytes, str]]:
     """Forged files of one kind: carrier, content and suffix; parameters as in `list_result_forgeries`."""
-    if kind in CHANGES:
+    if kind in EVERY_CHANGE:
         yield from list_result_forgeries(genuine, kind, seed)
     if kind in PDF_FORGERIES:
         yield "PDF", PDF_FORGERIES[kind](genuine.pdf, random.Random(f"{seed} {kind}")), "pdf"
@@ -187,7 +189,7 @@ def name_checks(checks: tuple[DocumentCheck, ...], outcome: str) -> str:
 
 def check_outside(kind: str, genuine: Genuine, built_in: dict[str, Any], folder: Path, seed: int) -> tuple[str, str]:
     """Outcomes of `--record` and `--rerun` for a kind that the document alone does not show."""
-    if kind not in CHANGES:
+    if kind not in EVERY_CHANGE:
         return "-", "-"
     forged = Results.model_validate(forge_results(genuine.results, kind, seed))
     again = Results.model_validate(forge_results(built_in, kind, seed))
@@ -211,9 +213,9 @@ CARRIERS = ("results.json", "PDF, attachment alone", "PDF made again", "HTML, da
 
 def print_tables(attempts: list[Attempt], others: dict[str, tuple[str, str]]) -> None:
     """Print the tables of docs/forgeries.md: forged results, PDFs and HTML pages, and kinds that are consistent."""
-    results = {item.kind for item in attempts if item.kind in CHANGES}
+    results = {item.kind for item in attempts if item.kind in EVERY_CHANGE}
     outcomes = {(item.kind, item.carrier): item.outcome for item in attempts}
-    rows = [[kind, *(outcomes.get((kind, carrier), "not possible") for carrier in CARRIERS)] for kind in CHANGES]
+    rows = [[kind, *(outcomes.get((kind, carrier), "not possible") for carrier in CARRIERS)] for kind in EVERY_CHANGE]
     _print_table(["kind", "`results.json`", *CARRIERS[1:]], [row for row in rows if row[0] in results])
     for carrier in ("PDF", "HTML"):
         _print_table(["kind", "outcome"], [[item.kind, item.outcome] for item in attempts if item.carrier == carrier])
@@ -234,21 +236,28 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        genuine = build_genuine(run_failing(folder))
-        for content, suffix in ((genuine.pdf, "pdf"), (genuine.html.encode(), "html")):
+        record, bare_folder = simulate_failing(), folder / "bare"
+        genuine = build_genuine(grade_record(record, folder))
+        # Kinds that raise the state of a record need one that is not confirmed: it has no contact height.
+        bare = build_genuine(grade_record(replace(record, contact_height=None), bare_folder))
+        for content, suffix in ((genuine.pdf, "pdf"), (genuine.html.encode(), "html"), (bare.pdf, "pdf")):
             assert verify_content(content, suffix, folder).consistent
-        kinds = [kind for kind in (*CHANGES, *PDF_FORGERIES, *HTML_FORGERIES) if options.only in kind]
+        kinds = [kind for kind in (*EVERY_CHANGE, *PDF_FORGERIES, *HTML_FORGERIES) if options.only in kind]
         attempts = []
         with ProcessPoolExecutor(options.jobs, multiprocessing.get_context("spawn")) as pool:
-            run = partial(attempt_kind, genuine, seed=options.seed)
-            for found in pool.map(run, dict.fromkeys(kinds)):
+            chosen = list(dict.fromkeys(kinds))
+            bases = [bare if kind in STATE_CHANGES else genuine for kind in chosen]
+            for found in pool.map(attempt_kind, bases, chosen, [options.seed] * len(chosen)):
                 attempts += found
                 for item in found:
                     print(f"{item.kind:36s} {item.carrier:22s} {item.outcome}", flush=True)
         missed = list(dict.fromkeys(item.kind for item in attempts if item.outcome == "consistent"))
         case = load_case(library_folder() / f"{CASE}.toml")
         built_in = run_cases([case], ReferenceSimulator()).to_dict() if missed else {}
-        others = {kind: check_outside(kind, genuine, built_in, folder, options.seed) for kind in missed}
+        others = {}
+        for kind in missed:
+            base, place = (bare, bare_folder) if kind in STATE_CHANGES else (genuine, folder)
+            others[kind] = check_outside(kind, base, built_in, place, options.seed)
     print(Counter(item.outcome for item in attempts))
     print_tables(attempts, others)
     unexpected = [kind for kind in missed if kind not in OUTSIDE]

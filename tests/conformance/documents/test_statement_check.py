@@ -1,0 +1,82 @@
+"""Statements that other parts determine: reasons, places and dates are found where they do not follow."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+
+from pantocheck.conformance.documents.document_reading import ResultsFile
+from pantocheck.conformance.documents.statement_check import FAST_CLOCK, check_date
+from pantocheck.conformance.documents.verification import verify_certificate
+from pantocheck.conformance.grading.results_building import TIME_FORMAT
+from pantocheck.conformance.results.results_format import Results
+
+Tree = dict[str, Any]
+NOTE = "Verified by an independent assessor."
+
+
+def case_of(tree: Tree) -> Tree:
+    case: Tree = tree["cases"][0]
+    return case
+
+
+def failing(tree: Tree) -> Tree:
+    return next(row for row in case_of(tree)["criteria"] if row["verdict"] == "fail")
+
+
+CHANGES: dict[str, tuple[Callable[[Tree], object], str]] = {
+    "case twice": (lambda t: t["cases"].append(case_of(t)), "the case en50318-2002/250 occurs 2 times"),
+    "note": (lambda t: case_of(t)["notes"].append(NOTE), "is none of the library"),
+    "future": (lambda t: t.update(started="2999-01-01T00:00:00Z"), "in the future: the clock of this machine shows"),
+    "date": (lambda t: t.update(started="yesterday"), "'yesterday' is no time such as"),
+    "reason of a case": (lambda t: case_of(t).update(reason="passed"), "does not follow from the checks of the record"),
+    "demand": (lambda t: case_of(t)["record"].update(demanded=False), "which only a profile can state"),
+    "reason": (lambda t: failing(t).update(reason=None), "reason 'None' stated, '"),
+    "place": (lambda t: failing(t).update(where={"record": "A"}), "which only a comparison has"),
+    "uncertain limit": (lambda t: failing(t).update(limit_uncertainty=None), "which only a comparison has"),
+    "change along the line": (lambda t: failing(t).update(spread=7.0), "change along the line 7 stated"),
+    "verification twice": (
+        lambda t: case_of(t)["verification"]["criteria"].append(case_of(t)["verification"]["criteria"][-1]),
+        "a criterion of the verification occurs twice",
+    ),
+    "second formulation": (
+        lambda t: case_of(t)["verification"].update(confirmed_by="a line"), "verification: omitted quantities, second"
+    ),
+    "source of verification": (
+        lambda t: case_of(t)["verification"]["criteria"][0].update(source="a line"), "trust or source of the limit",
+    ),
+    "edition": (lambda t: case_of(t).update(edition=None), "edition: EN 50318:2002 in the library, nothing"),
+    "weakened limit": (lambda t: case_of(t)["limit_changes"].append("A"), "but the limits are those of the library"),
+    "digest of limits": (lambda t: case_of(t).update(limits_digest="A"), "digest of the limits: another one"),
+    "height": (
+        lambda t: case_of(t)["signals"]["pantographs"]["1"].update(contact_height_m=None),
+        "confirmed without a contact height",
+    ),
+}  # fmt: skip
+
+
+def list_contradictions(tree: Tree) -> tuple[str, ...]:
+    results = Results.model_validate(tree)
+    return verify_certificate(ResultsFile("results.json", results.to_json(), results)).discrepancies
+
+
+def test_genuine_results_have_no_contradiction(wave_results: Results) -> None:
+    assert list_contradictions(wave_results.to_dict()) == ()
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_statement_that_does_not_follow_is_found(name: str, wave_results: Results) -> None:
+    change, text = CHANGES[name]
+    tree = wave_results.to_dict()
+    change(tree)
+    found = list_contradictions(tree)
+    assert any(text in line for line in found), found
+
+
+def test_date_may_be_a_day_ahead_of_the_clock() -> None:
+    """A minute before and after the accepted difference: the test needs less time than that."""
+    limit = datetime.now(UTC) + FAST_CLOCK
+    for minutes, count in ((-1, 0), (1, 1)):
+        assert len([*check_date((limit + timedelta(minutes=minutes)).strftime(TIME_FORMAT))]) == count
+    assert list(check_date(None)) == []
