@@ -7,7 +7,7 @@ is a contradiction. Where they do not, the texts are compared, and the check sta
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from html import unescape
 from html.parser import HTMLParser
@@ -32,10 +32,13 @@ from pantocheck.conformance.documents.document_reading import (
     list_version_differences,
 )
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
+from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.pages.two_verdicts import mark_results
 from pantocheck.conformance.pages.words import name_verdict
+from pantocheck.conformance.results.report_files import LANGUAGES, Language
 
 # Parts of an HTML page that could run, fetch or hide something.
 ACTIVE_ELEMENTS = frozenset(
@@ -141,6 +144,9 @@ def _count(number: int) -> str:
 # Comparison of an HTML page with the one that its results give: tags, attributes and texts in their order.
 TITLE = re.compile("<title>([^<]*)</title>")
 
+LANGUAGE = re.compile(r'<html lang="([a-z]+)">')
+"""Language of an HTML page."""
+
 DATE = re.compile('<meta name="dcterms.created" content="([0-9: -]+UTC)">')
 
 
@@ -238,8 +244,8 @@ def _compare(document: Certificate) -> PageDifferences:
             same = content == results.to_json()
             text = "the file is not as Pantocheck writes it: keys, their order, digits or spaces differ"
             return PageDifferences(same, (text,))
-        case HtmlCertificate(_, text, results):
-            page = render_html(build_dated_certificate(results, read_html_date(text)))
+        case HtmlCertificate(_, text):
+            page = render_html(_build_certificate(document, read_html_date(text)))
             if text == page:
                 return PageDifferences(True)
             return PageDifferences(
@@ -258,7 +264,7 @@ def _compare_pdf(document: PdfCertificate) -> PageDifferences:
     from pantocheck.conformance.documents.pdf_check import compare_pdfs, list_foreign_parts, read_date
 
     date = read_date(document.reader, document.name)
-    page = render_pdf(build_dated_certificate(document.results, date))
+    page = render_pdf(_build_certificate(document, date))
     if document.original == page:
         return PageDifferences(True)
     foreign = tuple(list_foreign_parts(document.reader, document.original))
@@ -266,9 +272,32 @@ def _compare_pdf(document: PdfCertificate) -> PageDifferences:
     return PageDifferences(False, (*foreign, *found), tuple(texts), foreign)
 
 
+def _build_certificate(document: HtmlCertificate | PdfCertificate, date: int) -> Document:
+    """Certificate of the results of a document, in the language that the document states."""
+    return replace(build_dated_certificate(document.results, date), language=_read_language(document))
+
+
+def _read_language(document: Certificate) -> Language:
+    """Language that a document states; English if it states none of the suite."""
+    match document:
+        case ResultsFile():
+            stated = ""
+        case HtmlCertificate(_, text):
+            found = LANGUAGE.search(text)
+            stated = found.group(1) if found else ""
+        case PdfCertificate():
+            from pantocheck.conformance.documents.pdf_check import read_language
+
+            stated = read_language(document.reader)
+        case never:
+            assert_never(never)
+    return next((language for language in LANGUAGES if language == stated), LANGUAGES[0])
+
+
 def _find_other_verdict(document: Certificate) -> Iterator[str]:
     """Title and heading of every version name the verdict."""
-    word = name_verdict(mark_results(document.results))
+    language = _read_language(document)
+    word = translate(name_verdict(mark_results(document.results)), language).text
     match document:
         case ResultsFile():
             return
@@ -277,7 +306,7 @@ def _find_other_verdict(document: Certificate) -> Iterator[str]:
         case PdfCertificate():
             from pantocheck.conformance.documents.pdf_check import read_title_and_heading
 
-            title, heading = read_title_and_heading(document.reader, HEADING)
+            title, heading = read_title_and_heading(document.reader, translate(HEADING, language).text)
         case never:
             assert_never(never)
     if not title.startswith(word):

@@ -110,6 +110,11 @@ def read_date(reader: PdfReader, name: str) -> int:
         raise InputError(name, "has a date of creation that is not a date", "Request the certificate again.") from None
 
 
+def read_language(reader: PdfReader) -> str:
+    """Language that a PDF states; empty if it states none."""
+    return str(reader.root_object.get("/Lang", ""))
+
+
 def read_title_and_heading(reader: PdfReader, beginning: str) -> tuple[str, str]:
     """Title in the metadata, and first line of the first page with a beginning; empty if there is none."""
     try:

@@ -25,7 +25,7 @@ from pantocheck.conformance.grading.case_verdict import Participation
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.administration import Administration
 from pantocheck.conformance.results.file_places import CasePlaces, FilePlace, LimitPlace, ReportPlaces
-from pantocheck.conformance.results.report_files import check_formats
+from pantocheck.conformance.results.report_files import Language, check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.program import split_arguments
 from pantocheck.conformance.runs.system import System
@@ -56,6 +56,8 @@ class Plan(InputTable):
     """Time limit of a program for a case [s]."""
     out: str = "report"
     """Folder of the results."""
+    language: Language = "en"
+    """Language of the certificate and of the summary: en, de, fr, it or es."""
     formats: Names | None = None
     """Formats of the report: html, pdf, json, csv, junit, md, badge, annotations, codequality; default: the first
     six, pdf only if the extra `pdf` is installed.

@@ -12,6 +12,7 @@ from datetime import datetime
 from typing import Any, Literal, TypeVar
 
 from pantocheck.conformance.core.reproducibility import read_source_date
+from pantocheck.conformance.results.report_files import Language
 from pantocheck.conformance.results.results_format import Results
 
 Row = TypeVar("Row")
@@ -257,6 +258,8 @@ class Document:
     """Results to be embedded in the HTML and in the PDF, which then bear the date; None: neither."""
     date: int = 0
     """Date of the document [s since 1970]; 0: not known."""
+    language: Language = "en"
+    """Language of its pages; its texts are English until a writer translates them."""
 
 
 def to_plain(value: Any) -> Any:

@@ -16,17 +16,24 @@ from markupsafe import Markup
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import BLOCK_ID, Document, encode_data_block, to_plain
+from pantocheck.conformance.pages.translation import translate, translate_document, translate_marked, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, read_words
+from pantocheck.conformance.results.report_files import LANGUAGES
 
 
 def render_html(document: Document) -> str:
     """HTML text of a document; its results are embedded as a data block."""
     # The encoded results hold no character that HTML interprets.
     block = None if document.results is None else Markup(encode_data_block(document.results))
-    code = read_plain_code() if document.results is None else read_results_code()
+    language = document.language
+    code = read_plain_code(language) if document.results is None else read_results_code(language)
     page = _build_environment().get_template("page.html")
+    words = read_words()
     return page.render(
-        document=bind_page_units(to_plain(replace(document, results=None))),
+        document=bind_page_units(to_plain(replace(translate_document(document), results=None))),
+        translate=lambda text: translate(text, language).text,
+        verdicts=translate_tree(words["verdict"], language),
+        trusts=translate_tree(words["trust"], language),
         styles=tuple(map(Markup, code.styles)),
         scripts=tuple(map(Markup, code.scripts)),
         policy=Markup(code.policy),
@@ -48,7 +55,6 @@ def _build_environment() -> Environment:
     )
     # Figures and drawings are made by this project, with every text escaped, and may enter the page as markup.
     environment.filters |= {"inline_svg": Markup, "inline_figure": _inline}
-    environment.globals |= {"verdicts": read_words()["verdict"], "trusts": read_words()["trust"]}
     return environment
 
 
@@ -98,16 +104,18 @@ class PageCode:
 
 
 @cache
-def read_plain_code() -> PageCode:
+def read_plain_code(language: str = LANGUAGES[0]) -> PageCode:
     """Styles and scripts of a page without results."""
-    return PageCode((_read(PAGE_STYLE),), (join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS))),))
+    script = join_scripts(name_scripts((*TABLE_SCRIPTS, *CHOICE_SCRIPTS)), language)
+    return PageCode((translate_marked(_read(PAGE_STYLE), language),), (script,))
 
 
 @cache
-def read_results_code() -> PageCode:
+def read_results_code(language: str = LANGUAGES[0]) -> PageCode:
     """Styles and scripts of a page with results, whose curves the library for plots draws."""
-    scripts = (_read(PLOT_LIBRARY), join_scripts(name_scripts((*TABLE_SCRIPTS, *CURVE_SCRIPTS))))
-    return PageCode((_read(PLOT_STYLE), _read(PAGE_STYLE)), scripts, f"uPlot: {_read(PLOT_LICENCE)}")
+    scripts = (_read(PLOT_LIBRARY), join_scripts(name_scripts((*TABLE_SCRIPTS, *CURVE_SCRIPTS)), language))
+    styles = (_read(PLOT_STYLE), translate_marked(_read(PAGE_STYLE), language))
+    return PageCode(styles, scripts, f"uPlot: {_read(PLOT_LICENCE)}")
 
 
 def _read(name: str) -> str:
@@ -119,9 +127,9 @@ def name_scripts(parts: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"scripts/{part}.js" for part in parts)
 
 
-def join_scripts(names: tuple[str, ...]) -> str:
+def join_scripts(names: tuple[str, ...], language: str = LANGUAGES[0]) -> str:
     """Files of templates as one script in one scope, so that their names do not reach the page."""
-    parts = map(_read, names)
+    parts = (translate_marked(_read(name), language) for name in names)
     return "\n".join(("(() => {", '"use strict";', *parts, "})();"))
 
 

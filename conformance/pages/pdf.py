@@ -13,6 +13,7 @@ from matplotlib.ft2font import FT2Font
 from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.document import NAME, Document, encode_attachment, to_plain
+from pantocheck.conformance.pages.translation import collect_marked, translate, translate_document, translate_tree
 from pantocheck.conformance.pages.words import bind_page_units, change_texts, read_words
 
 # Typst brings Libertinus Serif and DejaVu Sans Mono, matplotlib DejaVu Sans. No font of the machine is used.
@@ -26,13 +27,15 @@ def render_pdf(document: Document) -> bytes:
     printed as U+FFFD; the embedded results keep it.
     """
     words = read_words()
-    data = {
-        "document": bind_page_units(to_plain(replace(document, results=None))),
-        "attachment": None,
-        "verdicts": words["verdict"],
-        "trusts": words["trust"],
-    }
     files = {name: (TEMPLATES / name).read_bytes() for name in ("page.typ", "elements.typ")}
+    data = {
+        "document": bind_page_units(to_plain(replace(translate_document(document), results=None))),
+        "attachment": None,
+        "verdicts": translate_tree(words["verdict"], document.language),
+        "trusts": translate_tree(words["trust"], document.language),
+        "texts": collect_marked(b"".join(files.values()).decode(), document.language)
+        | {name: translate(name, document.language).text for name in words["trust"]},
+    }
     if document.results is not None:
         data["attachment"] = NAME
         files[NAME] = encode_attachment(document.results)

@@ -4,6 +4,7 @@ Functions import the writers that they need, because matplotlib, Typst and the t
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pantocheck.conformance.core.extras import install_line, is_installed
@@ -11,7 +12,7 @@ from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.reproducibility import read_source_date
 from pantocheck.conformance.pages.document import Document, strip_times
 from pantocheck.conformance.results.file_places import ReportPlaces
-from pantocheck.conformance.results.report_files import FILES
+from pantocheck.conformance.results.report_files import FILES, Language
 from pantocheck.conformance.results.results_format import Results
 
 NO_PLACES = ReportPlaces()
@@ -62,7 +63,13 @@ def write_document(document: Document, stem: Path) -> list[Path]:
     return files
 
 
-def write_all(results: "Results", folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> list[Path]:
+def write_all(
+    results: "Results",
+    folder: Path,
+    formats: Sequence[str],
+    places: ReportPlaces = NO_PLACES,
+    language: Language = "en",
+) -> list[Path]:
     """Write results in several formats.
 
     Args:
@@ -70,17 +77,24 @@ def write_all(results: "Results", folder: Path, formats: Sequence[str], places: 
         folder: Folder of the files.
         formats: Names of formats, keys of `FILES`.
         places: Places of cases and limits in the files of the user, for annotations.
+        language: Language of certificate and summary; the formats for programs are English.
 
     Raises:
         InputError: A file cannot be written.
     """
     if "json" in formats:
         write_atomically(folder / FILES["json"], results.to_json())
-    write_pages(results, folder, formats, places)
+    write_pages(results, folder, formats, places, language)
     return [folder / FILES[name] for name in formats]
 
 
-def write_pages(results: Results, folder: Path, formats: Sequence[str], places: ReportPlaces = NO_PLACES) -> None:
+def write_pages(
+    results: Results,
+    folder: Path,
+    formats: Sequence[str],
+    places: ReportPlaces = NO_PLACES,
+    language: Language = "en",
+) -> None:
     """Write every format but results.json; the certificate is composed once for all its formats.
 
     If the environment sets `SOURCE_DATE_EPOCH`, the times of the run are left out, so that a second run of the same
@@ -93,13 +107,13 @@ def write_pages(results: Results, folder: Path, formats: Sequence[str], places: 
     if pages:
         from pantocheck.conformance.pages.certificate_page import build_certificate
 
-        certificate = build_certificate(results)
+        certificate = replace(build_certificate(results), language=language)
         for name in pages:
             write_report(certificate, folder / FILES[name])
     if "md" in formats:
         from pantocheck.conformance.pages.certificate_page import build_summary
 
-        write_report(build_summary(results, certificates), folder / FILES["md"])
+        write_report(replace(build_summary(results, certificates), language=language), folder / FILES["md"])
     if "junit" in formats:
         from pantocheck.conformance.pages.ci_reports import render_junit
 

@@ -1,9 +1,16 @@
 """Files of a report: one for each format, and the formats of a run that states none."""
 
 from collections.abc import Sequence
+from typing import Literal, get_args
 
 from pantocheck.conformance.core.extras import is_installed, require_package
 from pantocheck.conformance.core.input_error import InputError, suggest_names
+
+Language = Literal["en", "de", "fr", "it", "es"]
+"""Language of a certificate and of its summary."""
+
+LANGUAGES: tuple[Language, ...] = get_args(Language)
+"""All languages; the first one is that of the source texts."""
 
 FILES = {
     "html": "certificate.html",

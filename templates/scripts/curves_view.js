@@ -4,7 +4,7 @@
 class CurvesView {
   constructor(content, table) {
     this.plot = new Plot(content);
-    this.tools = [...this.plot.makeButtons(), saveButton("Curves as CSV", table.name, table.headings, table.makeRows)];
+    this.tools = [...this.plot.makeButtons(), saveButton(translate("Curves as CSV"), table.name, table.headings, table.makeRows)];
     this.parts = [this.plot.element];
   }
 

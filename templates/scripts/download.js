@@ -43,5 +43,5 @@ const QUANTITY_HEADINGS = ["case", "pantograph", "quantity", "item", "value", "u
 document
   .querySelector("main > header")
   .after(
-    element("div", { class: "tools" }, saveButton("Quantities as CSV", "quantities", QUANTITY_HEADINGS, quantityRows)),
+    element("div", { class: "tools" }, saveButton(translate("Quantities as CSV"), "quantities", QUANTITY_HEADINGS, quantityRows)),
   );

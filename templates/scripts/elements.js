@@ -7,3 +7,8 @@ function element(name, attributes = {}, ...children) {
   made.append(...children);
   return made;
 }
+
+/** A text with its arguments, such as `{n}`. Writing a page replaces each call of `translate` by the text in its language. */
+function fill(text, values) {
+  return text.replace(/\{(\w+)\}/g, (_, name) => values[name]);
+}

@@ -8,13 +8,13 @@ function level(label, value, count, style) {
 /** Curves of a force: that of the reference behind it, as delivered, filtered, and its levels. */
 function forceCurves(trace, reference) {
   const count = trace.position_m.length;
-  const curves = reference.length ? [{ label: "reference, 0–20 Hz", values: reference, colour: "curve-2", width: 2 }] : [];
-  curves.push({ label: "unfiltered", values: trace.force_N, colour: "faint", width: 1 });
+  const curves = reference.length ? [{ label: translate("reference, 0–20 Hz"), values: reference, colour: "curve-2", width: 2 }] : [];
+  curves.push({ label: translate("unfiltered"), values: trace.force_N, colour: "faint", width: 1 });
   if (trace.force_20_N) curves.push({ label: "0–20 Hz", values: trace.force_20_N, colour: "ink", width: 2 });
   if (trace.std_N !== null) {
-    curves.push(level("mean", trace.mean_N, count, { colour: "ink", dash: [9, 3, 2, 3] }));
-    curves.push(level("mean + 3 σ", trace.mean_N + 3 * trace.std_N, count, { colour: "ink", dash: [6, 3] }));
-    curves.push(level("mean − 3 σ", trace.mean_N - 3 * trace.std_N, count, { colour: "ink", dash: [3, 3] }));
+    curves.push(level(translate("mean"), trace.mean_N, count, { colour: "ink", dash: [9, 3, 2, 3] }));
+    curves.push(level(translate("mean + 3 σ"), trace.mean_N + 3 * trace.std_N, count, { colour: "ink", dash: [6, 3] }));
+    curves.push(level(translate("mean − 3 σ"), trace.mean_N - 3 * trace.std_N, count, { colour: "ink", dash: [3, 3] }));
   }
   return curves;
 }
@@ -30,12 +30,16 @@ function traceStep(shownCase, trace) {
 function describeResolution(shownCase, trace) {
   const step = traceStep(shownCase, trace);
   const count = trace.position_m.length;
-  if (step === null) return `The curves have ${count} points: of each few neighbouring samples, the lowest and the highest.`;
+  if (step === null) {
+    return fill(translate("The curves have {n} points: of each few neighbouring samples, the lowest and the highest."), { n: count });
+  }
   const rate = shownCase.run.rate_Hz;
   const nth = rate ? Math.max(1, Math.round(step * rate)) : 1;
-  const thinned = nth > 1 ? `one of ${nth} samples of the record, ` : "";
-  const mirrored = nth > 1 ? ` In its spectrum, parts of the force above ${formatNumber(0.5 / step)} Hz appear mirrored.` : "";
-  return `The curves have ${count} points: ${thinned}every ${formatNumber(1e3 * step, 3)} ms.${mirrored}`;
+  const facts = { n: count, n2: formatNumber(1e3 * step, 3), n3: nth, n4: formatNumber(0.5 / step) };
+  if (nth === 1) return fill(translate("The curves have {n} points: every {n2} ms."), facts);
+  const thinned = translate("The curves have {n} points: one of {n3} samples of the record, every {n2} ms.");
+  const mirrored = translate("In the spectrum of the curves, parts of the force above {n4} Hz appear mirrored.");
+  return fill(`${thinned} ${mirrored}`, facts);
 }
 
 /** View of the force of a figure. */
@@ -45,15 +49,15 @@ class ForceView {
     this.trace = this.case.traces[figure.dataset.owner];
     const { position_m: x, supports_m: lines } = this.trace;
     const reference = this.case.reference?.force_20_N[figure.dataset.owner] ?? [];
-    const name = `pantograph ${figure.dataset.owner}`;
+    const name = fill(translate("pantograph {n}"), { n: figure.dataset.owner });
     this.plot = new Plot({
-      ...{ label: `Contact force of ${name}`, xLabel: "position along the track [m]", xUnit: "m", yLabel: "contact force [N]" },
-      ...{ yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
+      ...{ label: fill(translate("Contact force of {t}"), { t: name }), xLabel: translate("position along the track [m]") },
+      ...{ xUnit: "m", yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, lines, curves: forceCurves(this.trace, reference) },
     });
     const headings = ["position_m", "force_N", "force_20_N", ...(reference.length ? ["reference_force_20_N"] : [])];
     const beside = (i) => (reference.length ? [reference[i]] : []);
     const makeRows = () => x.map((place, i) => [place, this.trace.force_N[i], this.trace.force_20_N?.[i], ...beside(i)]);
-    const save = saveButton("Curves as CSV", fileName(this.case, name, "force"), headings, makeRows);
+    const save = saveButton(translate("Curves as CSV"), fileName(this.case, name, "force"), headings, makeRows);
     this.tools = [...this.plot.makeButtons(), save];
     const note = element("p", { class: "small" }, describeResolution(this.case, this.trace));
     this.parts = [this.plot.element, note, element("div", { class: "pair" }, ...this.makeSpectrum(name), ...this.makeSpans(name))];
@@ -64,8 +68,9 @@ class ForceView {
     this.step = traceStep(this.case, this.trace);
     if (this.step === null) return [];
     this.spectrum = new Plot({
-      ...{ label: `Amplitude spectrum of the force of ${name}`, xLabel: "frequency [Hz]", xUnit: "Hz", yLabel: "amplitude [N]" },
-      ...{ yUnit: "N", height: 230, lines: [5, 20], x: [0, HIGHEST_HZ], curves: [{ label: "amplitude", values: [0, 0], colour: "ink" }] },
+      ...{ label: fill(translate("Amplitude spectrum of the force of {t}"), { t: name }), xLabel: translate("frequency [Hz]") },
+      ...{ xUnit: "Hz", yLabel: translate("amplitude [N]"), yUnit: "N", height: 230, lines: [5, 20], x: [0, HIGHEST_HZ] },
+      curves: [{ label: translate("amplitude"), values: [0, 0], colour: "ink" }],
     });
     this.spectrumTitle = element("p", { class: "small" });
     return [element("div", {}, this.spectrumTitle, this.spectrum.element)];
@@ -80,10 +85,10 @@ class ForceView {
       ...{ label: `${formatNumber(start, 6)}–${formatNumber(end, 6)} m`, values: force, ...curveStyle(number) },
     }));
     this.spans = new Plot({
-      ...{ label: `Spans of ${name}`, xLabel: "distance from the support [m]", xUnit: "m", yLabel: "contact force [N]" },
-      ...{ yUnit: "N", height: 230, x: distance, curves },
+      ...{ label: fill(translate("Spans of {t}"), { t: name }), xLabel: translate("distance from the support [m]"), xUnit: "m" },
+      ...{ yLabel: translate("contact force [N]"), yUnit: "N", height: 230, x: distance, curves },
     });
-    const title = `Spans over each other, ${filtered ? "0–20 Hz" : "unfiltered"}.`;
+    const title = filtered ? translate("Spans over each other, 0–20 Hz.") : translate("Spans over each other, unfiltered.");
     return [element("div", {}, element("p", { class: "small" }, title), this.spans.element)];
   }
 
@@ -99,12 +104,12 @@ class ForceView {
   updateSpectrum([start, end]) {
     const { position_m: position, force_N: force } = this.trace;
     const visible = force.filter((_, i) => position[i] >= start && position[i] <= end);
-    const stretch = `${formatNumber(Math.max(start, position[0]), 6)} m to ${formatNumber(Math.min(end, position.at(-1)), 6)} m`;
+    const [n, n2] = [Math.max(start, position[0]), Math.min(end, position.at(-1))].map((place) => formatNumber(place, 6));
     if (visible.length < FEWEST_SAMPLES) {
-      this.spectrumTitle.textContent = `The visible stretch, ${stretch}, is too short for a spectrum.`;
+      this.spectrumTitle.textContent = fill(translate("The visible stretch, {n} m to {n2} m, is too short for a spectrum."), { n, n2 });
       return;
     }
-    this.spectrumTitle.textContent = `Spectrum of the visible stretch, ${stretch}, unfiltered.`;
+    this.spectrumTitle.textContent = fill(translate("Spectrum of the visible stretch, {n} m to {n2} m, unfiltered."), { n, n2 });
     const { frequency, amplitude } = amplitudeSpectrum(visible, this.step);
     this.spectrum.setCurves(frequency, [amplitude]);
   }

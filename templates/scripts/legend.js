@@ -24,7 +24,7 @@ class Legend {
       box.addEventListener("change", () => plot.canvas.setSeries(number + 1, { show: box.checked }));
       return element("label", {}, box, makeSample(curve), ` ${curve.label} `, this.values[number]);
     });
-    const label = `Curves: ${plot.content.label}`;
+    const label = fill(translate("Curves: {t}"), { t: plot.content.label });
     this.element = element("div", { class: "legend", role: "group", "aria-label": label }, this.place, ...switches);
   }
 
@@ -32,7 +32,7 @@ class Legend {
   showValues() {
     const { canvas, content } = this.plot;
     const index = canvas.cursor.idx ?? null;
-    this.place.value = index === null ? "" : `at ${formatNumber(canvas.data[0][index], 6)} ${content.xUnit}`;
+    this.place.value = index === null ? "" : fill(translate("at {x}"), { x: `${formatNumber(canvas.data[0][index], 6)} ${content.xUnit}` });
     this.values.forEach((value, number) => {
       value.value = index === null ? "" : `${formatNumber(canvas.data[number + 1][index])} ${content.yUnit}`;
     });

@@ -5,16 +5,16 @@ function viewMeasured(figure) {
   const shownCase = caseOf(figure);
   const { position_m: x, simulated_N, measured_N, spans } = shownCase.comparison.pantographs[figure.dataset.owner];
   const difference = simulated_N.map((force, i) => force - measured_N[i]);
-  const name = `pantograph ${figure.dataset.owner}`;
+  const name = fill(translate("pantograph {n}"), { n: figure.dataset.owner });
   const curves = [
-    { label: "simulated", values: simulated_N, colour: "ink" },
-    { label: "measured", values: measured_N, colour: "curve-3", dash: [7, 3] },
-    { label: "simulated − measured", values: difference, colour: "curve-2", width: 1 },
+    { label: translate("simulated"), values: simulated_N, colour: "ink" },
+    { label: translate("measured"), values: measured_N, colour: "curve-3", dash: [7, 3] },
+    { label: translate("simulated − measured"), values: difference, colour: "curve-2", width: 1 },
   ];
   return new CurvesView(
     {
-      ...{ label: `Simulated and measured force of ${name}`, xLabel: "position along the track [m]", xUnit: "m" },
-      ...{ yLabel: "contact force [N]", yUnit: "N", height: 300, x, curves },
+      ...{ label: fill(translate("Simulated and measured force of {t}"), { t: name }), xLabel: translate("position along the track [m]"), xUnit: "m" },
+      ...{ yLabel: translate("contact force [N]"), yUnit: "N", height: 300, x, curves },
       lines: [...new Set(spans.flatMap(({ start_m, end_m }) => [start_m, end_m]))],
     },
     {

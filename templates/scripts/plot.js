@@ -30,7 +30,8 @@ class Plot {
 
   /** Name of the plot for screen readers, with its keys. */
   describe() {
-    return `${this.content.label}. Arrow keys read values, with shift they move the stretch; plus and minus zoom; home shows all.`;
+    const keys = translate("Arrow keys read values, with shift they move the stretch; plus and minus zoom; home shows all.");
+    return `${this.content.label}. ${keys}`;
   }
 
   /** Draw the plot in its place of the page, which must be visible. */
@@ -131,11 +132,11 @@ class Plot {
   /** Buttons for zoom and pan. */
   makeButtons() {
     const buttons = {
-      "−": ["Zoom out", () => this.zoom(1 / ZOOM_FACTOR)],
-      "+": ["Zoom in", () => this.zoom(ZOOM_FACTOR)],
-      "←": ["Move left", () => this.pan(-PAN_SHARE)],
-      "→": ["Move right", () => this.pan(PAN_SHARE)],
-      "Show all": ["Show all", () => this.showAll()],
+      "−": [translate("Zoom out"), () => this.zoom(1 / ZOOM_FACTOR)],
+      "+": [translate("Zoom in"), () => this.zoom(ZOOM_FACTOR)],
+      "←": [translate("Move left"), () => this.pan(-PAN_SHARE)],
+      "→": [translate("Move right"), () => this.pan(PAN_SHARE)],
+      [translate("Show all")]: [translate("Show all"), () => this.showAll()],
     };
     return Object.entries(buttons).map(([sign, [label, act]]) => {
       const button = element("button", { type: "button", title: label, "aria-label": label }, sign);

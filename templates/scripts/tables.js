@@ -67,13 +67,13 @@ function verdictSelection(rows, label) {
   const marks = new Map(rows.flatMap((row) => [...verdictsOfRow(row)]));
   if (marks.size < 2) return null;
   const options = [...marks].map(([verdict, word]) => element("option", { value: verdict }, word));
-  return element("select", { "aria-label": `Verdict, ${label}` }, element("option", { value: "" }, "all verdicts"), ...options);
+  return element("select", { "aria-label": fill(translate("Verdict, {t}"), { t: label }) }, element("option", { value: "" }, translate("all verdicts")), ...options);
 }
 
 /** Put fields above a table that leave only the rows with a text and a verdict. */
 function addFilter(table, rows) {
   const label = table.getAttribute("aria-label");
-  const field = element("input", { type: "search", placeholder: "Filter rows", "aria-label": `Filter rows, ${label}` });
+  const field = element("input", { type: "search", placeholder: translate("Filter rows"), "aria-label": fill(translate("Filter rows, {t}"), { t: label }) });
   const selection = verdictSelection(rows, label);
   const count = element("output", { role: "status" });
   const filter = () => {
@@ -84,7 +84,7 @@ function addFilter(table, rows) {
       row.classList.toggle("filtered", !fits);
       return fits;
     });
-    count.value = left.length < rows.length ? `${left.length} of ${rows.length} rows` : "";
+    count.value = left.length < rows.length ? fill(translate("{n} of {n2} rows"), { n: left.length, n2: rows.length }) : "";
   };
   for (const control of [field, selection]) control?.addEventListener("input", filter);
   table.parentElement.before(element("div", { class: "tools" }, ...[field, selection, count].filter(Boolean)));

@@ -7,7 +7,7 @@ const UPLIFT_STRETCH_S = 2;
 function upliftLimits(shownCase, count) {
   const limits = shownCase.criteria
     .filter((criterion) => criterion.quantity === "max_uplift_at_support_mm" && criterion.baseline === null)
-    .flatMap(({ lower, upper }) => [["lower limit", lower], ["upper limit", upper]])
+    .flatMap(({ lower, upper }) => [[translate("lower limit"), lower], [translate("upper limit"), upper]])
     .filter(([, value]) => value !== null);
   return [...new Map(limits.map(([label, value]) => [`${label} ${formatNumber(value)} mm`, value]))].map(([label, value]) =>
     level(label, value, count, { colour: "ink", dash: [6, 3] }),
@@ -20,11 +20,11 @@ function viewUplift(figure) {
   const supports = shownCase.uplift.filter((support) => support.time_s.length);
   const [x, ...uplift] = uPlot.join(supports.map((support) => [support.time_s, support.uplift_mm]));
   const curves = supports.map((support, number) => ({
-    ...{ label: `support at ${formatNumber(support.support_m, 6)} m`, values: uplift[number], ...curveStyle(number) },
+    ...{ label: fill(translate("support at {n} m"), { n: formatNumber(support.support_m, 6) }), values: uplift[number], ...curveStyle(number) },
   }));
   const view = new CurvesView(
     {
-      ...{ label: "Uplift at the supports", xLabel: "time [s]", xUnit: "s", yLabel: "uplift [mm]", yUnit: "mm", height: 260 },
+      ...{ label: translate("Uplift at the supports"), xLabel: translate("time [s]"), xUnit: "s", yLabel: translate("uplift [mm]"), yUnit: "mm", height: 260 },
       ...{ x, curves: [...curves, ...upliftLimits(shownCase, x.length)] },
     },
     {

@@ -9,11 +9,11 @@ const views = new Map();
 /** Put a view into its figure; on paper, and by its button, the static figure stands there. */
 function addView(figure) {
   const view = VIEWS[figure.dataset.curves](figure);
-  const still = element("button", { type: "button", "aria-pressed": "false" }, "Static figure");
+  const still = element("button", { type: "button", "aria-pressed": "false" }, translate("Static figure"));
   still.addEventListener("click", () => {
     still.setAttribute("aria-pressed", String(!figure.classList.toggle("viewed")));
   });
-  const hint = "Drag to zoom, with shift to move; two fingers zoom on a touch screen.";
+  const hint = translate("Drag to zoom, with shift to move; two fingers zoom on a touch screen.");
   const tools = element("div", { class: "tools" }, ...view.tools, still, element("span", { class: "hint" }, hint));
   figure.prepend(tools, element("div", { class: "view" }, ...view.parts));
   figure.classList.add("viewed");

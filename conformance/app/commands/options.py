@@ -19,7 +19,7 @@ from pantocheck.conformance.core.validation_messages import build_input_error
 from pantocheck.conformance.execution.plan import Plan, read_plan, split_names
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.results.administration import read_administration
-from pantocheck.conformance.results.report_files import DEFAULT_FORMATS
+from pantocheck.conformance.results.report_files import DEFAULT_FORMATS, LANGUAGES
 
 SetOption = Annotated[
     list[str] | None,
@@ -48,6 +48,10 @@ FormatsOption = Annotated[
         help="Formats to write, separated by commas: html, pdf, json, csv, junit, md, badge, annotations, codequality.",
         show_default=",".join(DEFAULT_FORMATS),
     ),
+]
+LanguageOption = Annotated[
+    str | None,
+    typer.Option(help=f"Language of certificate and summary: {', '.join(LANGUAGES)}.", show_default=LANGUAGES[0]),
 ]
 TrustOption = Annotated[
     str | None,
@@ -97,6 +101,7 @@ OPTIONS = {
     "drift_pct": "--drift",
     "decision": "--decision",
     "jobs": "--jobs",
+    "language": "--language",
     "timeout_s": "--timeout",
     "trust": "--trust",
 }

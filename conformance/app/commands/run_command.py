@@ -16,6 +16,7 @@ from pantocheck.conformance.app.commands.options import (
     DecisionOption,
     DriftOption,
     FormatsOption,
+    LanguageOption,
     OutOption,
     ReportNumberOption,
     SetOption,
@@ -67,6 +68,7 @@ def run_command(
     changed: SetOption = None,
     out: OutOption = None,
     formats: FormatsOption = None,
+    language: LanguageOption = None,
     trust: TrustOption = None,
     decision: DecisionOption = None,
     verdicts: VerdictsOption = None,
@@ -124,6 +126,7 @@ def run_command(
         system=system,
         out=out,
         formats=formats,
+        language=language,
         trust=trust,
         decision=decision,
         verdicts=verdicts,
@@ -154,7 +157,7 @@ def _run_plan(options: Plan, plan: Path | None, with_reference: bool) -> Command
         if prepared.baseline is not None:
             write_all(results, prepared.out, ("json",))  # kept if the comparison fails
             results = prepared.compare(results)
-        files = write_all(results, prepared.out, prepared.formats, places)
+        files = write_all(results, prepared.out, prepared.formats, places, options.language)
         remarks = remark_missing_formats(options.formats)
         exit_code = exit_code or interruption.exit_code or EXIT_CODES[results.verdict]
         return build_results_output(results, files, exit_code, remarks)
@@ -198,6 +201,7 @@ def assess_command(
     ] = None,
     out: OutOption = None,
     formats: FormatsOption = None,
+    language: LanguageOption = None,
     trust: TrustOption = None,
     decision: DecisionOption = None,
     limits: Annotated[
@@ -226,6 +230,7 @@ def assess_command(
     options = build_options(
         out=out,
         formats=formats,
+        language=language,
         trust=trust,
         decision=decision,
         drift_pct=drift,
@@ -258,6 +263,6 @@ def assess_command(
         if earlier is not None and baseline is not None:
             write_all(results, folder, ("json",))  # kept if the comparison fails
             results = compare_with_baseline(results, earlier, options.drift_pct, baseline.name)
-        files = write_all(results, folder, report_formats, places)
+        files = write_all(results, folder, report_formats, places, options.language)
         remarks = remark_missing_formats(options.formats)
         return build_results_output(results, files, interruption.exit_code or EXIT_CODES[results.verdict], remarks)

@@ -18,6 +18,7 @@ from pantocheck.conformance.app.commands.console import (
 from pantocheck.conformance.app.commands.options import (
     AdministrationOption,
     FormatsOption,
+    LanguageOption,
     OutOption,
     ReportNumberOption,
     build_options,
@@ -46,6 +47,7 @@ def validate_command(
     dossier: Annotated[Path, typer.Argument(metavar="DOSSIER.toml", help=f"Dossier: {DocumentationPage.VALIDATE}.")],
     out: OutOption = None,
     formats: FormatsOption = None,
+    language: LanguageOption = None,
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
     jobs: Annotated[int, typer.Option(help="Number of reference models that run in parallel.", min=1, max=256)] = 1,
@@ -58,7 +60,10 @@ def validate_command(
     Example: pantocheck validate dossier.toml --out validation
     """
     options = build_options(
-        out=out, formats=formats, administration=read_stated_administration(administration, report_number)
+        out=out,
+        formats=formats,
+        language=language,
+        administration=read_stated_administration(administration, report_number),
     )
     folder, report_formats = Path(options.out), check_formats(options.formats)
     content = read_dossier(dossier)
@@ -72,7 +77,7 @@ def validate_command(
         results, interrupted = interruption.results, interruption.exit_code
         typer.echo("Interrupted: the results of the finished steps are written.", err=True)
     results = results.model_copy(update={"administration": options.administration})
-    files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)))
+    files = write_all(results, folder, report_formats, ReportPlaces(FilePlace(dossier)), options.language)
     headline = escape_text(f" {build_headline(results)}")
     return CommandOutput(
         style_verdict(results.verdict) + headline,

@@ -17,7 +17,7 @@ from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.pages.report_writers import write_all
 from pantocheck.conformance.records.sidecar_tables import LineTable
-from pantocheck.conformance.results.report_files import check_formats
+from pantocheck.conformance.results.report_files import Language, check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results
 from pantocheck.conformance.runs.system_choice import choose_system
@@ -59,19 +59,20 @@ class GradedResults:
         rows = [step.model_dump(mode="json") for step in procedure.steps] if procedure is not None else []
         return tabulate_rows(rows, ("step", "required", "state", "verdict", "margin", "uncertainty", "reason"))
 
-    def write(self, folder: str | Path, formats: Sequence[str] | None = None) -> list[Path]:
+    def write(self, folder: str | Path, formats: Sequence[str] | None = None, language: Language = "en") -> list[Path]:
         """Write the report; returns the paths of its files.
 
         Args:
             folder: Folder of the files.
             formats: Formats: html, pdf, json, csv, junit, md, badge. None: all but badge; a warning tells if no PDF can
                 be written.
+            language: Language of certificate and summary: en, de, fr, it or es.
 
         Raises:
             InputError: A format does not exist or needs an extra that is not installed, or a file cannot be written.
         """
         warn_missing_formats(formats)
-        return write_all(self.results, Path(folder), check_formats(formats))
+        return write_all(self.results, Path(folder), check_formats(formats), language=language)
 
 
 def open_results(path: str | Path) -> GradedResults:

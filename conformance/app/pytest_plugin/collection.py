@@ -231,7 +231,7 @@ def write_certificates(config: pytest.Config, folder: Path) -> tuple[list[str], 
             continue
         (results, verdict), prepared = session_results, session.prepared
         not_passed |= verdict not in accepted
-        write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path))
+        write_all(results, prepared.out, prepared.formats, locate_plan(prepared.plan, path), prepared.plan.language)
         shown = next((FILES[name] for name in ("html", "pdf", "md") if name in prepared.formats), FILES["json"])
         lines.append(f"{path.name}: {results.verdict.upper()}: {build_headline(results)} {prepared.out / shown}")
         lines += (f"{path.name}: {remark}" for remark in remark_missing_formats(prepared.plan.formats))
