@@ -234,7 +234,7 @@ MEASURED: PlotStyle = {"color": GREY, "linewidth": 1.2, "linestyle": "--", "labe
 
 SPAN_STATISTICS: dict[str, Callable[[ForceStatistics], float]] = {
     "mean [N]": lambda run: run.mean_N,
-    "standard\ndeviation [N]": lambda run: run.std_N,
+    "σ [N]": lambda run: run.std_N,
 }
 """Statistics that the figure of the spans shows, by their labels."""
 

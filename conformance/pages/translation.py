@@ -1,8 +1,8 @@
 """Pages in another language: every text of a document is replaced by its entry in the catalogue of the language.
 
-The key of an entry is the English text. It may hold arguments: `{n}` stands for a number, `{x}` for a name or another
-part that stays as it is, and `{t}` for a text that is translated in turn; a digit behind the letter tells arguments
-apart. A text without an entry, such as the title of a user's case, stays as it is. Numbers never change.
+The key of an entry is the English text. It may hold arguments, which a digit tells apart: `{n}` is a number, `{x}` a
+name or another part that stays as it is, `{s}` a source, and `{t}` a text that is translated in turn. A text without an
+entry, such as the title of a user's case, stays as it is. Numbers never change.
 """
 
 import re
@@ -18,10 +18,10 @@ from pantocheck.conformance.pages.document import Code, CodeBlock, Document, Tru
 from pantocheck.conformance.pages.words import BOUND_UNITS
 from pantocheck.conformance.results.report_files import LANGUAGES
 
-ARGUMENT = re.compile(r"\{([ntx])\d*\}")
+ARGUMENT = re.compile(r"\{([nstx])\d*\}")
 """Argument of an entry."""
 
-PARTS = {"n": r"[-−+]?\d[\d.]*(?:e[-−+]?\d+)?", "x": r"(?:(?![.!?] [^\W\d_]|; ).)+?", "t": ".+?"}
+PARTS = {"n": r"[-−+]?\d[\d.]*(?:e[-−+]?\d+)?", "x": r"(?:(?![.!?] [^\W\d_]|; ).)+?", "s": ".+", "t": ".+?"}
 """Texts of arguments as regular expressions; `{x}` ends with its sentence or its item of a list."""
 
 WORD = re.compile(r"[^\W\d_]+")

@@ -1,11 +1,15 @@
 """Verifier for a browser: one HTML file that checks certificates without a network and without an installation."""
 
+import json
 from functools import cache
 from hashlib import sha256
 
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.html import PageCode, join_scripts
+from pantocheck.conformance.pages.translation import translate
+from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.results.report_files import LANGUAGES
 
 VERIFIER_NAME = "pantocheck-verifier.html"
 
@@ -18,10 +22,15 @@ VERIFIER_SCRIPTS = ("numbers", "signals", "grading", "checks", "revisions", "sig
 """Parts of its script, in the order of their use."""
 
 
+READ_WORDS = ("Case", "Digest of the results", "Pantograph", "Value", "Verdict")
+"""Labels that it reads on a page, besides the verdicts."""
+
+
 @cache
 def build_verifier(version: str) -> bytes:
     """The verifier of a version of the suite; equal versions give equal bytes."""
     script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
+    script = script.replace('"@languages@"', json.dumps(_list_read_words(), sort_keys=True))
     style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
     page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
     library = (SIGNATURE_LIBRARY / "pkijs.min.js").read_text("utf-8")
@@ -31,6 +40,12 @@ def build_verifier(version: str) -> bytes:
     for name, text in (parts | {"library": library}).items():
         page = page.replace(f"@{name}@", text)
     return page.encode()
+
+
+def _list_read_words() -> dict[str, dict[str, str]]:
+    """English words that the verifier reads on a page, by language and by their translations."""
+    words = (*READ_WORDS, *(verdict["word"] for verdict in read_words()["verdict"].values()))
+    return {name: {translate(word, name).text: word for word in words} for name in LANGUAGES[1:]}
 
 
 def describe_verifier(suite: Suite) -> str:

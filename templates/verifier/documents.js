@@ -44,6 +44,9 @@ async function readDocument(bytes) {
   return { kind: "JSON", text: decode(bytes) };
 }
 
+// English words of a page by their words in the language of the page.
+const LANGUAGES = "@languages@";
+
 const WORDS = {
   pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED",
 };
@@ -57,13 +60,16 @@ function isRounded(text, value) {
   return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
 }
 
+// English word of a printed verdict without its symbol.
+const readVerdict = (text, english) => english(text.trim().replace(/^[^\p{L}]+/u, "").toUpperCase());
+
 // Values and verdicts in the tables of a case, or in that of page 1: rows with the name of a quantity and a cell "Value".
-function checkTables(section, result) {
+function checkTables(section, result, english) {
   const found = [];
   let count = 0;
   for (const line of section?.querySelectorAll("tr") ?? []) {
     const [, name, item] = /^(.*?)(?:\[(\d+)\])?$/.exec(line.querySelector("th code")?.textContent ?? ""), cells = {};
-    for (const cell of line.querySelectorAll("td[data-label]")) cells[cell.dataset.label] = cell.textContent.trim();
+    for (const cell of line.querySelectorAll("td[data-label]")) cells[english(cell.dataset.label)] = cell.textContent.trim();
     if (!name || (cells.Case !== undefined && !cells.Case.endsWith(result.id)) || cells.Value === undefined || !findNumber(cells.Value)) continue;
     const anyone = cells.Pantograph === undefined, owner = /^\d+$/.test(cells.Pantograph ?? "") ? cells.Pantograph : "0";
     const stated = Object.keys(result.quantities).filter((key) => anyone || key === owner)
@@ -76,7 +82,7 @@ function checkTables(section, result) {
     }
     const rows = [...result.criteria, ...(result.verification?.criteria ?? [])]
       .filter((row) => row.quantity === name && (anyone || String(row.pantograph) === owner));
-    if (cells.Verdict && rows.length && !rows.some((row) => cells.Verdict.toUpperCase().includes(WORDS[row.verdict]))) {
+    if (cells.Verdict && rows.length && !rows.some((row) => readVerdict(cells.Verdict, english).startsWith(WORDS[row.verdict]))) {
       found.push(`${name}: the verdict '${cells.Verdict}' is printed, ${WORDS[rows[0].verdict]} follows from the results`);
     }
   }
@@ -86,16 +92,18 @@ function checkTables(section, result) {
 // Numbers printed on an HTML page against the results: title, digest, and the tables of graded values.
 function checkPage(page, digest, results) {
   const shown = new DOMParser().parseFromString(page, "text/html"), found = [], word = WORDS[results.verdict];
-  for (const [place, text] of [["title", shown.title], ["heading", shown.querySelector("h1")?.textContent ?? ""]]) {
-    if (!new RegExp(`\\b${word}\\b`).test(text)) found.push(`the ${place} does not print the verdict ${word}: '${text}'`);
+  const language = LANGUAGES[shown.documentElement.lang] ?? {}, english = (text) => language[text] ?? text;
+  const verdicts = [["title", shown.title.split(" – ")[0]], ["heading", shown.querySelector("h1")?.textContent.split(": ").pop() ?? ""]];
+  for (const [place, text] of verdicts) {
+    if (!readVerdict(text, english).startsWith(word)) found.push(`the ${place} does not print the verdict ${word}: '${text}'`);
   }
   const facts = [...shown.querySelectorAll("dl div")].map((row) => [...row.children].map((cell) => cell.textContent.trim()));
-  const printed = facts.find(([label]) => label === "Digest of the results")?.[1];
+  const printed = facts.find(([label]) => english(label) === "Digest of the results")?.[1];
   if (digest !== null && printed !== digest) {
     found.push(`the digest of the results is ${printed ?? "not printed"}; computed is ${digest}`);
   }
   const tables = results.cases.flatMap((result, i) => ["result", `case-${i + 1}`].map((anchor) =>
-    checkTables(shown.getElementById(anchor)?.closest("section"), result)));
+    checkTables(shown.getElementById(anchor)?.closest("section"), result, english)));
   const count = tables.reduce((sum, table) => sum + table.count, 0);
   return { found: [...found, ...tables.flatMap((table) => table.found)], count };
 }

@@ -6,6 +6,7 @@ import hashlib
 import re
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,12 @@ from helpers.verifier_page import Report, Verify
 from pantocheck.conformance import documents
 from pantocheck.conformance.documents.document_reading import read_certificate
 from pantocheck.conformance.documents.verification import verify_certificate
+from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.criteria_table import describe_criterion
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.pages.verifier_file import SIGNATURE_LIBRARY, VERIFIER_FOLDER, build_verifier
+from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
 from verification.attacks.forged_results import CHANGES
@@ -113,6 +118,27 @@ def test_changed_page_is_found(genuine: Genuine, verify: Verify, kind: str) -> N
     report = verify(changed.encode(), "certificate.html")
     assert report["state"] == "contradicted"
     assert any(message in line for check in report["checks"] for line in check["details"])
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("language", LANGUAGES[1:])
+def test_printed_numbers_and_verdicts_are_read_in_every_language(
+    genuine: Genuine, verify: Verify, language: Language
+) -> None:
+    certificate = build_certificate(Results.model_validate(genuine.results))
+    page = render_html(replace(certificate, language=language))
+    printed = "Verdict, digest and [1-9][0-9]* values printed on the page are those of the results."
+    [english] = [text for text in list_outcomes(verify(genuine.html.encode(), "en.html"), "proved") if "page" in text]
+    report = verify(page.encode(), "certificate.html")
+    assert report["state"] == "consistent", report["checks"]
+    assert re.fullmatch(printed, english)
+    assert english in list_outcomes(report, "proved")
+    words = [translate(word, language).text for word in ("FAIL", "PASS", "Value")]
+    forgeries = ((f"<title>{words[0]}", f"<title>{words[1]}"), (rf'(data-label="{words[2]}"[^>]*>)\d+', r"\g<1>7"))
+    for pattern, text in forgeries:
+        changed = re.sub(pattern, text, page, count=1)
+        assert changed != page
+        assert verify(changed.encode(), "certificate.html")["state"] == "contradicted"
 
 
 @pytest.mark.thorough
