@@ -13,9 +13,9 @@ from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_ver
 BASELINE = "baseline"
 """Quantity of a criterion that states why a comparison with a baseline is impossible."""
 
-ComponentName = Literal["discretisation", "start", "section", "length", "sampling", "resolution"]
+ComponentName = Literal["discretisation", "start", "section", "length", "sampling", "resolution", "line"]
 """Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; length, sampling
-rate and resolution of the record.
+rate and resolution of the record; line as measured.
 """
 
 COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)

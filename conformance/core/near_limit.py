@@ -27,6 +27,7 @@ REMEDIES: Mapping[str, str] = MappingProxyType(
         "length": "a longer record",
         "sampling": "a higher sampling rate",
         "resolution": "a finer resolution",
+        "line": "a line that is known better",
         "limit": "another record behind the limit",
     }
 )

@@ -1,7 +1,7 @@
 """Evaluation of a delivery: signals, quantities, errors and consistency findings, each computed once."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -15,6 +15,7 @@ from pantocheck.conformance.cases.start_and_section import (
 )
 from pantocheck.conformance.core.criterion import ComponentName, Criterion
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule
+from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.grading.case_identity import doubt_limit
 from pantocheck.conformance.grading.criterion_grading import GradedValues, grade_limit
@@ -46,6 +47,7 @@ from pantocheck.conformance.runs.system import Delivered
 AT_REST = Component("does not apply: the line is at rest")
 NO_RECORD = Component("not known: there is no record of one passage")
 NO_SAMPLES = Component("does not apply: there are no samples")
+EXACT_LINE = Component("does not apply: the line file states no tolerances")
 
 
 @dataclass(frozen=True)
@@ -125,9 +127,11 @@ class CaseEvaluation:
             absent = AT_REST if case.is_static else NO_RECORD
             components |= {"start": absent, "section": absent, "length": absent}
             components |= {"sampling": NO_SAMPLES, "resolution": NO_SAMPLES}
+            components["line"] = EXACT_LINE if case.line.tolerance is None else absent
             return Uncertainty(components)
         starts = self.start_signals
         sections = shift_section(case.analysis_section, span_length(case))
+        line_changes = [subtract_values(self._evaluate(run), self.evaluation) for run in delivered.changed_lines]
         lengths = find_lengths(signals.pantographs, signals.line, span_length(case), case.speed)
         components |= {
             "start": start_component(case, signals, self.start_evaluations),
@@ -135,6 +139,7 @@ class CaseEvaluation:
             "length": length_component(lengths, span_length(case)),
             "sampling": sampling_component(signals, 1 / case.file.discretisation.time_step_s),
             "resolution": resolution_component(signals),
+            "line": line_component(line_changes, case.line.tolerance is not None),
         }
         runs, earlier = [signals, *starts], () if starts else list_earlier_sections(case)
         parts = SampleParts(
@@ -147,6 +152,7 @@ class CaseEvaluation:
             deviations=draw_lengths(lengths, digest),
             mesh_changes=sign_half_widths(components["discretisation"], self.evaluation, self.refined),
             bounds=add_bounds(components),
+            line_changes=line_changes,
         )
         return Uncertainty(components, signals.evaluation.values, draw_sample(parts, digest))
 
@@ -262,6 +268,44 @@ def sign_half_widths(component: Component, value: Evaluation, fine: Evaluation |
             if not isinstance(width, tuple) and not isinstance(number, tuple) and not isinstance(other, tuple | None):
                 signed.setdefault(owner, {})[name] = math.copysign(width, other - number)
     return signed
+
+
+def subtract_values(other: Evaluation, value: Evaluation) -> dict[int, dict[str, float]]:
+    """Differences of the quantities with one value in two evaluations."""
+    return {
+        owner: {
+            name: float(changed - number)
+            for name, number in quantities.items()
+            if isinstance(number, float | int)
+            and isinstance(changed := other.values.get(owner, {}).get(name), float | int)
+        }
+        for owner, quantities in value.values.items()
+    }
+
+
+def line_component(changes: Sequence[Mapping[int, Mapping[str, float]]], is_stated: bool) -> Component:
+    """Uncertainty from the tolerances of the line, by linear propagation.
+
+    Args:
+        changes: Changes of the quantities by one standard deviation along each principal direction.
+        is_stated: Whether the line file states tolerances.
+    """
+    if not is_stated:
+        return EXACT_LINE
+    if not changes:
+        return Component("not known: the system delivered no runs on other lines")
+    squares: dict[int, dict[str, float]] = {}
+    for change in changes:
+        for owner, quantities in change.items():
+            for name, difference in quantities.items():
+                own = squares.setdefault(owner, {})
+                own[name] = own.get(name, 0.0) + difference**2
+    widths = {owner: {name: QUANTILE_95 * math.sqrt(x) for name, x in part.items()} for owner, part in squares.items()}
+    basis = (
+        f"{len(changes)} runs on lines one standard deviation away along the principal directions of the tolerances of "
+        "the line file, at the uplift forces of the line as stated; linear"
+    )
+    return Component(basis, widths)
 
 
 def start_component(case: Case, signals: SectionedSignals, others: Sequence[Evaluation]) -> Component:

@@ -53,6 +53,7 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
         "length": length_component(lengths, span_m),
         "sampling": sampling_component(record, None),
         "resolution": resolution_component(record),
+        "line": Component("does not apply: there is no line file"),
     }
     parts = SampleParts(
         record.evaluation.values,

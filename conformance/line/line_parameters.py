@@ -4,7 +4,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
+import numpy as np
+
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.model import Catenary, Kind, Rayleigh
 
@@ -126,6 +129,9 @@ DAMPING: tuple[LineParameter, ...] = tuple(
 )
 """Coefficients of the damping of the wires, stiffness before mass of each wire."""
 
+SMALLEST_DIRECTION = 1e-6
+"""Smallest variance of a direction of the tolerances that counts, over the largest one [-]."""
+
 PARAMETER_GROUPS: tuple[ParameterGroup, ...] = get_args(ParameterGroup)
 
 
@@ -139,3 +145,17 @@ def scale_line(line: Catenary, parameters: Iterable[LineParameter], factors: Seq
 def build_tolerances(line: LineFile, parameters: Sequence[LineParameter]) -> RealArray:
     """Covariance of the factors of properties by the tolerances of a line file, (p, p) [-]."""
     return line.covariance_of([each.name for each in parameters], [each.tolerance for each in parameters])
+
+
+def list_tolerance_lines(line: LineFile) -> list[Catenary]:
+    """Lines one standard deviation away from a line along each principal direction of its stated tolerances."""
+    table = line.tolerance
+    if table is None:
+        return []
+    stated = [each for each in (*MECHANICAL, *DAMPING) if getattr(table, f"{each.name}_pct") is not None]
+    variance, direction = np.linalg.eigh(build_tolerances(line, stated))
+    catenary, kept = build_catenary(line), variance > SMALLEST_DIRECTION * variance.max(initial=0.0)
+    # The sign of a direction is arbitrary: its largest share increases.
+    sign = np.sign(np.take_along_axis(direction, np.abs(direction).argmax(axis=0)[None], axis=0))[0]
+    shifts = (direction * sign * np.sqrt(np.maximum(variance, 0.0))).T[kept]
+    return [scale_line(catenary, stated, (1 + shift).tolist()) for shift in shifts]

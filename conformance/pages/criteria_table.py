@@ -1,5 +1,6 @@
 """Table of the criteria of a case."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -92,7 +93,12 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
 
 def _format_error(criterion: Criterion, error: float, missing: Sequence[str]) -> str:
     text = describe_half_width(error, format_value(error, 2), missing, criterion.quantity)
-    return text if text in (EXACT_WIDTH, UNKNOWN_BASIS) else f"± {text}"
+    if text in (EXACT_WIDTH, UNKNOWN_BASIS):
+        return text
+    if (by_line := criterion.components.get("line")) is None:
+        return f"± {text}"
+    numerics = math.hypot(*(width for name, width in criterion.components.items() if name != "line"))
+    return f"± {format_value(numerics, 2)} (numerics) ± {format_value(by_line, 2)} (line as measured)"
 
 
 VALUE_HEADINGS = ("Value", "Limits")

@@ -1,8 +1,9 @@
 """Joint sample of the quantities of a case: what they could have been, with the correlation between them.
 
 A draw takes one of the runs and sections that were evaluated. It adds a deviation by the length of the record, one by
-mesh and time step, and one by sampling rate and resolution. All quantities share the draw. The sample gives the
-interval of a value, and the probability that one value, or all values of a case, lie inside their limits (JCGM 101).
+mesh and time step, one by sampling rate and resolution, and one by each direction of the tolerances of the line. All
+quantities share the draw. The sample gives the interval of a value, and the probability that one value, or all values
+of a case, lie inside their limits (JCGM 101).
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,6 +38,8 @@ class SampleParts:
     """Half-widths by mesh and time step, with the sign of the change to the finer mesh."""
     bounds: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
     """Largest changes by sampling rate and resolution."""
+    line_changes: Sequence[Mapping[int, Mapping[str, float]]] = ()
+    """Changes by one standard deviation of the line along each principal direction of its tolerances."""
 
 
 def draw_sample(parts: SampleParts, digest: str) -> JointSample:
@@ -54,14 +57,16 @@ def draw_sample(parts: SampleParts, digest: str) -> JointSample:
     member = random.integers(0, len(parts.members) + 1, DRAWS)
     mesh = random.standard_normal(DRAWS) / QUANTILE_95
     bound = random.uniform(-1.0, 1.0, DRAWS)
-    scatter = (parts.deviations, parts.bounds, *parts.members)
+    line = random.standard_normal((len(parts.line_changes), DRAWS))
+    scatter = (parts.deviations, parts.bounds, *parts.members, *parts.line_changes)
     sample: dict[int, dict[str, tuple[float, ...]]] = {}
     for owner, quantities in parts.values.items():
         for name, value in quantities.items():
             if isinstance(value, tuple) or not np.isfinite(value):
                 continue
             draws = _widen_members(value, [part.get(owner, {}).get(name) for part in parts.members])[member]
-            for factor, changes in ((1.0, parts.deviations), (mesh, parts.mesh_changes), (bound, parts.bounds)):
+            scaled = [(1.0, parts.deviations), (mesh, parts.mesh_changes), (bound, parts.bounds)]
+            for factor, changes in (*scaled, *zip(line, parts.line_changes, strict=True)):
                 draws = draws + factor * changes.get(owner, {}).get(name, 0.0)
             if np.ptp(draws) > 0 and any(name in part.get(owner, {}) for part in scatter):
                 sample.setdefault(owner, {})[name] = tuple(round_digits(draws, DRAW_DIGITS))

@@ -15,12 +15,14 @@ from pantocheck.conformance.cases.start_and_section import RunStart, list_other_
 from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.step_log import ShareCallback, StepSequence, ignore_progress
 from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.line.line_parameters import list_tolerance_lines
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
 from pantocheck.conformance.runs.resolution import list_model_uncertainty, resolution_warnings, window_warnings
 from pantocheck.conformance.runs.static_quantities import compute_quantities_along_line, compute_static_quantities
 from pantocheck.conformance.runs.system import Delivered
+from pantocheck.model import Catenary, discretise
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.kernel_cache import has_kept_kernels
@@ -67,9 +69,17 @@ class ReferenceSimulator:
                 name_start(number): partial(_deliver_start, start, line, discretisation, uplift_forces)
                 for number, start in enumerate(list_other_starts(case), 1)
             }
-        refined, coarse, *starts = _run_tasks(tasks, steps, self.threads)
-        others = tuple(start for start in starts if start is not None)
-        return replace(delivered, refined=refined, coarse=coarse, starts=others, line_shape=shape)
+            tasks |= {
+                name_line(number): partial(_deliver_line, case, catenary, uplift_forces)
+                for number, catenary in enumerate(list_tolerance_lines(case.line), 1)
+            }
+        found = dict(zip(tasks, _run_tasks(tasks, steps, self.threads), strict=True))
+        starts, lines = (
+            tuple(run for name, run in found.items() if run is not None and name.startswith(kind))
+            for kind in ("start", "line")
+        )
+        refined, coarse = found[FINE_MESH], found[COARSE_MESH]
+        return replace(delivered, refined=refined, coarse=coarse, starts=starts, changed_lines=lines, line_shape=shape)
 
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
@@ -90,6 +100,8 @@ def _plan_steps(case: Case) -> StepSequence:
     """Steps of a case, with their estimated durations in passages on the mesh of the case."""
     other_starts = () if case.is_static else list_other_starts(case)
     starts = {name_start(number): 1.0 for number, _ in enumerate(other_starts, 1)}
+    lines = [] if case.is_static else list_tolerance_lines(case.line)
+    starts |= {name_line(number): 1.0 for number, _ in enumerate(lines, 1)}
     return StepSequence(
         _LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 2.0, FINE_MESH: 4.0, COARSE_MESH: 0.25, **starts}
     )
@@ -106,6 +118,11 @@ def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
 def name_start(number: int) -> str:
     """Name of the step of another start."""
     return f"start {number}"
+
+
+def name_line(number: int) -> str:
+    """Name of the step of a changed line."""
+    return f"line {number}"
 
 
 def _run_tasks(tasks: Mapping[str, Task], steps: StepSequence, threads: int) -> list[Delivered | None]:
@@ -131,6 +148,15 @@ def _run_tasks(tasks: Mapping[str, Task], steps: StepSequence, threads: int) -> 
             stopped.set()
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def _deliver_line(
+    case: Case, catenary: Catenary, uplift_forces: tuple[float, ...], progress: ShareCallback
+) -> Delivered:
+    """Run of a case on a changed line, at the uplift forces of the line as stated."""
+    discretisation = case.file.discretisation
+    line = discretise(catenary, discretisation.element_m)
+    return Delivered(run_passage(case, line, discretisation, uplift_forces, progress).record)
 
 
 def _deliver_again(

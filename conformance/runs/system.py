@@ -59,6 +59,8 @@ class Delivered:
     """The same case with element length and time step halved, for the discretisation error."""
     coarse: "Delivered | None" = None
     """The same case with element length and time step doubled, for the observed order of convergence."""
+    changed_lines: "tuple[Delivered, ...]" = ()
+    """The same case on lines one standard deviation away, along each principal direction of the tolerances."""
     starts: "tuple[Delivered, ...]" = ()
     """The same case with other starts, for the uncertainty of a short run-in."""
 

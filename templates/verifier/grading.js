@@ -1,10 +1,11 @@
 // Grades: a value against its limits, its uncertainty, the decision rule, and the verdicts of cases and of the run.
 const WORST_FIRST = ["error", "fail", "undecided", "skip", "info", "unconfirmed", "pass"];
 const TRUSTS = ["primary", "secondary", "provisional"], QUANTILE_95 = 1.959964;
-const COMPONENTS = ["discretisation", "start", "section", "length", "sampling", "resolution"];
+const COMPONENTS = ["discretisation", "start", "section", "length", "sampling", "resolution", "line"];
 const REMEDIES = {
   discretisation: "a finer mesh and time step", start: "another start or run-in", section: "another analysis section",
   length: "a longer record", sampling: "a higher sampling rate", resolution: "a finer resolution",
+  line: "a line that is known better",
   limit: "another record behind the limit",
 };
 

@@ -104,6 +104,7 @@ def test_record_of_the_section_alone_names_what_is_not_known(case_250: Case) -> 
         "start": "not known: after a run-in of 3 spans, it needs runs with other starts",
         "section": "not known: the record does not extend beyond the analysis section",
         "length": "not known: the analysis section is shorter than 5 spans",
+        "line": "does not apply: the line file states no tolerances",
     }
     result = grade_case(case_250, Delivered(cut), "secondary")
     assert {row.uncertainty for row in result.criteria} <= {0.0, None}  # the record has rate and digits of the case
