@@ -53,6 +53,17 @@ def test_results_of_the_runner_are_consistent(wave: Any, case_250: Case) -> None
     assert find_discrepancies(Results.model_validate(results)) == []
 
 
+def test_start_and_section_together_can_cause_a_contact_loss(results: dict[str, Any]) -> None:
+    """Neither changes the value alone; a smaller uncertainty than that of the components is a contradiction."""
+    case = results["cases"][0]
+    parts, widths = (case[key]["2"] for key in ("uncertainty_components", "uncertainty"))
+    parts["contact_loss_pct"], widths["contact_loss_pct"] = {"start": 0.0, "section": 0.0}, 3e-4
+    text = "en50318-2002/250, pantograph 2: uncertainty of contact_loss_pct does not follow from its components"
+    assert text not in find_discrepancies(Results.model_validate(results))
+    parts["contact_loss_pct"] = {"start": 0.1, "section": 0.0}
+    assert text in find_discrepancies(Results.model_validate(results))
+
+
 def row(results: dict[str, Any], case: int = 0, number: int = 0) -> dict[str, Any]:
     criterion: dict[str, Any] = results["cases"][case]["criteria"][number]
     return criterion

@@ -32,7 +32,8 @@ def add_verification(results: dict[str, Any], upper: float) -> Results:
     row = case["criteria"][0] | {
         "quantity": BAND, "value": value, "unit": "N", "lower": 1.0, "upper": upper, "trust": "computed",
         "source": "converged solution", "verdict": "pass" if inside else "fail", "close": [],
-        "reason": None if inside else f"{value - upper:.3g} N above the upper limit", "margin": min(value - 1, upper - value) / half,
+        "reason": None if inside else f"{value - upper:.3g} N above the upper limit",
+        "margin": min(value - 1, upper - value) / half,
         "discretisation_error": None, "spread": None, "uncertainty": 0.0015 * value,
         "components": {"discretisation": 0.0015 * value},
     }  # fmt: skip
