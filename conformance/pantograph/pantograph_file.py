@@ -1,5 +1,6 @@
 """Pantograph files: a chain of lumped masses, or the matrices or modes of a linear model."""
 
+import math
 from typing import Annotated, Literal
 
 import numpy as np
@@ -8,6 +9,7 @@ from pydantic import Field
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
+    NonNegative,
     NonNegativeList,
     NumberList,
     Positive,
@@ -19,13 +21,60 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
+from pantocheck.model.description.contact_law import (
+    Force,
+    contact_compliance,
+    hertz_law_coefficient,
+    penetration,
+)
+
+
+def _is_default(value: object) -> bool:
+    """Whether a key that came later has its default: it is left out of the digest of its file then."""
+    return value in ("spring", 0.0, None)
 
 
 class ContactTable(SourcedTable):
-    """Contact between head and contact wire: a spring that acts in compression only."""
+    """Contact between head and contact wire, in compression only: a spring, Hertz's law, or a constraint."""
 
-    stiffness_N_m: Annotated[Positive, Field(le=1e8)]
-    """Stiffness of the contact [N/m]."""
+    law: Annotated[Literal["spring", "hertz", "constraint"], Field(exclude_if=_is_default), Feature("contact_laws")] = (
+        "spring"
+    )
+    """spring: linear; hertz: F = 4/3 E sqrt(R) penetration^1.5; constraint: head and wire touch without penetration."""
+    stiffness_N_m: Annotated[Positive | None, Field(le=1e8, exclude_if=_is_default), NO_FEATURE] = None
+    """Stiffness of the spring [N/m]."""
+    damping_N_s_m: Annotated[NonNegative, Field(le=1e5, exclude_if=_is_default), Feature("contact_damping")] = 0.0
+    """Damper beside the spring [N s/m]; it does not pull."""
+    effective_modulus_N_m2: Annotated[Positive | None, Field(le=1e12, exclude_if=_is_default), NO_FEATURE] = None
+    """Effective modulus E of Hertz's law, 1/E = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of wire and strip [N/m2]."""
+    effective_radius_m: Annotated[Positive | None, Field(le=10.0, exclude_if=_is_default), NO_FEATURE] = None
+    """Effective radius R of Hertz's law; of crossed cylinders about the root of the product of both radii [m]."""
+
+    @cross_check
+    def _keys_fit_the_law(self) -> Problems:
+        needed = {"spring": ("stiffness_N_m",), "hertz": ("effective_modulus_N_m2", "effective_radius_m")}
+        for key in needed.get(self.law, ()):
+            if getattr(self, key) is None:
+                yield validation_problem(key, "missing", f"The law {self.law!r} needs this key.")
+        allowed = (*needed.get(self.law, ()), *(("damping_N_s_m",) if self.law == "spring" else ()))
+        for key in ("stiffness_N_m", "damping_N_s_m", "effective_modulus_N_m2", "effective_radius_m"):
+            if key not in allowed and getattr(self, key):
+                yield validation_problem(key, f"not a key of the law {self.law!r}", "Leave it out, or change the law.")
+
+    @property
+    def hertz_coefficient(self) -> float:
+        """Force per penetration^1.5 by Hertz's law; infinite with another law [N/m^1.5]."""
+        if self.effective_modulus_N_m2 is None or self.effective_radius_m is None:
+            return math.inf
+        return hertz_law_coefficient(self.effective_modulus_N_m2, self.effective_radius_m)
+
+    def penetration(self, force: Force) -> Force:
+        """Penetration of head and wire under a contact force [m, N]."""
+        return penetration(self.stiffness_N_m or math.inf, self.hertz_coefficient, force)
+
+    def compliance(self, force: float) -> float:
+        """Change of the penetration with the contact force, at a force [m/N, N]."""
+        return contact_compliance(self.stiffness_N_m or math.inf, self.hertz_coefficient, force)
 
 
 class ChainTable(SourcedTable):

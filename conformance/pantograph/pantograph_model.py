@@ -1,5 +1,6 @@
 """Pantograph of the reference simulator from a pantograph file."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -33,12 +34,17 @@ def build_pantograph(
     """
     model = _build_model(file, uplift_force, working_height, wire_height)
     shift = _aerodynamic_point(file) - _uplift_point(file)
-    return replace(model, force=model.force + aerodynamic_force * shift)
+    return replace(
+        model,
+        force=model.force + aerodynamic_force * shift,
+        contact_damping=file.contact.damping_N_s_m,
+        hertz_coefficient=file.contact.hertz_coefficient,
+    )
 
 
 def _build_model(file: PantographFile, uplift_force: float, working_height: float, wire_height: float) -> Pantograph:
     """Pantograph whose whole uplift force acts at one point."""
-    contact = file.contact.stiffness_N_m
+    contact = file.contact.stiffness_N_m or math.inf
     if file.chain is not None:
         parts = file.chain
         model = build_chain(

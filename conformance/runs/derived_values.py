@@ -42,12 +42,14 @@ class DerivedPantograph(InputTable):
     """Uplift force for which this table holds [N]; with target_mean_force_N: start of the tuning."""
     working_height_m: float
     """Static height of the head under the uplift force: mean uplift of the contact wire over
-    working_height_positions_m, plus its nominal height, plus uplift force / contact stiffness [m].
+    working_height_positions_m, plus its nominal height, plus the penetration of the contact [m].
     """
     constant_force: Numbers
     """Constant force on every unknown: uplift force, and force of the springs at z = 0 [N; modes: N kg^-1/2]."""
-    contact_stiffness_N_m: float
-    """Contact force = max(0, stiffness (height of the head - height of the wire)) [N/m]."""
+    contact_stiffness_N_m: float | None
+    """Contact force = max(0, stiffness (height of the head - height of the wire)) [N/m]; null: the table contact of the
+    inputs states another law.
+    """
     contact_force_share: float
     """Share of every contact wire at the start [-]."""
     start_m: float
@@ -159,16 +161,16 @@ def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple
         case.pantographs, case.lift_forces, case.start_positions, heights, strict=True
     ):
         force = lift.uplift_force
-        contact, share = file.contact.stiffness_N_m, 1 / touched_rows(line, start).size
+        share = 1 / touched_rows(line, start).size
         working_height = compute_working_height(case, line, file, force)
         model = build_pantograph(file, force, working_height, nominal_wire_height(case), lift.aerodynamic_force)
-        displacement, _ = equilibrium(model, float(height) + force * share / contact)
+        displacement, _ = equilibrium(model, float(height) + file.contact.penetration(force * share))
         pantographs.append(
             DerivedPantograph(
                 uplift_force_N=force,
                 working_height_m=round_number(working_height),
                 constant_force=round_numbers(model.force),
-                contact_stiffness_N_m=contact,
+                contact_stiffness_N_m=file.contact.stiffness_N_m,
                 contact_force_share=share,
                 start_m=start,
                 start_force_N=force,

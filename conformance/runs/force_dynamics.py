@@ -100,7 +100,7 @@ def compare_motion(file: PantographFile, force: RealArray, height: RealArray, st
         return None
     # The contact point is the head, or the wire, which the head penetrates by force over contact stiffness.
     head = _fit(motion, response)
-    wire = _fit(remove_free_motion(height + force / file.contact.stiffness_N_m, free), response)
+    wire = _fit(remove_free_motion(height + file.contact.penetration(force), free), response)
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 

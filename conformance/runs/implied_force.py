@@ -96,7 +96,7 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
     errors = []
     for candidate in heights:
         motion = smooth(candidate)
-        for compliance in (0.0, 1 / file.contact.stiffness_N_m):
+        for compliance in (0.0, file.contact.compliance(float(force.mean()))):
             difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
             difference *= _taper_ends(force.size, min(taper, force.size / 2))
             error = _multiply_by_dynamic_stiffness(file, difference, step, compliance)

@@ -146,7 +146,7 @@ class _Passages:
             moment = self._moment(number, support)
             load = np.interp(moment, record.time, force)
             gap = np.interp(moment, record.time, height) - np.interp(moment, record.time, uplift)
-            gap -= load / file.contact.stiffness_N_m + rest_height
+            gap -= file.contact.penetration(load) + rest_height
             differences.append(np.where(np.isfinite(moment) & (load > 0), gap, np.nan))
         scatter = _scatter(np.array(differences))
         at_passage = scatter[np.abs(self.shifts) <= COINCIDENCE_TOLERANCE_M]

@@ -133,7 +133,7 @@ def _estimate_uplift_force(case: Case, line: DiscretisedLine, index: int, lift: 
     def contact_force(uplift_force: float) -> float:
         """Contact force that holds the head at its mean height [N]."""
         pantograph = build_pantographs(case, line, [uplift_force] * len(case.lift_forces))[index]
-        return equilibrium(pantograph, wire + target / pantograph.contact_stiffness)[1]
+        return equilibrium(pantograph, wire + case.pantographs[index].contact.penetration(target))[1]
 
     at_target = contact_force(target)
     slope = (contact_force(target + FORCE_STEP) - at_target) / FORCE_STEP
@@ -166,7 +166,7 @@ def nominal_wire_height(case: Case) -> float:
 
 
 def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFile, uplift_force: float) -> float:
-    """Static height of a head under its uplift force: nominal height of the wire, mean uplift, and contact spring [m].
+    """Static height of a head under its uplift force: nominal height of the wire, mean uplift, and penetration [m].
 
     The pre-sag of the line at rest is left out.
 
@@ -177,7 +177,7 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
         uplift_force: Its uplift force [N].
     """
     uplift = mean_static_uplift(line, tuple(working_height_positions(case).tolist()), uplift_force)
-    return nominal_wire_height(case) + (uplift + uplift_force / file.contact.stiffness_N_m)
+    return nominal_wire_height(case) + (uplift + file.contact.penetration(uplift_force))
 
 
 @keep_with_line

@@ -10,6 +10,7 @@
 -----    base
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,7 +37,11 @@ class Pantograph:
     static_force: float
     """Contact force at rest [N]."""
     contact_stiffness: float
-    """Stiffness of the penalty contact between head and wire [N/m]."""
+    """Stiffness of the penalty contact between head and wire; infinite: none, head and wire touch rigidly [N/m]."""
+    contact_damping: float = 0.0
+    """Damping beside this stiffness [N s/m]."""
+    hertz_coefficient: float = math.inf
+    """Coefficient K of Hertz's law F = K penetration^1.5, in series with the stiffness; infinite: none [N/m^1.5]."""
 
 
 def build_chain(

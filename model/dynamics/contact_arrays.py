@@ -56,6 +56,18 @@ def height_of_irregularity(arrays: IrregularityArrays, wire: int, position: floa
     return float(((c[0] * distance + c[1]) * distance + c[2]) * distance + c[3])
 
 
+@kernel
+def slope_of_irregularity(arrays: IrregularityArrays, wire: int, position: float) -> float:
+    """Slope of the additional height of a contact wire at a position; zero beyond its points [-]."""
+    first, end = arrays.first[wire], arrays.first[wire + 1]
+    points = arrays.position[first:end]
+    if not points[0] < position < points[-1]:
+        return 0.0
+    interval, length, s = _find_interval(points, position)
+    distance, c = s * length, arrays.polynomial[first + interval]
+    return float((3 * c[0] * distance + 2 * c[1]) * distance + c[2])
+
+
 # Arrays of the contact of pantographs and contact wires in a time step (`contact_step`).
 class ContactArrays(NamedTuple):
     """Contact wires of a line in a time step; W contact wires, S stations."""
@@ -93,6 +105,10 @@ class ContactWorkspace(NamedTuple):
     """Hermite functions at the contacts, (P, W, 4)."""
     stiffness: Array
     """Penalty and residual flexibility in series, (P, W) [N/m]."""
+    damping: Array
+    """Damping of this series, (P, W) [N s/m]."""
+    rate: Array
+    """Predicted rate of the overlap, zero without damping, (P, W) [m/s]."""
     overlap: Array
     """Predicted overlap of head and wire, (P, W) [m]."""
     head_compliance: Array
@@ -134,7 +150,9 @@ def allocate_contact_workspace(
 ) -> ContactWorkspace:
     """Allocate the scratch arrays for the simulation of a train."""
     pantographs, wires = train.contact.shape
-    stiffness, overlap, wire_acceleration, first_guess = (np.zeros((pantographs, wires)) for _ in range(4))
+    stiffness, damping, rate, overlap, wire_acceleration, first_guess = (
+        np.zeros((pantographs, wires)) for _ in range(6)
+    )
     width = 2 * contact.half_width + 2 * LANES
     nodes = connectors.nodes
     place = nodes.row * (contact.position.size + width) + nodes.station
@@ -146,6 +164,8 @@ def allocate_contact_workspace(
         number_above=np.zeros(pantographs, dtype=np.int64),
         shape=np.zeros((pantographs, wires, 4)),
         stiffness=stiffness,
+        damping=damping,
+        rate=rate,
         overlap=overlap,
         head_compliance=np.zeros(pantographs),
         response=align(np.zeros((pantographs, wires, 2, width))),

@@ -8,17 +8,31 @@ in series (`residual_flexibility`). With the predicted overlap d of head and wir
 
     F = max(0, k (d + dt^2/4 a)),    a = acceleration of the head minus acceleration of the wire
 
-A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held. The sweeps need the
-wire at its contacts only: its response to a unit force of a head, a local column of the inverse (`inverse_columns`), is
-solved anew in every step, and gives the influence of the contact on the other contacts and on the scalar forces.
+A change of F changes a by -(compliance) F, and F is solved exactly with all other forces held. A constraint has no
+penalty: the residual flexibility R alone remains, and F >= 0 is complementary to R F - (d + dt^2/4 a) >= 0. A damper
+adds c (d' + dt/2 a). Hertz's law adds its penetration to that of the linear parts (`contact_law`).
+
+Without a penalty, head and wire on R vibrate faster than a mesh radiates waves, and average acceleration damps nothing.
+R then has the damper of critical damping, c^2 = 4 / (R compliance): it follows from mesh and time step, and vanishes
+with them.
+
+The sweeps need the wire at its contacts only: its response to a unit force of a head, a local column of the inverse
+(`inverse_columns`), is solved anew in every step, and gives the influence of the contact on the other contacts and on
+the scalar forces.
 """
 
 import math
 
+from pantocheck.model.description.arrays import Array
 from pantocheck.model.dynamics.active_window import Window, search
 from pantocheck.model.dynamics.block_tridiagonal import solve_stations
 from pantocheck.model.dynamics.connector_step import ConnectorArrays, inner_product
-from pantocheck.model.dynamics.contact_arrays import ContactArrays, ContactWorkspace, height_of_irregularity
+from pantocheck.model.dynamics.contact_arrays import (
+    ContactArrays,
+    ContactWorkspace,
+    height_of_irregularity,
+    slope_of_irregularity,
+)
 from pantocheck.model.dynamics.distributed_step import DistributedArrays
 from pantocheck.model.dynamics.kernel_compilation import kernel
 from pantocheck.model.dynamics.motion import Motion
@@ -68,6 +82,9 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             work.overlap[p, wire] = head
             _predict_contact(contact, motion, train, work, p, wire)
             _solve_response(contact, work, p, wire)
+            if math.isinf(train.contact_stiffness[p]):
+                mobility = work.head_compliance[p] + _at_contact(work, p, p, wire)
+                work.damping[p, wire] = 2 * math.sqrt(work.stiffness[p, wire] / mobility)
 
 
 @kernel
@@ -104,6 +121,28 @@ def _predict_contact(
         1 / train.contact_stiffness[p] + _residual_flexibility(contact.flexibility[row, e], s)
     )
     work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
+    if train.contact_damping[p] > 0.0:
+        softening = work.stiffness[p, wire] / train.contact_stiffness[p]
+        work.damping[p, wire] = softening * softening * train.contact_damping[p]
+    if train.contact_damping[p] > 0.0 or math.isinf(train.contact_stiffness[p]):
+        work.rate[p, wire] = _closing_rate(contact, motion, train, p, wire, n)
+
+
+@kernel
+def _closing_rate(contact: ContactArrays, motion: Motion, train: Train, p: int, wire: int, shape: Array) -> float:
+    """Predicted rate of the overlap of pantograph p and a wire [m/s]: the contact moves along the slope of the wire."""
+    row, rate = contact.wires.row[wire], 0.0
+    e, h, s = _find_element(contact.position, train.position[p])
+    slope = slope_of_irregularity(contact.irregularity, wire, train.position[p])
+    for i in range(2):
+        # Derivatives of the Hermite functions along the track.
+        by_w, by_r = (12 * i - 6) * s * (1 - s) / h, (1 - i - s) * (1 - i - 3 * s + 2 * i)
+        slope += by_w * (contact.rest[row, e + i, 0] + motion.w[0, row, e + i])
+        slope += by_r * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
+        rate -= shape[2 * i] * motion.w[1, row, e + i] + shape[2 * i + 1] * motion.r[1, row, e + i]
+    for i in range(train.z.shape[2]):
+        rate += train.head[p, i] * train.z[1, p, i]
+    return float(rate - train.speed[0] * slope)
 
 
 @kernel
@@ -217,7 +256,7 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
     for p in range(train.position.size):
         for number in range(work.number_above[p]):
             wire = work.above[p, number]
-            old, k = train.contact[p, wire], work.stiffness[p, wire]
+            old, k, c = train.contact[p, wire], work.stiffness[p, wire], work.damping[p, wire]
             approach = -work.wire_acceleration[p, wire]
             for i in range(train.z.shape[2]):
                 approach += train.head[p, i] * train.z[2, p, i]
@@ -226,9 +265,11 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
                 approach -= work.wire_compliance[p, other, wire] * change
             for i in range(work.number_near[p, wire]):
                 approach += work.influence[p, wire, i] * scalar.change[work.near[p, wire, i]]
-            gain = k * dt * dt / 4
+            gain, held = k * dt * dt / 4 + c * dt / 2, k * work.overlap[p, wire] + c * work.rate[p, wire]
             compliance = gain * (work.head_compliance[p] + work.wire_compliance[p, p, wire])
-            force = max((k * work.overlap[p, wire] + gain * approach + compliance * old) / (1 + compliance), 0.0)
+            force = max((held + gain * approach + compliance * old) / (1 + compliance), 0.0)
+            if train.hertz[p] > 0.0 and force > 0.0:
+                force = reduce_by_hertz(force, train.hertz[p] * k / (1 + compliance))
             change = force - old
             if abs(change) > NEGLIGIBLE_FORCE:
                 train.contact[p, wire] = force
@@ -239,6 +280,24 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
                         train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
             largest = maximum(largest, abs(change))
     return largest
+
+
+@kernel
+def reduce_by_hertz(linear: float, share: float) -> float:
+    """Force F with F + share F^(2/3) = linear, by Newton's method in the root of F.
+
+    Args:
+        linear: Force of the contact without Hertz's law, above zero [N].
+        share: Penetration by Hertz's law per F^(2/3), over the flexibility of all linear parts [N^(1/3)].
+    """
+    # Both terms alone bound the root from above, and the function is convex there: the iteration descends to it.
+    root = min(linear ** (1 / 3), math.sqrt(linear / share))
+    for _ in range(60):
+        change = (root * root * (root + share) - linear) / (root * (3 * root + 2 * share))
+        root -= change
+        if change <= 1e-15 * root:
+            break
+    return float(root * root * root)
 
 
 @kernel

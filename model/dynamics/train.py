@@ -1,11 +1,13 @@
 """Pantographs of a train as plain arrays, with their state."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.contact_law import penetration
 from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.dynamics.passage import Passage
 
@@ -33,7 +35,11 @@ class Train(NamedTuple):
     force: Array
     """Constant forces, (P, n) [N]."""
     contact_stiffness: Array
-    """Stiffness of the penalty contact, (P,) [N/m]."""
+    """Stiffness of the penalty contact, infinite for a rigid contact, (P,) [N/m]."""
+    contact_damping: Array
+    """Damping beside this stiffness, (P,) [N s/m]."""
+    hertz: Array
+    """Penetration per F^(2/3) by Hertz's law, zero without this law, (P,) [m/N^(2/3)]."""
     z: Array
     """Displacement, velocity, acceleration, (3, P, n) [m, m/s, m/s2]."""
     contact: Array
@@ -70,10 +76,12 @@ def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array
         train.inverse[p, :n, :n] = np.linalg.inv(effective)
         train.damping[p, :n, :n], train.stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
         train.head[p, :n], train.force[p, :n] = pantograph.head, pantograph.force
-        train.contact_stiffness[p] = pantograph.contact_stiffness
+        train.contact_stiffness[p], train.contact_damping[p] = pantograph.contact_stiffness, pantograph.contact_damping
+        train.hertz[p] = pantograph.hertz_coefficient ** (-2 / 3)
         share = pantograph.static_force / touched[p].sum() if passage.ramp == 0 else 0.0
         train.contact[p, touched[p]] = share
         overlap = share * (1 / pantograph.contact_stiffness + float(flexibility[p, touched[p]].mean()))
+        overlap += penetration(math.inf, pantograph.hertz_coefficient, share)
         train.z[0, p, :n], force_down = equilibrium(pantograph, float(wire_height[p, touched[p]].mean()) + overlap)
         train.held[p] = force_down if passage.ramp > 0 else 0.0
     return train
@@ -93,6 +101,8 @@ def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
         head=np.zeros((pantographs, unknowns)),
         force=np.zeros((pantographs, unknowns)),
         contact_stiffness=np.zeros(pantographs),
+        contact_damping=np.zeros(pantographs),
+        hertz=np.zeros(pantographs),
         z=np.zeros((3, pantographs, unknowns)),
         contact=np.zeros((pantographs, contact_wires)),
     )

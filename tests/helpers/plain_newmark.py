@@ -17,6 +17,7 @@ from pantocheck.model import Passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.motion import Layout, Motion, end_of_step
 from pantocheck.model.dynamics.train import Train
+from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.statics.assembly import (
     assemble_matrices,
     bandwidth_order,
@@ -102,18 +103,19 @@ class PlainNewmark:
                 for row, covers in self._contact_wires(place)
             ]
         )
+        damper, climb = self._contact_dampers(closing, stiff, places), self._climb_rates(q0, places)
         taut = ~line.unilateral | (state.tension > 0)
         touching = (state.contact > 0) & (stiff > 0)
         for _ in range(100):
-            k, c, kc = line.stiffness * taut, line.damping * taut, stiff * touching
+            k, c, kc, cc = line.stiffness * taut, line.damping * taut, stiff * touching, damper * touching
             K = self.K + (bars * k) @ bars.T + (closing * kc) @ closing.T
-            C = self.C + (bars * c) @ bars.T
+            C = self.C + (bars * c) @ bars.T + (closing * cc) @ closing.T
             # The tension of a taut dropper changes from the preload; a slack dropper removes its whole preload.
-            constant = self.force + bars @ (line.preload * ~taut) + closing @ (kc * rest_height)
+            constant = self.force + bars @ (line.preload * ~taut) + closing @ (kc * rest_height + cc * climb)
             a = solve(self.M + dt / 2 * C + dt**2 / 4 * K, constant - K @ q0 - C @ v0, assume_a="pos")
             q, v = q0 + dt**2 / 4 * a, v0 + dt / 2 * a
             tension = line.preload + line.stiffness * (bars.T @ q) + line.damping * (bars.T @ v)
-            contact = stiff * (closing.T @ q - rest_height)
+            contact = stiff * (closing.T @ q - rest_height) + damper * (closing.T @ v - climb)
             now_taut, now_touching = ~line.unilateral | (tension > 0), contact > 0
             if np.array_equal(now_taut, taut) and np.array_equal(now_touching, touching):
                 state.q, state.v, state.a = q, v, a
@@ -121,6 +123,31 @@ class PlainNewmark:
                 return
             taut, touching = now_taut, now_touching
         raise ArithmeticError("the active set does not settle")
+
+    def _contact_dampers(self, closing: Array, stiff: Array, places: list[float]) -> Array:
+        """Damper of every contact; without a penalty critical damping of head, wire and residual flexibility."""
+        dt, dampers = self.passage.time_step, []
+        effective = self.M + dt / 2 * self.C + dt**2 / 4 * self.K
+        wires = len(self.line.catenary.contact_wires)
+        for n, (column, k) in enumerate(zip(closing.T, stiff, strict=True)):
+            pantograph = self.passage.pantographs[n // wires]
+            if np.isinf(pantograph.contact_stiffness) and k > 0:
+                dampers.append(2 * np.sqrt(k / (column @ solve(effective, column, assume_a="pos"))))
+            else:
+                dampers.append((k / pantograph.contact_stiffness) ** 2 * pantograph.contact_damping)
+        return np.array(dampers)
+
+    def _climb_rates(self, q: Array, places: list[float]) -> Array:
+        """Rate at which a contact point rises because it moves along the slope of the wire at rest and of q."""
+        rates, height = [], self.rest.copy()
+        height[self.free] += q[: self.free.size]
+        for place in places:
+            for row, covers in self._contact_wires(place):
+                e, h, s = find_element(self.line.mesh.position, place)
+                middle = point_load(self.line, row, float(self.line.mesh.position[e : e + 2].mean()))
+                slopes = [-6 * s * (1 - s) / h, (1 - s) * (1 - 3 * s), 6 * s * (1 - s) / h, s * (3 * s - 2)]
+                rates.append(self.passage.speed * (slopes @ height[np.flatnonzero(middle)]) if covers else 0.0)
+        return np.array(rates)
 
     def _closing(self, time: float) -> tuple[Array, Array]:
         """Overlap of each head and wire per unknown, and the height of the wire at rest, at a time."""

@@ -87,10 +87,10 @@ CaseData = dict[str, Any]
 
 FEATURES = frozenset(
     (
-        "applied_forces", "bending_stiffness", "chain", "dropper_mass", "droppers", "gradients", "line_at_rest",
-        "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs", "single_supports",
-        "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers",
-        "surveyed_wire_heights", "uplift_force_tuning", "wire_height",
+        "applied_forces", "bending_stiffness", "chain", "contact_laws", "dropper_mass", "droppers", "gradients",
+        "line_at_rest", "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs",
+        "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire",
+        "support_dampers", "surveyed_wire_heights", "uplift_force_tuning", "wire_height",
     )
 )  # fmt: skip
 """Features of a case that the second formulation has."""

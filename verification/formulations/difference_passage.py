@@ -82,7 +82,11 @@ def build_heads(
 ) -> Heads:
     """Pantographs at rest on the displaced line."""
     chains = [_chain(pantograph) for pantograph in case["pantographs"]]
-    stiffness = case["pantographs"][0]["contact"]["stiffness_N_m"]
+    contact = case["pantographs"][0]["contact"]
+    if contact.get("law", "spring") == "hertz" or contact.get("damping_N_s_m"):
+        raise ValueError("the second formulation has contacts by a spring without damper, or by a constraint")
+    stiffness = contact.get("stiffness_N_m", np.inf)
+    excess = 0.0 if np.isinf(stiffness) else 1.0
     unstretched, height, uplift = [], [], []
     cache: dict[float, float] = {}
     for pantograph, chain, x, force in zip(case["pantographs"], chains, starts, uplift_forces, strict=True):
@@ -91,7 +95,9 @@ def build_heads(
         else:
             free = nominal_height(case, model)
         load = _place_forces(pantograph, chain, force)
-        head = model.lift(x, model.rest.shape + displacement) + force * (1 / stiffness - model.contact.excess_at(x))
+        head = model.lift(x, model.rest.shape + displacement) + force * (
+            1 / stiffness - excess * model.contact.excess_at(x)
+        )
         unstretched.append(free)
         uplift.append(load)
         height.append(_equilibrium(np.array(chain["stiffness_N_m"]), load, free, head))

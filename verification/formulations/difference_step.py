@@ -8,9 +8,23 @@ from verification.formulations.difference_strands import Floats, Indices
 
 
 @njit(cache=True)
+def _free_acceleration(heads: Heads, k: int) -> float:
+    """Acceleration of the head of a pantograph without contact force [m/s2]."""
+    z, u, n = heads.height[k], heads.velocity[k], heads.mass.shape[1]
+    below_z, below_u = (z[n - 2], u[n - 2]) if n > 1 else (heads.unstretched[k], 0.0)
+    spring = heads.stiffness[k, n - 1] * (z[n - 1] - below_z) + heads.damping[k, n - 1] * (u[n - 1] - below_u)
+    return (heads.uplift[k, n - 1] - spring) / heads.mass[k, n - 1]
+
+
+@njit(cache=True)
 def push_wire(line: Lines, heads: Heads, k: int, w: Floats, v: Floats) -> float:
-    """Contact force of a pantograph, applied to the contact wire: a Catmull-Rom spline interpolates and distributes."""
-    x = heads.position[k] / line.spacing
+    """Contact force of a pantograph, applied to the contact wire: a Catmull-Rom spline interpolates and distributes.
+
+    A constraint (infinite stiffness) lets head and wire meet at the end of the step, at the head's next position; the
+    excess flexibility of the points then remains as a penetration, which the spacing removes.
+    """
+    constrained = np.isinf(heads.contact_stiffness)
+    x = (heads.position[k] + heads.speed * line.step * constrained) / line.spacing
     s, point = x - int(x), line.first[line.contact] + int(x) - 1
     weights = (
         0.5 * (-s + 2 * s**2 - s**3),
@@ -18,13 +32,20 @@ def push_wire(line: Lines, heads: Heads, k: int, w: Floats, v: Floats) -> float:
         0.5 * (s + 4 * s**2 - 3 * s**3),
         0.5 * (-(s**2) + s**3),
     )
-    height, excess = 0.0, 0.0
+    height, excess, mobility = 0.0, 0.0, line.step / heads.mass[k, -1]
     for j in range(4):
+        mobility += line.gain[point + j] * weights[j] ** 2
         height += weights[j] * (w[point + j] + line.rest[point + j])
         for m in range(4):
             excess += weights[j] * line.excess[abs(j - m)] * weights[m]
-    stiffness = heads.contact_stiffness / (1 - heads.contact_stiffness * excess)
-    push = max(0.0, stiffness * (heads.height[k, -1] - height))
+    if constrained:
+        closing = heads.velocity[k, -1] + line.step * _free_acceleration(heads, k)
+        for j in range(4):
+            closing -= weights[j] * v[point + j]
+        push = max(0.0, ((heads.height[k, -1] - height) / line.step + closing) / mobility)
+    else:
+        stiffness = heads.contact_stiffness / (1 - heads.contact_stiffness * excess)
+        push = max(0.0, stiffness * (heads.height[k, -1] - height))
     for j in range(4):
         v[point + j] += line.gain[point + j] * weights[j] * push
     return push

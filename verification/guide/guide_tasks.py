@@ -20,6 +20,7 @@ from verification.guide.library_values import (
     summarise_self_test,
 )
 from verification.guide.peers.peer_list import PEERS, find_version, run_peer
+from verification.guide.topics.contact_laws import study_contact_laws
 from verification.guide.topics.long_string_passage import study_long_string
 from verification.guide.topics.moving_load import study_moving_load
 from verification.guide.topics.passage_balance import study_balances
@@ -33,6 +34,7 @@ DURATIONS_S = {
     "self-test/all": 240.0,
     "verification/waves": 10.0,
     "verification/long-string": 25.0,
+    "verification/contact-laws": 30.0,
     "library/en50318-2018/ac-simple/275": 35.0,
     "library/en50318-2018/ac-simple/275-twin": 35.0,
     "library/en50318-2018/ac-simple/320": 35.0,
@@ -70,6 +72,7 @@ TOPICS: dict[str, Callable[[], Topic]] = {
     "moving-load": study_moving_load,
     "long-string": study_long_string,
     "balances": study_balances,
+    "contact-laws": study_contact_laws,
 }
 """Topics of the verification against closed forms."""
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba.core.runtime import rtsys
@@ -39,6 +40,20 @@ def test_step_equals_the_plain_implementation_through_slack_droppers_and_lost_co
     assert (np.diff(lost.astype(int), axis=0) == 1).any(axis=0).all()  # each pantograph loses contact
     assert (np.diff(lost.astype(int), axis=0) == -1).any(axis=0).all()  # and regains it
     assert max(difference.values()) < 1e-9, difference
+
+
+@pytest.mark.parametrize("changes", [{"contact_stiffness": np.inf}, {"contact_damping": 60.0}])
+def test_step_equals_the_plain_implementation_with_other_contact_laws(changes: dict[str, float]) -> None:
+    """A constraint, and a damper beside the spring, through lost contact; to 1e-9 as above.
+
+    A constraint is a hundred times as stiff, so that 1e-9 N change the force of the next step by ten times as much.
+    """
+    line = discretise(simple_line(spans=2, span=50.0, droppers=(5.0, 25.0, 45.0), damping=DAMPED), 2.5)
+    pantographs = (replace(PANTOGRAPH_2002, **changes), replace(THREE_MASSES, **changes))
+    passage = Passage(pantographs, (12.0, 4.0), 100.0, 0.6, 2e-3)
+    difference, _, contact = largest_differences(line, passage, 300, drop=1.5)
+    assert (np.diff((contact == 0.0).astype(int), axis=0) != 0).any(axis=0).all()  # each loses or regains contact
+    assert max(difference.values()) < 1e-8, difference
 
 
 def test_step_equals_the_plain_implementation_without_connectors() -> None:
