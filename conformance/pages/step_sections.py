@@ -193,7 +193,7 @@ def _validity_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple
     table = doc.make_table(
         claims,
         {
-            doc.Column("Claim", 2): lambda claim: f"{read_words()['claim'][claim.kind]} {claim.name}".strip(),
+            doc.Column("Claim", 2): lambda claim: (read_words()["claim"][claim.kind], f" {claim.name}".rstrip()),
             doc.Column("Claimed", 2): lambda claim: _format_range(claim.claimed, claim.unit),
             doc.Column("Verified", 2): lambda claim: _format_range(claim.verified, claim.unit),
             doc.Column("Verdict"): lambda claim: doc.VerdictMark(claim.verdict),

@@ -21,12 +21,12 @@ from pantocheck.conformance.results.report_files import LANGUAGES
 ARGUMENT = re.compile(r"\{([nstx])\d*\}")
 """Argument of an entry."""
 
-PARTS = {"n": r"[-−+]?\d[\d.]*(?:e[-−+]?\d+)?", "x": r"(?:(?![.!?] [^\W\d_]|; ).)+?", "s": ".+", "t": ".+?"}
+ARGUMENT_TEXTS = {"n": r"[-−+]?\d[\d.]*(?:e[-−+]?\d+)?", "x": r"(?:(?![.!?] [^\W\d_]|; ).)+?", "s": ".+", "t": ".+?"}
 """Texts of arguments as regular expressions; `{x}` ends with its sentence or its item of a list."""
 
 WORD = re.compile(r"[^\W\d_]+")
 SENTENCE_END = re.compile(r"(?<=[.!?]) (?=\S)")
-EDGE = re.compile(r"^([\s.,;:]*)(.*?)([\s.,;:]*)$", re.DOTALL)
+SURROUNDED = re.compile(r"^([\s.,;:]*)(.*?)([\s.,;:]*)$", re.DOTALL)
 """Punctuation and spaces around a text, and the text."""
 
 MARKED = re.compile(r'translate\("((?:[^"\\]|\\.)*)"\)')
@@ -37,6 +37,9 @@ LETTERS_OF_A_FRAME = 4
 
 DRAWN = re.compile(r"(<text\b[^>]*>|<title>)([^<>]+)(?=</t)")
 """Text of a figure."""
+
+LIST_JOINT = "{t}; {t2}"
+"""Entry that divides a list, whose items stand on their own."""
 
 LETTER_SIZE = re.compile(r"(font(?:-size)?: )([\d.]+)px")
 SMALLEST_LETTERS = 0.7
@@ -97,7 +100,7 @@ def _index(language: str) -> Mapping[str, tuple[Entry, ...]]:
 def _compile(key: str) -> re.Pattern[str]:
     """Expression of a key, with one group for each argument."""
     parts = ARGUMENT.split(key)
-    pieces = [re.escape(part) if i % 2 == 0 else f"({PARTS[part]})" for i, part in enumerate(parts)]
+    pieces = [re.escape(part) if i % 2 == 0 else f"({ARGUMENT_TEXTS[part]})" for i, part in enumerate(parts)]
     return re.compile("".join(pieces), re.DOTALL)
 
 
@@ -136,7 +139,7 @@ def _list_candidates(text: str, language: str) -> Iterator[Translation]:
         yield _join_sentences(pieces, language)
     if found := _match(text, language, [""]):
         yield found
-    before, core, after = EDGE.match(text).groups()  # type: ignore[union-attr]  # it matches every text
+    before, core, after = SURROUNDED.match(text).groups()  # type: ignore[union-attr]  # it matches every text
     if core and (before or after):
         inner = translate(core, language)
         yield Translation(f"{before}{inner.text}{after}", inner.missing)
@@ -155,7 +158,7 @@ def _match(text: str, language: str, words: list[str]) -> Translation | None:
             filled = _fill(entry, match, language)
             if not filled.missing:
                 return filled
-            if entry.letters >= LETTERS_OF_A_FRAME:
+            if entry.letters >= LETTERS_OF_A_FRAME or entry.key == LIST_JOINT:
                 found.append(filled)
     return min(found, key=lambda candidate: candidate.lack, default=None)
 
