@@ -1,7 +1,8 @@
 """Modal damping of selected modes, in place of their Rayleigh damping.
 
 C = C_R + M Phi diag(2 zeta_j w_j - phi_j' C_R phi_j) Phi' M   (Bianchi et al. 2010). The second term gives the selected
-modes exactly their damping ratios and does not change any other mode. It is a full matrix of low rank and never formed.
+modes their damping ratios and does not change any other mode: exactly if C_R is diagonal in the modes, as with equal
+coefficients of all components, otherwise to first order in the damping. It is a full matrix of low rank, never formed.
 """
 
 from dataclasses import dataclass
