@@ -84,6 +84,7 @@ def assemble_drop_record(table: MeasuredTable, sidecar: DropSidecar | None) -> D
         drop=build_drop(attributes, table.where, n / rate),
         line=build_line(attributes, table.where),
         warnings=tuple(warnings),
+        shared_clock=None if (shared := attributes.get("shared_clock")) is None else bool(shared),
         force=force,
     )
 

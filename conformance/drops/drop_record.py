@@ -71,6 +71,8 @@ class DropRecord:
     """Caveats on the record."""
     file: str = ""
     """Path of the file, which distinguishes files of the same name; empty if the record was not read."""
+    shared_clock: bool | None = None
+    """Whether the sensors are stated to share a clock; None: not stated."""
     force: RealArray | None = None
     """Measured force of a hammer or shaker, (n,) [N]; None: the line is not driven."""
 

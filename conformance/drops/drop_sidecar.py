@@ -48,6 +48,8 @@ class DropRecordTable(InputTable):
     """Number of channels."""
     quantity: MotionQuantity | None = None
     """Measured quantity."""
+    shared_clock: bool | None = None
+    """true: one clock samples all sensors; default: the clocks are compared, and corrected."""
 
 
 class DropChannelTable(InputTable):
@@ -104,6 +106,7 @@ class DropSidecar(TableSidecar):
             "drop_wire": self.drop.wire,
             "drop_position_m": self.drop.position_m,
             "trigger_nominal_s": self.record.trigger_nominal_s,
+            "shared_clock": self.record.shared_clock,
             "spans_m": self.test.spans_m,
             "cw_tension_n": self.test.cw_tension_n,
             "mw_tension_n": self.test.mw_tension_n,

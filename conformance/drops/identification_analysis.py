@@ -16,10 +16,12 @@ from pantocheck.conformance.drops.identify import Identification, PoleSearch
 from pantocheck.conformance.drops.line_fit import LineFit, RecordFit, measure_ambient_motion
 from pantocheck.conformance.drops.mode_groups import warn_about_overlap
 from pantocheck.conformance.drops.repeatability import compare_records, overlay_records, round_curve
+from pantocheck.conformance.drops.sensor_clocks import SensorClock
 from pantocheck.conformance.drops.start_poles import BandTrials
 from pantocheck.conformance.results.identification_format import (
     BandOrders,
     HalfPowerLines,
+    IdentifiedClock,
     IdentifiedLine,
     IdentifiedRecord,
     ModeGroup,
@@ -51,6 +53,8 @@ def analyse_identification(identification: Identification) -> IdentifiedLine:
         warnings=(*identification.warnings, *warn_about_overlap(modes)),
         spans_m=decays[0].record.line.spans_m,
         records=tuple(_record(decay) for decay in decays),
+        clocks=tuple(_describe_clock(clock) for clock in identification.clocks),
+        shared_clock=decays[0].record.shared_clock,
         groups=_groups(fit, modes),
         modes=modes,
         half_power=count_half_power_lines(modes),
@@ -81,6 +85,16 @@ def _record(decay: PreparedDecay) -> IdentifiedRecord:
             RecordSensor(channel=channel.name, wire=channel.wire, position_m=channel.position)
             for channel in decay.channels
         ),
+    )
+
+
+def _describe_clock(clock: SensorClock) -> IdentifiedClock:
+    return IdentifiedClock(
+        sensor=clock.sensor,
+        rate_ppm=1e6 * clock.rate,
+        rate_std_ppm=1e6 * clock.rate_std,
+        start_ms=1e3 * clock.start,
+        corrected=clock.deviates or clock.is_late,
     )
 
 

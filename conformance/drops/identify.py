@@ -36,10 +36,21 @@ from pantocheck.conformance.drops.model_order import (
 )
 from pantocheck.conformance.drops.noise_estimate import LEAST_EXCESS, residual_excess, select_driven_poles
 from pantocheck.conformance.drops.projection import DataBlock, build_block
+from pantocheck.conformance.drops.sensor_clocks import (
+    SensorClock,
+    align_record,
+    compare_clocks,
+    describe_clocks,
+    list_corrections,
+    refuse_shared_clock,
+    sum_clocks,
+)
 from pantocheck.conformance.drops.start_poles import BandTrials, join_start_poles, try_orders
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model.description.one_thread import use_one_thread
 
+CLOCK_ROUNDS = 8
+"""Largest number of identifications until the clocks of the sensors agree."""
 DRIVEN_STEPS = 4
 """Largest number of steps of the last refinement beside process noise; the search leaves little to refine."""
 SHARED_POLES = 1.5
@@ -76,6 +87,8 @@ class Identification:
     """Caveats on the whole identification."""
     search: PoleSearch = PoleSearch()
     """Steps of the search for the poles."""
+    clocks: tuple[SensorClock, ...] = ()
+    """Clocks of the sensors, against that of the first one; empty: not compared."""
 
 
 @use_one_thread
@@ -137,7 +150,35 @@ def _identify_line(
     for record in records:
         progress(f"{record.name}: release and linear decay")
         decays.append(exclude_stretches(prepare_decay(record, band), plan))
-    return identify_decays(decays, band, start, progress, plan)
+    return identify_on_one_clock(decays, band, start, progress, plan)
+
+
+def identify_on_one_clock(
+    decays: list[PreparedDecay],
+    band: FrequencyBand,
+    start: ComplexArray | None,
+    progress: Callable[[str], None],
+    plan: IdentificationPlan = NO_PLAN,
+) -> Identification:
+    """Identify decays as `identify_decays`, and correct the clocks of the sensors until they agree.
+
+    Raises:
+        InputError: The records state one clock, and the decays refute it.
+    """
+    applied: list[SensorClock] = []
+    for _ in range(CLOCK_ROUNDS):
+        found = identify_decays(decays, band, start, progress, plan)
+        compared = () if plan.method == "classical" else compare_clocks(found.fit)
+        clocks, moved = sum_clocks(compared, applied), list_corrections(compared)
+        if not moved:
+            break
+        records = [decay.record for decay in decays]
+        refuse_shared_clock(records, clocks)
+        applied += moved
+        progress(f"{records[0].name}: clocks of the sensors")
+        aligned = [align_record(record, moved) for record in records]
+        decays = [exclude_stretches(prepare_decay(record, band), plan) for record in aligned]
+    return replace(found, clocks=clocks, warnings=(*found.warnings, *describe_clocks(clocks)))
 
 
 def identify_decays(

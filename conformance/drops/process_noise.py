@@ -60,12 +60,15 @@ class ProcessNoise:
         """Responses H of the modes, (k, m) [-]."""
         return np.asarray(-self.poles.real / (1j * omega[:, None] - self.poles))
 
+    def covariance(self, omega: RealArray) -> ComplexArray:
+        """Covariance of the channels at each line, (k, c, c) [squared unit of the spectrum]."""
+        power = self.power * np.abs(self.response(omega)) ** 2
+        ambient = np.einsum("km,mc,md->kcd", power, self.shapes, self.shapes.conj(), optimize=True)
+        return np.asarray(ambient + self.floor_at(omega)[:, :, None] ** 2 * np.eye(self.floor.shape[1]))
+
     def whiten(self, data: DataBlock) -> DataBlock:
         """Block with the whitening of this noise."""
-        power = self.power * np.abs(self.response(data.omega)) ** 2
-        covariance = np.einsum("km,mc,md->kcd", power, self.shapes, self.shapes.conj(), optimize=True)
-        covariance += self.floor_at(data.omega)[:, :, None] ** 2 * np.eye(self.floor.shape[1])
-        return replace(data, whitening=np.asarray(np.linalg.inv(np.linalg.cholesky(covariance))))
+        return replace(data, whitening=np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariance(data.omega)))))
 
     def levels(self, data: DataBlock, low: float, high: float) -> tuple[RealArray, RealArray]:
         """RMS of ambient motion and of floor of each channel in a band [Hz], (c,) each [unit of the record]."""

@@ -17,6 +17,7 @@ from pantocheck.conformance.pages.words import clean_tree, format_percent, forma
 from pantocheck.conformance.results.identification_format import (
     Comparison,
     HalfPowerLines,
+    IdentifiedClock,
     IdentifiedLine,
     IdentifiedRecord,
     ModeGroup,
@@ -153,6 +154,9 @@ def list_record_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
         )
         yield doc.Figures((figure,))
     yield _record_table(line.records)
+    if line.clocks:
+        stated = {None: "not stated", True: "one clock", False: "clocks of their own"}[line.shared_clock]
+        yield _clock_table(line.clocks, stated)
     yield doc.Figures((_spectrogram_figure(line.spectrogram, line.records[0]),))
 
 
@@ -206,6 +210,16 @@ def _record_table(records: Sequence[IdentifiedRecord]) -> doc.Table:
         "Channels": lambda record: ", ".join(record.channels),
     }
     return doc.make_grid("Records and the part of each that was used", records, cells)
+
+
+def _clock_table(clocks: Sequence[IdentifiedClock], stated: str) -> doc.Table:
+    cells: dict[str, Callable[[IdentifiedClock], str]] = {
+        "Sensor": lambda clock: str(clock.sensor),
+        "Rate [ppm]": lambda clock: f"{format_value(clock.rate_ppm, 3)} ± {format_value(clock.rate_std_ppm, 2)}",
+        "Start [ms]": lambda clock: format_value(clock.start_ms, 2),
+        "Corrected": lambda clock: "yes" if clock.corrected else "no",
+    }
+    return doc.make_grid(f"Clocks of the sensors against the first one; stated: {stated}", clocks, cells)
 
 
 # Frequency responses.

@@ -220,6 +220,19 @@ class HalfPowerLines(RoundedModel):
     """Linear decay that gives the recommended number to every certain mode [s]."""
 
 
+class IdentifiedClock(RoundedModel):
+    """Clock of a sensor against that of the first one."""
+
+    sensor: int
+    rate_ppm: Rounded
+    """Relative rate; positive: the clock is fast."""
+    rate_std_ppm: Rounded
+    start_ms: Rounded
+    """Start of its record after that of the first sensor [ms]."""
+    corrected: bool
+    """Whether the record was corrected; otherwise the sensors share a clock within the uncertainty."""
+
+
 class IdentifiedLine(RoundedModel):
     """Identification of one line from all its records."""
 
@@ -233,6 +246,10 @@ class IdentifiedLine(RoundedModel):
     spans_m: tuple[float, ...] = ()
     """Lengths of the spans [m]; empty: unknown."""
     records: tuple[IdentifiedRecord, ...]
+    clocks: tuple[IdentifiedClock, ...] = ()
+    """Clocks of the sensors; empty: a single sensor, or not compared."""
+    shared_clock: bool | None = None
+    """Clock that the records state; null: not stated."""
     groups: tuple[ModeGroup, ...]
     modes: tuple[Mode, ...]
     half_power: HalfPowerLines

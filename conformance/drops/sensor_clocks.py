@@ -1,0 +1,197 @@
+"""Clocks of the sensors: rate and start of each clock against that of the first sensor, from the decays themselves.
+
+A clock that is fast by a rate e stretches its record: all poles of the sensor are lower by the factor 1 / (1 + e). The
+rates are unknowns beside the poles in one Gauss-Newton step from the poles of a common clock; the start of a clock
+turns the phase of each mode by omega times the start.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.drops.drop_record import DropRecord
+from pantocheck.conformance.drops.line_fit import LineFit
+from pantocheck.conformance.drops.pole_refinement import build_normal_equations
+from pantocheck.conformance.drops.projection import DataBlock
+
+REFUTED = 4.5
+"""Rate over its standard deviation, from which on a common clock is refuted [-]."""
+LEAST_RATE = 1e-6
+"""Smallest rate that counts: crystals of one recorder differ by less [-]."""
+LONGEST_START, LEAST_START = 0.25, 0.002
+"""Largest start of a clock that the phases of the modes show, and the smallest that counts [s]."""
+TAPS, SMOOTH = 32, 8.0
+"""Number of samples and shape (Kaiser) of the interpolation between samples."""
+
+
+@dataclass(frozen=True)
+class SensorClock:
+    """Clock of a sensor against that of the first sensor of the first record."""
+
+    sensor: int
+    rate: float
+    """Relative rate, positive: the clock is fast [-]."""
+    rate_std: float
+    start: float
+    """Start of its record after that of the first sensor [s]."""
+    start_std: float
+    """Standard deviation of the start, from the scatter of the phases [s]."""
+
+    @property
+    def deviates(self) -> bool:
+        """Whether the clock is not that of the first sensor."""
+        return abs(self.rate) > max(REFUTED * self.rate_std, LEAST_RATE)
+
+    @property
+    def is_late(self) -> bool:
+        """Whether its record starts at another time than that of the first sensor."""
+        return abs(self.start) > max(REFUTED * self.start_std, LEAST_START)
+
+
+def compare_clocks(fit: LineFit) -> tuple[SensorClock, ...]:
+    """Clocks of the sensors of a fit; a single sensor has none to compare with."""
+    sensors = list(dict.fromkeys(channel.sensor for record in fit.records for channel in record.decay.channels))
+    m = fit.poles.size
+    if len(sensors) < 2 or not m:
+        return ()
+    direction = np.concatenate([-fit.poles.real, fit.poles.imag])
+    matrix, gradient = np.zeros((2 * m + len(sensors),) * 2), np.zeros(2 * m + len(sensors))
+    for number, sensor in enumerate(sensors):
+        equations = build_normal_equations(fit.poles, _select_sensor(fit, sensor))
+        # A fast clock shows lower poles.
+        column, own = -equations.matrix @ direction, 2 * m + number
+        matrix[: 2 * m, : 2 * m] += equations.matrix
+        matrix[own, : 2 * m] = matrix[: 2 * m, own] = column
+        matrix[own, own] = -direction @ column
+        gradient[: 2 * m] += equations.gradient
+        gradient[own] = -direction @ equations.gradient
+    used = np.delete(np.arange(gradient.size), 2 * m)
+    scale = np.sqrt(np.maximum(np.diag(matrix)[used], np.finfo(float).tiny))
+    covariance = np.linalg.pinv(matrix[np.ix_(used, used)] / np.outer(scale, scale), hermitian=True)
+    rates = (covariance @ (gradient[used] / scale) / scale)[2 * m :]
+    stds = (np.sqrt(np.diag(covariance)) / scale)[2 * m :]
+    starts = [_find_start(fit, sensors[0], sensor) for sensor in sensors[1:]]
+    return tuple(
+        SensorClock(sensor, float(rate), float(std), *start)
+        for sensor, rate, std, start in zip(sensors[1:], rates, stds, starts, strict=True)
+    )
+
+
+def _select_sensor(fit: LineFit, sensor: int) -> list[DataBlock]:
+    """Blocks with the channels of one sensor, in units of their noise."""
+    blocks = []
+    for block in fit.blocks:
+        columns = [
+            record.columns.start + number
+            for record in fit.records
+            if record.block is block
+            for number, channel in enumerate(record.decay.channels)
+            if channel.sensor == sensor
+        ]
+        if columns:
+            spectrum = block.data.spectrum[:, columns]
+            if block.process is None:
+                blocks.append(replace(block.data, spectrum=spectrum / block.noise[columns], whitening=None))
+                continue
+            own = np.asarray(block.process.covariance(block.data.omega)[:, columns][:, :, columns])
+            white = np.asarray(np.linalg.inv(np.linalg.cholesky(own)))
+            blocks.append(replace(block.data, spectrum=spectrum, whitening=white))
+    return blocks
+
+
+def _find_start(fit: LineFit, first: int, sensor: int) -> tuple[float, float]:
+    """Start of a clock that makes the phases of the modes at both sensors equal or opposite, and its deviation [s]."""
+    omega, phase, weight = [], [], []
+    for record in fit.records:
+        columns = {channel.sensor: number for number, channel in enumerate(record.decay.channels)}
+        if first in columns and sensor in columns:
+            a, b = (record.residues[:, columns[key]] / record.noise[columns[key]] for key in (first, sensor))
+            omega.append(fit.poles.imag)
+            phase.append(2 * np.angle(b * a.conj()))
+            weight.append(np.minimum(np.abs(a), np.abs(b)))
+    if not omega:
+        return 0.0, np.inf
+    w, p, s = (np.concatenate(values) for values in (omega, phase, weight))
+    trials = np.arange(-LONGEST_START, LONGEST_START, 1e-4)
+    score = np.cos(p[:, None] - 2 * np.outer(w, trials)).T @ s
+    start = float(trials[int(np.argmax(score))])
+    left = np.angle(np.exp(1j * (p - 2 * w * start))) / 2
+    return start, float(np.sqrt(np.sum((s * w * left) ** 2)) / np.sum(s * w**2))
+
+
+def list_corrections(clocks: Sequence[SensorClock]) -> list[SensorClock]:
+    """Next corrections: rates that deviate; once none does, starts that differ. Wrong rates disturb the phases."""
+    if any(clock.deviates for clock in clocks):
+        return [replace(clock, start=0.0) for clock in clocks if clock.deviates]
+    if any(clock.is_late for clock in clocks):
+        return [replace(clock, rate=0.0) for clock in clocks if clock.is_late]
+    return []
+
+
+def sum_clocks(last: Sequence[SensorClock], applied: Sequence[SensorClock]) -> tuple[SensorClock, ...]:
+    """Clocks found last, with the corrections that were applied before."""
+    return tuple(
+        replace(
+            clock,
+            rate=clock.rate + sum(other.rate for other in applied if other.sensor == clock.sensor),
+            start=clock.start + sum(other.start for other in applied if other.sensor == clock.sensor),
+        )
+        for clock in last
+    )
+
+
+def refuse_shared_clock(records: Sequence[DropRecord], clocks: Iterable[SensorClock]) -> None:
+    """Refuse records whose sidecar states a clock that their sensors do not share.
+
+    Raises:
+        InputError: A rate or a start differs.
+    """
+    stated = next((record for record in records if record.shared_clock), None)
+    worst = max(clocks, key=lambda clock: abs(clock.rate / max(clock.rate_std, LEAST_RATE)), default=None)
+    if stated is not None and worst is not None:
+        raise InputError(
+            stated.name,
+            f"states one clock for all sensors, but that of sensor {worst.sensor} {_describe_clock(worst)}",
+            "Correct the times of the sensors, or state shared_clock = false: clocks are then found from the record.",
+        )
+
+
+def describe_clocks(clocks: Iterable[SensorClock]) -> tuple[str, ...]:
+    """Sentence on the corrected clocks; none if the sensors share a clock."""
+    wrong = [clock for clock in clocks if clock.deviates or clock.is_late]
+    if not wrong:
+        return ()
+    parts = "; ".join(f"sensor {clock.sensor} {_describe_clock(clock)}" for clock in wrong)
+    return (f"the sensors have clocks of their own, which are corrected: {parts}, against the first sensor",)
+
+
+def _describe_clock(clock: SensorClock) -> str:
+    rate = (
+        f"runs {'fast' if clock.rate > 0 else 'slow'} by {1e6 * abs(clock.rate):.1f} +- {1e6 * clock.rate_std:.1f} ppm"
+    )
+    return f"{rate} and starts {1e3 * abs(clock.start):.1f} ms {'late' if clock.start > 0 else 'early'}"
+
+
+def align_record(record: DropRecord, clocks: Sequence[SensorClock]) -> DropRecord:
+    """Record with the samples of every sensor at the times of the first one."""
+    signals = record.signals.copy()
+    for clock in clocks:
+        columns = [number for number, channel in enumerate(record.channels) if channel.sensor == clock.sensor]
+        place = (record.time * (1 + clock.rate) - clock.start) * record.rate
+        signals[:, columns] = interpolate(signals[:, columns], place)
+    return replace(record, signals=signals)
+
+
+def interpolate(samples: RealArray, place: RealArray) -> RealArray:
+    """Band-limited signals, (n, c), at places between their samples, (p,); beyond the ends they are constant."""
+    whole = np.floor(place).astype(int)
+    offsets = np.arange(1 - TAPS // 2, TAPS // 2 + 1)
+    distance = place[:, None] - whole[:, None] - offsets
+    window = np.i0(SMOOTH * np.sqrt(np.maximum(1 - (2 * distance / TAPS) ** 2, 0))) / np.i0(SMOOTH)
+    weights = np.sinc(distance) * window
+    weights /= weights.sum(axis=1, keepdims=True)
+    nearby = samples[np.clip(whole[:, None] + offsets, 0, samples.shape[0] - 1)]
+    return np.asarray(np.einsum("pt,ptc->pc", weights, nearby))
