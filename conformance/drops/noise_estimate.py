@@ -21,11 +21,11 @@ from pantocheck.conformance.drops.projection import (
 
 FLOOR_WIDTH = 0.5
 """Distance of the nodes of the noise floor [Hz]."""
-SECTION, MARGIN = 2 * np.pi * 0.7, 2 * np.pi * 0.15
+NOISE_SECTION, NOISE_MARGIN = 2 * np.pi * 0.7, 2 * np.pi * 0.15
 """Width of the band whose noise is estimated together, and that of its margins [rad/s]."""
 FIRST_UPDATES, NEXT_UPDATES, LAST_UPDATES = 6, 4, 8
 """Numbers of updates of the variance components: first estimate, each round of the search, last estimate."""
-ROUNDS, EQUAL = 6, 0.1
+SEARCH_ROUNDS, EQUAL = 6, 0.1
 """Largest number of rounds of the search, and the share of a decay rate below which a pole no longer moves."""
 LEAST_REST_RATIO, SIGNIFICANT = 1.4, 5.0
 """Mean power at rest in the band of the modes over that above it, and over its scatter, that count as motion [-]."""
@@ -36,7 +36,7 @@ LEAST_EXCESS = 1.15
 
 It is 0.70 to 0.95 in records with white noise alone, and 0.97 to 1.5 with ambient motion of a tenth of that noise.
 """
-NEAR_LINES = 8
+NEARBY_LINES = 8
 """Number of spectral lines on each side of a mode in this ratio."""
 
 
@@ -65,7 +65,7 @@ def residual_excess(poles: ComplexArray, blocks: list[DataBlock]) -> float:
         fit = solve_residues(poles, data)
         q, _ = factor_columns(np.hstack([pole_columns(poles, data), data.residual_terms]))
         left = 2 - np.sum((q**2).reshape(2, data.lines.size, -1), axis=(0, 2))
-        near = np.abs(data.omega[:, None] - poles.imag) < NEAR_LINES * 2 * np.pi / data.duration
+        near = np.abs(data.omega[:, None] - poles.imag) < NEARBY_LINES * 2 * np.pi / data.duration
         far = ~near.any(axis=1)
         used = far if far.sum() > 0.2 * far.size else np.ones_like(far)
         square = np.sum(np.abs(fit.residual[used]) ** 2, axis=0) / np.sum(left[used])
@@ -81,7 +81,7 @@ def residual_excess(poles: ComplexArray, blocks: list[DataBlock]) -> float:
 
 def select_driven_poles(poles: ComplexArray, blocks: list[DataBlock]) -> PoleSelection:
     """Select poles from start poles [1/s], with process noise; the noise of the result belongs to its poles."""
-    selected = repeat_selection(poles, blocks, ROUNDS, estimate_process_noise, EQUAL)
+    selected = repeat_selection(poles, blocks, SEARCH_ROUNDS, estimate_process_noise, EQUAL)
     return PoleSelection(selected.poles, _estimate(selected.poles, blocks, selected.noise, LAST_UPDATES))
 
 
@@ -102,13 +102,13 @@ def _estimate(
         noise = before if isinstance(before, ProcessNoise) else _start_noise(data, fit)
         noise = _follow_poles(noise, poles, data, fit)
         prior = noise.prior
-        for low in np.arange(data.omega[0], data.omega[-1], SECTION):
-            local = restrict_fit(poles, [data], [fit], low + SECTION / 2, SECTION / 2 + MARGIN)
+        for low in np.arange(data.omega[0], data.omega[-1], NOISE_SECTION):
+            local = restrict_fit(poles, [data], [fit], low + NOISE_SECTION / 2, NOISE_SECTION / 2 + NOISE_MARGIN)
             if not local.blocks:
                 continue
             updated = update_components(noise, local.blocks[0], local.poles, prior, updates)
-            own = (noise.poles.imag >= low) & (noise.poles.imag < low + SECTION)
-            nodes = (noise.nodes > low - 1e-9) & (noise.nodes < low + SECTION)
+            own = (noise.poles.imag >= low) & (noise.poles.imag < low + NOISE_SECTION)
+            nodes = (noise.nodes > low - 1e-9) & (noise.nodes < low + NOISE_SECTION)
             noise = replace(
                 noise,
                 power=np.where(own, updated.power, noise.power),

@@ -31,7 +31,7 @@ from pantocheck.conformance.drops.projection import DataBlock, factor_columns, s
 PRIOR_FREEDOM = 4.0
 """Degrees of freedom of the prior of a power: shapes at the sensors differ by a factor of about two [-]."""
 
-NEIGHBOURS = 2 * np.pi * 0.7
+NEIGHBOUR_REACH = 2 * np.pi * 0.7
 """Distance of the modes whose mean power is the prior [rad/s]."""
 
 
@@ -83,7 +83,7 @@ class ProcessNoise:
     def prior(self) -> RealArray:
         """Mean power of the neighbours of each mode, by its logarithm, for equal forces on the modes, (m,) [-]."""
         damping = (self.poles.real / self.poles.imag) ** 2
-        near = np.abs(self.poles.imag[:, None] - self.poles.imag) < NEIGHBOURS
+        near = np.abs(self.poles.imag[:, None] - self.poles.imag) < NEIGHBOUR_REACH
         weight = near * (self.freedom + 1e-3)
         level = np.log(np.maximum(self.power * damping, np.finfo(float).tiny))
         return np.asarray(np.maximum(np.exp(weight @ level / weight.sum(axis=1)) / damping, 1e-6))
