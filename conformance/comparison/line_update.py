@@ -23,7 +23,7 @@ from pantocheck.conformance.line.line_parameters import (
     MECHANICAL,
     PARAMETER_GROUPS,
     LineParameter,
-    build_tolerances,
+    build_factor_covariance,
     scale_line,
 )
 from pantocheck.conformance.records.record import Record
@@ -43,13 +43,13 @@ HEIGHT_ERROR_M, HEIGHT_TOLERANCE_M = 0.003, 0.02
 STEP_SHARE = 0.5
 """Step of the central differences, over the standard deviation of the factor [-]."""
 
-REFINEMENTS = 3
+GAUSS_NEWTON_STEPS = 3
 """Number of Gauss-Newton steps for the elasticities."""
 
-BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
+UPDATING_BANDS = ("rms_0_5_N", "rms_5_20_N", "rms_20_50_N")
 """Quantities of a passage: bands partition the variance of the force, so that they are measured apart."""
 
-LEVEL = 0.01
+HOLD_OUT_LEVEL = 0.01
 """Probability that the held-out passage refuses a right line [-]."""
 
 Predict = Callable[[RealArray], RealArray]
@@ -57,7 +57,7 @@ Predict = Callable[[RealArray], RealArray]
 
 
 @dataclass(frozen=True)
-class Estimate:
+class LineEstimate:
     """Normal estimate of the factors of the properties."""
 
     parameters: tuple[LineParameter, ...]
@@ -83,14 +83,16 @@ class MeasuredPassage:
         return _list_bands(self.case, self.record)
 
 
-def begin_estimate(line: LineFile) -> Estimate:
+def begin_estimate(line: LineFile) -> LineEstimate:
     """Estimate by the tolerances alone; a property whose value is zero is left out."""
     catenary = build_catenary(line)
     parameters = tuple(each for each in (*MECHANICAL, *DAMPING) if each.scale(catenary, 2.0) != catenary)
-    return Estimate(parameters, np.ones(len(parameters)), build_tolerances(line, parameters))
+    return LineEstimate(parameters, np.ones(len(parameters)), build_factor_covariance(line, parameters))
 
 
-def update_by_modes(estimate: Estimate, line: LineFile, modes: Sequence[Mode], element: float, source: str) -> Estimate:
+def update_by_modes(
+    estimate: LineEstimate, line: LineFile, modes: Sequence[Mode], element: float, source: str
+) -> LineEstimate:
     """Estimate with identified modes, which determine the damping as well.
 
     Raises:
@@ -115,7 +117,7 @@ def update_by_modes(estimate: Estimate, line: LineFile, modes: Sequence[Mode], e
     )
 
 
-def update_by_elasticity(estimate: Estimate, line: LineFile, record: StaticRecord, element: float) -> Estimate:
+def update_by_elasticity(estimate: LineEstimate, line: LineFile, record: StaticRecord, element: float) -> LineEstimate:
     """Estimate with elasticities that were measured along the line."""
     measured = record.values["elasticity"]
     known = np.isfinite(measured)
@@ -130,10 +132,10 @@ def update_by_elasticity(estimate: Estimate, line: LineFile, record: StaticRecor
         return np.asarray((high - low) / (forces[1] - forces[0]))
 
     mechanical = [number for number, each in enumerate(estimate.parameters) if each.group is not None]
-    return update_linear(estimate, "elasticity", predict, mechanical, measured, std, REFINEMENTS)
+    return update_linear(estimate, "elasticity", predict, mechanical, measured, std, GAUSS_NEWTON_STEPS)
 
 
-def update_by_passage(estimate: Estimate, line: LineFile, passage: MeasuredPassage) -> Estimate:
+def update_by_passage(estimate: LineEstimate, line: LineFile, passage: MeasuredPassage) -> LineEstimate:
     """Estimate with the bands of a recorded passage."""
     measured = np.array([value for _, _, value in passage.values])
     places = list(range(len(estimate.parameters)))
@@ -142,14 +144,14 @@ def update_by_passage(estimate: Estimate, line: LineFile, passage: MeasuredPassa
 
 
 def update_linear(
-    estimate: Estimate,
+    estimate: LineEstimate,
     name: str,
     predict: Predict,
     places: Sequence[int],
     measured: RealArray,
     std: RealArray,
     steps: int,
-) -> Estimate:
+) -> LineEstimate:
     """Estimate with measured values of independent errors, by Gauss-Newton steps.
 
     Args:
@@ -173,11 +175,11 @@ def update_linear(
     misfit = float(residual @ residual) / freedom
     covariance = np.linalg.inv(information + weighted.T @ weighted / max(misfit, 1.0))
     used = UsedData(name=name, values=measured.size, misfit=misfit)
-    return Estimate(estimate.parameters, np.asarray(factors), np.asarray(covariance), (*estimate.data, used))
+    return LineEstimate(estimate.parameters, np.asarray(factors), np.asarray(covariance), (*estimate.data, used))
 
 
 def differentiate(
-    estimate: Estimate, predict: Predict, places: Sequence[int], factors: RealArray
+    estimate: LineEstimate, predict: Predict, places: Sequence[int], factors: RealArray
 ) -> tuple[RealArray, RealArray]:
     """Values of a model, (n,), and their derivatives by all factors, (n, p): zero but for some properties."""
     value = predict(factors)
@@ -188,7 +190,7 @@ def differentiate(
     return value, slope
 
 
-def simulate_bands(passage: MeasuredPassage, line: LineFile, estimate: Estimate) -> Predict:
+def simulate_bands(passage: MeasuredPassage, line: LineFile, estimate: LineEstimate) -> Predict:
     """Bands of a passage on the line with changed properties, at the uplift forces of the line as it is."""
     case, places = passage.case, [(owner, name) for owner, name, _ in passage.values]
     discretisation, catenary = case.file.discretisation, build_catenary(line)
@@ -204,7 +206,7 @@ def simulate_bands(passage: MeasuredPassage, line: LineFile, estimate: Estimate)
 
 
 def judge_held_out(
-    estimate: Estimate, line: LineFile, passage: MeasuredPassage
+    estimate: LineEstimate, line: LineFile, passage: MeasuredPassage
 ) -> tuple[tuple[HeldOutValue, ...], float]:
     """Bands of a passage that took no part in the estimate, and the probability of their distance from it."""
     measured = np.array([value for _, _, value in passage.values])
@@ -235,7 +237,7 @@ def _list_bands(case: Case, record: Record) -> tuple[tuple[int, str, float], ...
     return tuple(
         (owner, name, float(value))
         for owner, quantities in sorted(values.items())
-        for name in BANDS
+        for name in UPDATING_BANDS
         if isinstance(value := quantities.get(name), float | int)
     )
 

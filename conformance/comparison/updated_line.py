@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from pantocheck.conformance.comparison.line_update import LEVEL, Estimate
+from pantocheck.conformance.comparison.line_update import HOLD_OUT_LEVEL, LineEstimate
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.near_limit import QUANTILE_95
 from pantocheck.conformance.core.verdicts import Verdict
@@ -16,12 +16,12 @@ from pantocheck.conformance.drops.line_evidence import DETERMINED
 from pantocheck.conformance.line.line_export import export_supports
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.line.line_import import import_line
-from pantocheck.conformance.line.line_parameters import build_tolerances
+from pantocheck.conformance.line.line_parameters import build_factor_covariance
 from pantocheck.conformance.results.damping_format import FittedProperty, JointCovariance
 from pantocheck.conformance.results.line_update_format import HeldOutValue, LineUpdate
 
 
-def build_updated_line(line: LineFile, estimate: Estimate, heights: Sequence[RealArray] | None) -> dict[str, Any]:
+def build_updated_line(line: LineFile, estimate: LineEstimate, heights: Sequence[RealArray] | None) -> dict[str, Any]:
     """Content of the line file of an estimate.
 
     Args:
@@ -50,14 +50,14 @@ def build_updated_line(line: LineFile, estimate: Estimate, heights: Sequence[Rea
 
 
 def describe_update(
-    estimate: Estimate,
+    estimate: LineEstimate,
     line: LineFile,
     heights: Sequence[RealArray] | None,
     held_out: tuple[HeldOutValue, ...],
     probability: float | None,
 ) -> LineUpdate:
     """Content of the covariance file; arguments as in `build_updated_line`, and the result of `judge_held_out`."""
-    tolerances = np.sqrt(np.diag(build_tolerances(line, estimate.parameters)))
+    tolerances = np.sqrt(np.diag(build_factor_covariance(line, estimate.parameters)))
     std = np.sqrt(np.diag(estimate.covariance))
     properties = tuple(
         FittedProperty(
@@ -72,7 +72,7 @@ def describe_update(
             estimate.parameters, estimate.factors, std, tolerances, strict=True
         )
     )
-    verdict: Verdict = "info" if probability is None else "pass" if probability >= LEVEL else "fail"
+    verdict: Verdict = "info" if probability is None else "pass" if probability >= HOLD_OUT_LEVEL else "fail"
     return LineUpdate(
         line=line.title,
         data=estimate.data,

@@ -36,7 +36,7 @@ from pantocheck.model.description.one_thread import use_one_thread
 MOST_STEPS = 8
 """Largest number of Gauss-Newton steps."""
 
-SMALLEST_STEP = 0.1
+LAST_CHANGE = 0.1
 """Change of a factor that ends the steps, over its standard deviation [-]."""
 
 LARGEST_STEP = 0.03
@@ -71,7 +71,7 @@ class Scatter(NamedTuple):
 START_SCATTER = Scatter(5e-4, MODEL_ERROR, 1.0)
 """Scatter of the first solution."""
 
-SMALLEST_SCATTER = Scatter(1e-5, 5e-4, 0.05)
+LEAST_SCATTER = Scatter(1e-5, 5e-4, 0.05)
 """Scatter by the discretisation alone: a fit of few modes cannot be better than its line."""
 
 
@@ -129,7 +129,7 @@ def fit_jointly(
         std = np.sqrt(np.diag(fit.covariance)[: int(prior.is_free.sum())])
         change = (np.abs(fit.factors - factors)[prior.is_free] / std).max(initial=0.0)
         factors, values = fit.factors, fit.values
-        if change < SMALLEST_STEP:
+        if change < LAST_CHANGE:
             break
     return fit
 
@@ -231,9 +231,9 @@ def _find_scatter(problem: _Problem, fit: JointFit, used: IntegerArray) -> Scatt
     frequency_std = np.array([(mode.frequency_std_Hz or 0.0) / mode.frequency_Hz for mode in modes])
     shape = left[2 * count :]
     return Scatter(
-        _match_size(left[:count], frequency_std, count - int(problem.prior.is_free.sum()), SMALLEST_SCATTER.frequency),
-        _match_size(within, measured.std / measured.damping_ratio, count - numbers.size, SMALLEST_SCATTER.damping),
-        max(float(np.sqrt(np.mean(shape**2))), SMALLEST_SCATTER.shape) if shape.size else 1.0,
+        _match_size(left[:count], frequency_std, count - int(problem.prior.is_free.sum()), LEAST_SCATTER.frequency),
+        _match_size(within, measured.std / measured.damping_ratio, count - numbers.size, LEAST_SCATTER.damping),
+        max(float(np.sqrt(np.mean(shape**2))), LEAST_SCATTER.shape) if shape.size else 1.0,
     )
 
 

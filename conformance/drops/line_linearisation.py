@@ -108,7 +108,9 @@ def linearise_line(
     reduced = reduce_line(matched.mesh, matched.shapes, neighbours)
     span = _Span(matched, neighbours, reduced, solve_reduced(reduced, np.zeros(len(parameters))))
     dampers = span.derive_ratios({})
-    columns = [span.derive_ratios({Kind(kind): UNITS[matrix]}) - dampers for kind in WIRES for matrix in MATRICES]
+    columns = [
+        span.derive_ratios({Kind(kind): UNIT_DAMPING[matrix]}) - dampers for kind in WIRES for matrix in MATRICES
+    ]
     stated = span.derive_ratios(list_other_damping(line))
     bands = tuple(replace(band, damping_ratio=0.0) for band in line.modal_damping)
     stated = stated * apply_modal_bands(np.ones(len(stated)), span.frequency, bands)[:, None]
@@ -124,7 +126,7 @@ def linearise_line(
     )
 
 
-UNITS = {"stiffness": Rayleigh(stiffness_coefficient=1.0), "mass": Rayleigh(mass_coefficient=1.0)}
+UNIT_DAMPING = {"stiffness": Rayleigh(stiffness_coefficient=1.0), "mass": Rayleigh(mass_coefficient=1.0)}
 """Damping of one kind with one coefficient, by its matrix."""
 
 

@@ -142,7 +142,7 @@ def scale_line(line: Catenary, parameters: Iterable[LineParameter], factors: Seq
     return line
 
 
-def build_tolerances(line: LineFile, parameters: Sequence[LineParameter]) -> RealArray:
+def build_factor_covariance(line: LineFile, parameters: Sequence[LineParameter]) -> RealArray:
     """Covariance of the factors of properties by the tolerances of a line file, (p, p) [-]."""
     return line.covariance_of([each.name for each in parameters], [each.tolerance for each in parameters])
 
@@ -153,7 +153,7 @@ def list_tolerance_lines(line: LineFile) -> list[Catenary]:
     if table is None:
         return []
     stated = [each for each in (*MECHANICAL, *DAMPING) if getattr(table, f"{each.name}_pct") is not None]
-    variance, direction = np.linalg.eigh(build_tolerances(line, stated))
+    variance, direction = np.linalg.eigh(build_factor_covariance(line, stated))
     catenary, kept = build_catenary(line), variance > SMALLEST_DIRECTION * variance.max(initial=0.0)
     # The sign of a direction is arbitrary: its largest share increases.
     sign = np.sign(np.take_along_axis(direction, np.abs(direction).argmax(axis=0)[None], axis=0))[0]

@@ -52,7 +52,7 @@ from pantocheck.conformance.line.line_parameters import (
     MECHANICAL,
     PARAMETER_GROUPS,
     ParameterGroup,
-    build_tolerances,
+    build_factor_covariance,
 )
 from pantocheck.conformance.pages.identification_page import collect_warnings
 from pantocheck.conformance.pages.population_page import build_population_document
@@ -265,7 +265,7 @@ def drop_fit_command(
     check_writable(out)
     with follow_steps("damping fit", 2) as progress:
         progress.begin_task("modes of the line")
-        tolerances = build_tolerances(measured, MECHANICAL)
+        tolerances = build_factor_covariance(measured, MECHANICAL)
         options = FitOptions(wires, modal_groups, choose_groups(free), tolerances)
         results = build_damping_results(identified, catenary, element, modes.name, options)
         progress.begin_task("report")

@@ -32,7 +32,7 @@ from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.drops.line_comparison import compare_line, refuse_other_line
 from pantocheck.conformance.drops.mode_matching import select_usable
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.line.line_parameters import MECHANICAL, ParameterGroup, build_tolerances
+from pantocheck.conformance.line.line_parameters import MECHANICAL, ParameterGroup, build_factor_covariance
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.results.damping_format import Coefficient, DampingResults
 from pantocheck.conformance.results.identification_format import IdentificationFile, IdentifiedLine
@@ -222,7 +222,7 @@ class IdentifiedLines:
         line = case.case.line
         catenary = build_catenary(line)
         refuse_other_modes(self.modes, catenary, "modes")
-        options = FitOptions(wires, free=free, tolerances=build_tolerances(line, MECHANICAL))
+        options = FitOptions(wires, free=free, tolerances=build_factor_covariance(line, MECHANICAL))
         return FittedDamping(build_damping_results(self.modes, catenary, element_m, "modes", options))
 
     def write(self, folder: str | Path) -> list[Path]:
