@@ -4,6 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from pantocheck.conformance.core.check_row import CheckRow
 from pantocheck.conformance.core.figure_data import Spectrum, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
 from pantocheck.conformance.core.trust import Trust
@@ -127,16 +128,6 @@ RecordState = Literal["consistent", "unconfirmed", "contradicted"]
 
 StartState = Literal["as in the case", "differs", "not stated"]
 """Start of a record against that of its case; `not stated` is never treated better than `as in the case`."""
-
-
-class CheckRow(ResultsPart):
-    """Outcome of a consistency check of a record."""
-
-    check: str
-    outcome: Literal["confirmed", "unchecked", "doubt", "contradiction", "not reached"]
-    """`confirmed` if the check holds or does not apply; `not reached` behind a contradiction."""
-    text: str = ""
-    """Text of the finding; empty if the check has none."""
 
 
 class RecordFacts(ResultsPart):

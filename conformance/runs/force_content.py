@@ -24,12 +24,15 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.pantograph.pantograph_model import head_receptance
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M
-from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
+from pantocheck.conformance.quantities.unavailable import BandNotObservable, QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.check import (
+    DOES_NOT_APPLY,
+    NAMED_ELSEWHERE,
     TINY,
     Check,
     Finding,
+    Measure,
     report_low_rate,
     report_not_made,
     windowed_spectrum,
@@ -45,8 +48,8 @@ UPPER_BAND_HZ = (30.0, 50.0)
 LOWEST_EDGE_HZ = 40.0
 """Smallest upper edge of the compared band [Hz]: 100 samples per second."""
 
-SMALLEST_CONTENT = 0.08
-"""Smallest content of the force over that of kinks.
+KINK_SHARE = Measure("content of the force over that of kinks", "", {"doubt": 0.08}, "below")
+"""Content of the force over that of kinks.
 
 Library cases have 0.9 to 2.0, extreme lines 0.4 or more, and 0.18 after a stated causal filter. A filter of order 6 at
 15 Hz that is not stated leaves 0.014 to 0.03, one at 10 Hz that is stated as 20 Hz leaves 0.02 to 0.05."""
@@ -55,10 +58,10 @@ FREQUENCY_STEP_HZ = 0.1
 """Step of the frequencies at which the content of kinks is computed [Hz]; resonances are wider."""
 
 
-def _check_content(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_content(case: Case, signals: RecordSignals) -> Finding:
     record = signals.record
     if record.speed < 2 * np.pi * UPPER_BAND_HZ[1] * bending_length(case):
-        return None
+        return DOES_NOT_APPLY
     upper = min(UPPER_BAND_HZ[1], HIGHEST_SHARE_OF_RATE * record.rate)
     if upper < LOWEST_EDGE_HZ:
         return report_low_rate("content", record.rate)
@@ -67,17 +70,14 @@ def _check_content(case: Case, signals: RecordSignals) -> Finding | None:
         try:
             share = force_content(signals, number, upper) / kink_content(case, number, upper)
         except QuantityUnavailable:
-            return None  # other checks state which channel is missing
-        if share < SMALLEST_CONTENT:
-            findings.append(
-                Finding(
-                    "doubt",
-                    f"pantograph {number}: the force has {share:.1g} times the content at {UPPER_BAND_HZ[0]:g}-"
-                    f"{upper:g} Hz that kinks of the wire cause, as after a filter that is not stated, or by a model "
-                    "without droppers or with a coarse mesh; deliver force and contact height without a filter, or "
-                    "refine the model",
-                )
-            )
+            return NAMED_ELSEWHERE
+        text = (
+            f"pantograph {number}: the force has {share:.1g} times the content at {UPPER_BAND_HZ[0]:g}-"
+            f"{upper:g} Hz that kinks of the wire cause, as after a filter that is not stated, or by a model "
+            "without droppers or with a coarse mesh; deliver force and contact height without a filter, or "
+            "refine the model"
+        )
+        findings.append(KINK_SHARE.compare(share, f"pantograph {number}", text))
     return worst_finding(findings)
 
 
@@ -134,6 +134,8 @@ CONTENT = Check(
     why="force and contact height that pass the same filter still agree with each other",
     needs="contact force at 100 samples per second or more",
     run=_check_content,
+    measures=(KINK_SHARE,),
+    causes=("not possible", "does not apply", "named by another check"),
 )
 
 
@@ -143,14 +145,14 @@ CONTENT = Check(
 # them obeys the equations of the pantograph all the same. The uplift does not: equal forces in the same part of a span
 # need equal uplifts at the supports. Pantographs that a train at low speed or a long distance keeps apart meet this
 # condition.
-LARGEST_REMAINDER = 0.01
+FORCE_REMAINDER = Measure("difference from the force of another pantograph", "", {"doubt": 0.01}, "below")
 """Remainder below which a force is a copy, over its standard deviation.
 
 Forces rounded to 1 N at 200 samples per second leave 0.007. Simulated trains have 0.4 or more at the spacings of the
 library; pantographs 880 m apart on a heavily damped line have 0.015."""
 
-SMALLEST_DIFFERENCE_M = 0.5e-3
-"""Smallest difference of the uplift at equal passages [m]: five steps of 0.1 mm.
+UPLIFT_DIFFERENCE = Measure("difference of the uplift at passages with the same force", "mm", {"doubt": 0.5})
+"""Difference of the uplift at equal passages: five steps of 0.1 mm.
 
 Where the forces of simulated trains differ by less than 0.1 of their standard deviation, it is 0.14 mm or less."""
 
@@ -171,20 +173,26 @@ class Likeness:
     """Time of the part in the other force less that in the force [samples]."""
 
 
-def _check_copy(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_copy(case: Case, signals: RecordSignals) -> Finding:
     findings = []
     for number, other in permutations(signals.pantographs, 2):
         pantograph = signals.pantographs[number]
         try:
             likeness = find_likeness(pantograph.graded, signals.pantographs[other].force.graded)
-            if likeness is None or likeness.remainder > LARGEST_REMAINDER:
+            if likeness is None:
+                continue
+            finding = FORCE_REMAINDER.compare(likeness.remainder, f"pantograph {number}")
+            if finding.kind == "confirmed":
+                findings.append(finding)
                 continue
             delay = (likeness.lag - pantograph.inside.start) / signals.record.rate
             differences = _compare_uplifts(case, signals, (number, other), delay)
+        except BandNotObservable:
+            return DOES_NOT_APPLY  # the section is too short for any statistics
         except QuantityUnavailable:
-            return None  # other checks state which channel is missing
-        findings.append(_judge(number, other, differences))
-    return worst_finding([finding for finding in findings if finding is not None])
+            return NAMED_ELSEWHERE
+        findings.append(_judge((number, other), likeness.remainder, differences))
+    return worst_finding(findings)
 
 
 def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
@@ -248,24 +256,23 @@ def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], 
     return np.array(differences)
 
 
-def _judge(number: int, other: int, differences: RealArray) -> Finding | None:
-    """Finding on a force that equals that of another pantograph; None if the uplifts are equal as well."""
-    known = differences[~np.isnan(differences)]
-    largest = float(known.max(initial=0.0))
-    if largest > SMALLEST_DIFFERENCE_M:
-        where = (
-            f"with uplifts at the supports that differ by {1e3 * largest:.2g} mm"
-            if np.isfinite(largest)
-            else "in another part of the span"
-        )
-        return Finding("doubt", f"the force of pantograph {number} is a copy of that of pantograph {other}, {where}")
-    if known.size < differences.size:
+def _judge(pair: tuple[int, int], remainder: float, differences: RealArray) -> Finding:
+    """Finding on a force that equals that of the other pantograph of a pair: the uplifts must be equal as well."""
+    (number, other), known = pair, 1e3 * differences[~np.isnan(differences)]
+    largest, part = float(known.max(initial=0.0)), f"pantograph {number}"
+    text = f"the force of {part} is a copy of that of pantograph {other}"
+    if np.isinf(largest):
+        return FORCE_REMAINDER.compare(remainder, part, f"{text}, in another part of the span")
+    finding = UPLIFT_DIFFERENCE.compare(
+        largest, part, f"{text}, with uplifts at the supports that differ by {largest:.2g} mm"
+    )
+    if finding.kind == "confirmed" and known.size < differences.size:
         return report_not_made(
             "copy",
             f"pantographs {number} and {other} have the same force, and the record lacks "
             f"the uplift at {differences.size - known.size} of {differences.size} supports to compare",
         )
-    return None
+    return finding
 
 
 COPY = Check(
@@ -274,4 +281,6 @@ COPY = Check(
     why="force and height of the other pantograph agree with each other",
     needs="position, contact force and uplift at supports",
     run=_check_copy,
+    measures=(FORCE_REMAINDER, UPLIFT_DIFFERENCE),
+    causes=("not possible", "does not apply", "named by another check"),
 )

@@ -5,7 +5,7 @@ plus the free motion of an initial state, plus a constant. The last two are fitt
 its amplitude and its lag reveal a wrong gain or unit of the force, or a shift in time.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import expm
@@ -21,16 +21,27 @@ from pantocheck.conformance.runs.check import (
     TINY,
     Check,
     Finding,
+    Measure,
     report_low_rate,
     report_not_made,
     worst_finding,
 )
 
-LARGEST_MISFIT = 0.1
-"""Largest accepted misfit. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
+MISFIT = Measure("misfit of the motion", "", {"contradiction": 0.1})
+"""Misfit over the response. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
 
-LARGEST_GAIN_ERROR = 0.03
-"""Largest relative error of the gain; correct records stay below 0.005."""
+GAIN_ERROR = Measure("error of the gain of the force", "", {"contradiction": 0.03})
+"""Relative error of the gain; correct records stay below 0.005."""
+
+LATE_MISFIT, LATE_GAIN_ERROR = (
+    replace(
+        measure,
+        name=f"{measure.name} behind a causal filter",
+        thresholds={"doubt": measure.thresholds["contradiction"]},
+    )
+    for measure in (MISFIT, GAIN_ERROR)
+)
+"""The same where the force is late by no more than a causal filter delays it: a doubt."""
 
 CLEAR = 0.05
 """Unexplained share below which the cause of a misfit is named."""
@@ -63,7 +74,7 @@ class ResponseFit:
     """Compared motions, without their free parts, (n,) [m]."""
 
 
-def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding:
     record, low_pass = signals.record, case.file.filter
     if record.contact_height is None:
         return report_not_made("dynamics", "the record has no contact height")
@@ -78,8 +89,11 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding | None:
         fit = compare_motion(file, force, height, step / record.rate)
         if fit is None:
             findings.append(report_not_made("dynamics", f"the head of pantograph {number} hardly moves"))
-        elif fit.misfit > LARGEST_MISFIT or abs(1 / fit.gain - 1) > LARGEST_GAIN_ERROR:
-            findings.append(_diagnose(number, fit, step / record.rate, record.filter_applied_Hz))
+        else:
+            confirmed = _compare(number, fit)
+            is_wrong = confirmed.kind != "confirmed"
+            diagnosis = (number, fit, step / record.rate, record.filter_applied_Hz)
+            findings.append(_diagnose(*diagnosis) if is_wrong else confirmed)
     return worst_finding(findings)
 
 
@@ -169,21 +183,29 @@ def _compared_samples(pantograph: PantographSignals) -> slice:
     return slice(int(first), min(int(last), int(first) + int(LONGEST_S * pantograph.force.rate)))
 
 
+def _compare(
+    number: int, fit: ResponseFit, text: str = "", measures: tuple[Measure, Measure] = (MISFIT, GAIN_ERROR)
+) -> Finding:
+    """Compare misfit and gain of a pantograph with their thresholds."""
+    numbers = zip(measures, (fit.misfit, abs(1 / fit.gain - 1)), strict=True)
+    return worst_finding(measure.compare(value, f"pantograph {number}", text) for measure, value in numbers)
+
+
 def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
     mismatch = f"pantograph {number}: the contact force contradicts the contact height"
     if fit.unexplained < CLEAR:
         cause = f"the height corresponds to {1 / fit.gain:.3g} times the force; check gain and unit of the force"
-        return Finding("contradiction", f"{mismatch}: {cause}")
+        return _compare(number, fit, f"{mismatch}: {cause}")
     samples, correlation = _find_lag(fit, round(LONGEST_LAG_S / step))
     delay = -samples * step
     if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
         share = 100 * max(0.0, 1 - fit.unexplained)
-        return Finding("contradiction", f"{mismatch}: the force explains only {share:.0f} % of the motion")
+        return _compare(number, fit, f"{mismatch}: the force explains only {share:.0f} % of the motion")
     lags = delay > 0
     text = f"{mismatch}: the force {'lags' if lags else 'leads'} the height by about {abs(delay):.1g} s"
     if lags and filter_applied_Hz is not None and delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
-        return Finding("doubt", f"{text}, as after a causal filter")
-    return Finding("contradiction", text)
+        return _compare(number, fit, f"{text}, as after a causal filter", (LATE_MISFIT, LATE_GAIN_ERROR))
+    return _compare(number, fit, text)
 
 
 def _find_lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
@@ -205,4 +227,5 @@ DYNAMICS = Check(
     why="a wrong gain, unit, sign or time of the force shows in the motion",
     needs="contact force and contact height",
     run=_check_force_dynamics,
+    measures=(MISFIT, GAIN_ERROR, LATE_MISFIT, LATE_GAIN_ERROR),
 )

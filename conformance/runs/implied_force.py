@@ -21,18 +21,28 @@ from pantocheck.conformance.pantograph.pantograph_model import head_receptance
 from pantocheck.conformance.quantities.bands import EXTENDED_BAND
 from pantocheck.conformance.quantities.filters import Filter, is_observable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
+from pantocheck.conformance.runs.check import (
+    COARSEST_STEP_M,
+    NAMED_ELSEWHERE,
+    TINY,
+    Check,
+    Finding,
+    Measure,
+    report_missing,
+    rounding_step,
+    worst_finding,
+)
 from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, head_responses, remove_free_motion
 from pantocheck.model.description.cubic_spline import evaluate_polynomials, fit_polynomials
 
-LARGEST_ERROR = 0.15
+FORCE_ERROR = Measure("largest error of the force up to the cut-off", "", {"doubt": 0.15})
 """Largest error of the force, over its standard deviation.
 
 Simulated records have 0.03 or less at a time step of 2 ms; heights rounded to 0.1 mm have 0.1. A second pass of the
 filter of 20 Hz gives 0.2 to 0.3 where the force has content at 20 Hz."""
 
-LARGEST_EXTENDED_ERROR = 0.3
-"""Largest error of the force up to 50 Hz; integration at 2 ms gives errors of 7 %, simulated records 0.09 at most."""
+EXTENDED_FORCE_ERROR = Measure("largest error of the force up to 50 Hz", "", {"doubt": 0.3})
+"""The same up to 50 Hz; integration at 2 ms gives errors of 7 %, simulated records 0.09 at most."""
 
 LARGEST_LAG_S = 0.005
 """Largest lag of the force that is removed [s]: one sample of a slow record."""
@@ -47,21 +57,20 @@ EXTENDED_QUANTITIES = frozenset({"std_force_50_N", "cov_50", EXTENDED_BAND.quant
 """Quantities with content above the cut-off of the case."""
 
 
-def _check_implied_force(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_implied_force(case: Case, signals: RecordSignals) -> Finding:
     record, low_pass = signals.record, case.file.filter
     if record.contact_height is None:
-        return None  # the check of the dynamics states that the height is missing
-    limits = [(low_pass, LARGEST_ERROR)]
+        return NAMED_ELSEWHERE  # by the dynamics
+    bands = [(low_pass, FORCE_ERROR)]
     if not EXTENDED_QUANTITIES.isdisjoint(limit.quantity for limit in case.limits):
-        limits.append((low_pass.change_cutoff(float(EXTENDED_BAND.high)), LARGEST_EXTENDED_ERROR))
+        bands.append((low_pass.change_cutoff(float(EXTENDED_BAND.high)), EXTENDED_FORCE_ERROR))
     findings = []
-    for band, largest in limits:
+    for band, measure in bands:
         if not is_observable(band.cutoff_Hz, record.rate):
             continue  # its quantities are not available either
         for number, file in enumerate(case.pantographs, 1):
             error = force_error(file, signals, number, band)
-            if not error <= largest:
-                findings.append(_describe(number, error, band, record.contact_height[number - 1]))
+            findings.append(_judge(number, measure, error, band, record.contact_height[number - 1]))
     return worst_finding(findings)
 
 
@@ -145,24 +154,27 @@ def _taper_ends(size: int, width: float) -> RealArray:
     return window
 
 
-def _describe(number: int, error: float, low_pass: Filter, height: RealArray) -> Finding:
+def _judge(number: int, measure: Measure, error: float, low_pass: Filter, height: RealArray) -> Finding:
     band = f"up to {low_pass.cutoff_Hz:g} Hz"
-    step = rounding_step(height)
-    if np.isinf(step):
-        text = f"contact height of pantograph {number}: it is constant, so that it cannot confirm the force {band}"
-        return Finding("unchecked", f"{text}; deliver the moving height of the contact point")
-    if step >= COARSEST_STEP_M:
-        return Finding(
-            "unchecked",
-            f"contact height of pantograph {number}: its steps of {1e3 * step:.2g} mm are too coarse to confirm the "
-            f"force {band}; deliver it to 0.1 mm",
-        )
-    return Finding(
-        "doubt",
+    finding = measure.compare(
+        error,
+        f"pantograph {number}",
         f"pantograph {number}: the contact height implies another force {band}: the largest difference is "
         f"{100 * error:.0f} % of the standard deviation, as after a filter that is not stated, or where values were "
         "replaced",
     )
+    if finding.kind == "confirmed":
+        return finding
+    step = rounding_step(height)
+    if np.isinf(step):
+        text = f"contact height of pantograph {number}: it is constant, so that it cannot confirm the force {band}"
+        return report_missing(f"{text}; deliver the moving height of the contact point")
+    if step >= COARSEST_STEP_M:
+        return report_missing(
+            f"contact height of pantograph {number}: its steps of {1e3 * step:.2g} mm are too coarse to confirm the "
+            f"force {band}; deliver it to 0.1 mm",
+        )
+    return finding
 
 
 IMPLIED_FORCE = Check(
@@ -171,4 +183,6 @@ IMPLIED_FORCE = Check(
     why="a filter that is not stated, or a clipped peak, changes the extremes of the force, but hardly the motion",
     needs="contact force and contact height, to 0.1 mm",
     run=_check_implied_force,
+    measures=(FORCE_ERROR, EXTENDED_FORCE_ERROR),
+    causes=("not possible", "does not apply", "named by another check"),
 )

@@ -10,6 +10,7 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.lift_force import LiftForce
+from pantocheck.conformance.core.check_row import CheckRow, NotMeasured
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.filters import is_observable, is_same_cutoff
@@ -17,12 +18,15 @@ from pantocheck.conformance.quantities.pantograph_signals import PantographSigna
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable, SectionNotCovered
 from pantocheck.conformance.records.record import SPEED_TOLERANCE
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.results.case_facts_format import CheckRow
 from pantocheck.conformance.runs.check import (
+    DOES_NOT_APPLY,
+    HOLDS,
+    NAMED_ELSEWHERE,
     TINY,
     Check,
     CheckName,
     Finding,
+    Measure,
     report_low_rate,
     report_not_made,
     windowed_spectrum,
@@ -35,27 +39,30 @@ from pantocheck.conformance.runs.support_coincidence import COINCIDENCE
 from pantocheck.conformance.runs.support_passing import SUPPORT_PASSING
 
 
-def _check_coverage(_: Case, signals: RecordSignals) -> Finding | None:
+def _check_coverage(_: Case, signals: RecordSignals) -> Finding:
     for number, pantograph in signals.pantographs.items():
         try:
             pantograph.inside  # noqa: B018 - raises where the section is not covered
         except SectionNotCovered as reason:
-            return Finding("contradiction", f"the record of pantograph {number} is cut short: {reason}")
-    return None
+            basis = NotMeasured(cause="does not hold")
+            return Finding(basis, f"the record of pantograph {number} is cut short: {reason}")
+    return HOLDS
 
 
-def _check_motion(_: Case, signals: RecordSignals) -> Finding | None:
-    record = signals.record
+SPEED_ERROR = Measure("difference of the speed by position and time", "", {"contradiction": SPEED_TOLERANCE})
+
+
+def _check_motion(_: Case, signals: RecordSignals) -> Finding:
+    record, findings = signals.record, []
     elapsed = record.time[-1] - record.time[0]
     for number, position in enumerate(record.position, 1):
         speed = (position[-1] - position[0]) / elapsed
-        if not abs(speed / record.speed - 1) <= SPEED_TOLERANCE:
-            return Finding(
-                "contradiction",
-                f"pantograph {number} advances at {3.6 * speed:.4g} km/h by position and time, "
-                f"the record states {3.6 * record.speed:.4g} km/h",
-            )
-    return None
+        text = (
+            f"pantograph {number} advances at {3.6 * speed:.4g} km/h by position and time, "
+            f"the record states {3.6 * record.speed:.4g} km/h"
+        )
+        findings.append(SPEED_ERROR.compare(abs(speed / record.speed - 1), f"pantograph {number}", text))
+    return worst_finding(findings)
 
 
 COVERAGE = Check(
@@ -64,6 +71,7 @@ COVERAGE = Check(
     why="a record that ends early can have plausible statistics",
     needs="position",
     run=_check_coverage,
+    causes=("holds", "does not hold"),
 )
 
 MOTION = Check(
@@ -72,6 +80,8 @@ MOTION = Check(
     why="a wrong sampling rate or unit of position shifts the analysis section",
     needs="position, time and speed",
     run=_check_motion,
+    measures=(SPEED_ERROR,),
+    causes=(),
 )
 
 
@@ -82,13 +92,13 @@ STOP_BAND = (2.0, 2.5)
 MIN_ROLL_OFF_LINES = 10
 """Smallest number of spectral lines in the band; with fewer, one peak decides."""
 
-CONTRADICTION, DOUBT = 1.0, 0.5
-"""Thresholds of a ratio: RMS of the implied unfiltered force in the band, divided by its RMS below the cut-off.
+CONTENT_ABOVE = Measure("implied content above the cut-off", "", {"contradiction": 1.0, "doubt": 0.5})
+"""Ratio: RMS of the implied unfiltered force in the band, divided by its RMS below the cut-off.
 
 The ratio of the reference cases is about 0.14. No contact force reaches a ratio of 1."""
 
 
-def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_roll_off(case: Case, signals: RecordSignals) -> Finding:
     """Check that the unfiltered force implied by the delivered one is plausible.
 
     The spectrum is divided by the gain of the filter of the case. A force that was not filtered, or by a filter of
@@ -97,7 +107,7 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
     record, low_pass = signals.record, case.file.filter
     applied, cutoff = record.filter_applied_Hz, low_pass.cutoff_Hz
     if applied is None or not is_same_cutoff(applied, cutoff):
-        return None  # delivered unfiltered, or filtered again by the suite
+        return DOES_NOT_APPLY  # delivered unfiltered, or filtered again by the suite
     if not is_observable(STOP_BAND[1] * cutoff, record.rate):
         return report_low_rate("roll-off", record.rate)
     if (STOP_BAND[1] - STOP_BAND[0]) * cutoff * (record.time[-1] - record.time[0]) < MIN_ROLL_OFF_LINES:
@@ -111,14 +121,13 @@ def _check_roll_off(case: Case, signals: RecordSignals) -> Finding | None:
         amplitude = windowed_spectrum(force, record.rate)[1]
         implied = np.sqrt(np.sum((amplitude[above] / gain) ** 2))
         share = float(implied / max(np.sqrt(np.sum(amplitude[below] ** 2)), TINY))
-        if share > DOUBT:
-            text = (
-                f"pantograph {number}: the stated filter of the force ({applied:g} Hz, order {low_pass.order}) is not "
-                f"plausible; before this filter, the force would have {share:.2g} times as much content in "
-                f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz; "
-                "deliver the unfiltered force"
-            )
-            findings.append(Finding("contradiction" if share > CONTRADICTION else "doubt", text))
+        text = (
+            f"pantograph {number}: the stated filter of the force ({applied:g} Hz, order {low_pass.order}) is not "
+            f"plausible; before this filter, the force would have {share:.2g} times as much content in "
+            f"{STOP_BAND[0] * cutoff:g}-{STOP_BAND[1] * cutoff:g} Hz as below {cutoff:g} Hz; "
+            "deliver the unfiltered force"
+        )
+        findings.append(CONTENT_ABOVE.compare(share, f"pantograph {number}", text))
     return worst_finding(findings)
 
 
@@ -128,6 +137,8 @@ ROLL_OFF = Check(
     why="a weaker filter, or none, increases the standard deviation by a few percent",
     needs="filtered contact force",
     run=_check_roll_off,
+    measures=(CONTENT_ABOVE,),
+    causes=("does not apply", "not possible"),
 )
 
 
@@ -141,34 +152,32 @@ ROLL_OFF = Check(
 # the height z_0 at which its base spring is unstretched. Readings of z_0 differ: static height of the head or of the
 # frame, or nominal height of the wire. They lie within twice the lift of the wire, which the largest uplift and the
 # range of the contact height measure. The other checks compare changes of the force; this one bounds its constant part.
-SHARE = 0.03
-"""Accepted relative difference of the mean force: the accepted error of the gain."""
+FORCE_DIFFERENCE = Measure("difference of the mean force beside base spring and momentum", "", {"doubt": 0.03})
+"""Difference beyond the other tolerances, over the expected force; its threshold is the accepted error of the gain."""
 
 LIFTS = 2.0
 """Accepted difference between the mean height and the unstretched base spring, over the lift of the wire."""
 
 
-def _check_mean_force(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_mean_force(case: Case, signals: RecordSignals) -> Finding:
     try:
         uplift = signals.line.largest_uplift
         parts = zip(signals.pantographs.items(), case.pantographs, case.lift_forces, strict=True)
         return worst_finding(
-            finding
-            for (number, pantograph), file, lift in parts
-            if (finding := _compare(number, pantograph, file, lift, uplift)) is not None
+            _compare(number, pantograph, file, lift, uplift) for (number, pantograph), file, lift in parts
         )
     except QuantityUnavailable:
-        return None  # other checks state which channel is missing
+        return NAMED_ELSEWHERE
 
 
 def _compare(
     number: int, pantograph: PantographSignals, file: PantographFile, lift: LiftForce, uplift: float
-) -> Finding | None:
+) -> Finding:
     force, height, rate = pantograph.delivered, pantograph.height, pantograph.force.rate
     expected = lift.target_mean_force or lift.uplift_force
     if height.size < 3:
-        return None
-    tolerance = SHARE * expected
+        return DOES_NOT_APPLY
+    allowed = 0.0
     if lift.target_mean_force is None:
         model = build_pantograph(file, 0.0, 0.0)
         rigid = np.ones(model.head.size) if file.chain is not None else model.head / (model.head @ model.head)
@@ -177,15 +186,15 @@ def _compare(
         )
         velocity = np.gradient(height, 1 / rate)
         impulse = mass * (velocity[-1] - velocity[0]) + damping * (height[-1] - height[0])
-        tolerance += stiffness * LIFTS * max(uplift, float(np.ptp(height))) + abs(float(impulse)) * rate / height.size
+        allowed = stiffness * LIFTS * max(uplift, float(np.ptp(height))) + abs(float(impulse)) * rate / height.size
     difference = float(force.mean()) - expected
-    if abs(difference) <= tolerance:
-        return None
-    return Finding(
-        "doubt",
+    tolerance = FORCE_DIFFERENCE.thresholds["doubt"] * expected + allowed
+    text = (
         f"the mean force of pantograph {number} is {force.mean():.4g} N; the balance of the pantograph with "
-        f"{expected:g} N allows a difference of {tolerance:.2g} N",
+        f"{expected:g} N allows a difference of {tolerance:.2g} N"
     )
+    share = (abs(difference) - allowed) / max(expected, TINY)
+    return FORCE_DIFFERENCE.compare(share, f"pantograph {number}", text)
 
 
 MEAN_FORCE = Check(
@@ -194,6 +203,8 @@ MEAN_FORCE = Check(
     why="a constant added to the force changes its extremes, but neither its variation nor the motion",
     needs="contact force, contact height and uplift at supports",
     run=_check_mean_force,
+    measures=(FORCE_DIFFERENCE,),
+    causes=("does not apply", "named by another check"),
 )
 
 
@@ -207,24 +218,19 @@ def check_record(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]
     """Findings by check. The first contradiction ends the checks, because later checks rely on earlier ones."""
     findings: dict[CheckName, Finding] = {}
     for check in RECORD_CHECKS:
-        if (finding := check.run(case, signals)) is not None:
-            findings[check.name] = finding
-            if finding.kind == "contradiction":
-                break
+        finding = findings[check.name] = check.run(case, signals)
+        if finding.kind == "contradiction":
+            break
     return findings
 
 
 def list_check_rows(findings: Mapping[CheckName, Finding]) -> tuple[CheckRow, ...]:
     """Row of every check, from `check_record`."""
-    rows, reached = [], True
-    for check in RECORD_CHECKS:
-        finding = findings.get(check.name)
-        if finding is not None:
-            rows.append(CheckRow(check=check.name, outcome=finding.kind, text=finding.text))
-            reached = finding.kind != "contradiction"
-        else:
-            rows.append(CheckRow(check=check.name, outcome="confirmed" if reached else "not reached"))
-    return tuple(rows)
+    not_reached = Finding(NotMeasured(cause="not reached"))
+    found = [(check.name, findings.get(check.name, not_reached)) for check in RECORD_CHECKS]
+    return tuple(
+        CheckRow(check=name, outcome=finding.kind, text=finding.text, basis=finding.basis) for name, finding in found
+    )
 
 
 # State of a record: consistent, unconfirmed or contradicted.

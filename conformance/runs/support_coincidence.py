@@ -19,22 +19,32 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import COARSEST_STEP_M, TINY, Check, Finding, rounding_step, worst_finding
+from pantocheck.conformance.runs.check import (
+    COARSEST_STEP_M,
+    NAMED_ELSEWHERE,
+    TINY,
+    Check,
+    Finding,
+    Measure,
+    report_missing,
+    rounding_step,
+    worst_finding,
+)
 from pantocheck.conformance.runs.support_passing import rest_heights
 
-LARGEST_DEVIATION_M = 1e-3
-"""Largest difference of the constant between supports [m], beside the kink within one sample.
+DEVIATION = Measure("difference of height less uplift between supports, beside the kink", "mm", {"doubt": 1.0})
+"""Largest difference of the constant between supports, beside the kink within one sample.
 
 Simulated records have 0.01 to 0.3 mm; a passage shifted by 10 m has 2 to 9 mm on extreme lines."""
 
-LARGEST_DATUM_DIFFERENCE_M = 5e-3
-"""Largest difference of the constant between equal pantographs [m]; 0.3 mm in simulated records."""
+DATUM = Measure("difference of height less uplift between equal pantographs", "mm", {"doubt": 5.0})
+"""Largest difference of the constant between equal pantographs; 0.3 mm in simulated records."""
 
-LARGEST_UPLIFT_GAIN_ERROR = 0.03
-"""Largest error of the gain of the uplift, beside three standard errors; 0.02 in simulated records."""
+UPLIFT_GAIN = Measure("error of the gain of the uplift, beside three standard errors", "", {"doubt": 0.03})
+"""Largest error of the gain of the uplift; 0.02 in simulated records."""
 
-LONGEST_HOLD_S = 0.15
-"""Longest constant part of an uplift [s]: in whole tenths of a millimetre, a turning point lasts a fifth of it."""
+HOLD = Measure("longest constant part of an uplift", "s", {"doubt": 0.15})
+"""Longest constant part of an uplift: in whole tenths of a millimetre, a turning point lasts a fifth of it."""
 
 HELD_SPANS = 0.5
 """Distance behind a pantograph within which a wire moves [spans]; a simulation may hold the line farther behind."""
@@ -59,22 +69,22 @@ class _Passages:
         return self.wire - self.uplift
 
 
-def _check_coincidence(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_coincidence(case: Case, signals: RecordSignals) -> Finding:
     record = signals.record
     try:
         uplift = signals.line.uplift
     except QuantityUnavailable:
-        return None  # the check of the support passing states that the uplift is missing
+        return NAMED_ELSEWHERE  # by the support passing
     if record.contact_height is None:
-        return None  # the check of the dynamics states that the height is missing
+        return NAMED_ELSEWHERE  # by the dynamics
     steps = [rounding_step(row) for row in (*uplift, *record.contact_height)]
     step = max((step for step in steps if np.isfinite(step)), default=0.0)
     if step >= COARSEST_STEP_M:
         text = f"steps of {1e3 * step:.2g} mm are too coarse; deliver both to 0.1 mm"
-        return Finding("unchecked", f"contact height against uplift: {text}")
+        return report_missing(f"contact height against uplift: {text}")
     passages = {number: _find_passages(case, signals, number) for number in signals.pantographs}
     rows = zip(signals.line.supports, uplift, strict=True)
-    findings = [_find_hold(case, signals, float(support), row) for support, row in rows]
+    findings: list[Finding | None] = [_find_hold(case, signals, float(support), row) for support, row in rows]
     findings += [_compare_supports(number, passed) for number, passed in passages.items()]
     findings += [_compare_datums(case, passages), _compare_gain(passages, step)]
     return worst_finding(finding for finding in findings if finding is not None)
@@ -106,19 +116,19 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     return _Passages(support[touching], u[touching], best[touching], kink)
 
 
-def _find_hold(case: Case, signals: RecordSignals, support: float, uplift: RealArray) -> Finding | None:
-    """Find an uplift that is constant after a passage."""
+def _find_hold(case: Case, signals: RecordSignals, support: float, uplift: RealArray) -> Finding:
+    """Find the longest part of an uplift that is constant after a passage."""
     record = signals.record
     distance = record.position - support
     behind = (distance >= 0) & (distance <= HELD_SPANS * case.line.geometry.shortest_span)
     moving = np.any(behind, axis=0, keepdims=True)[0]
     starts = np.append(0, np.flatnonzero(np.diff(uplift)) + 1)
     held = np.add.reduceat(moving.astype(np.int64), starts) / record.rate
-    holds = np.flatnonzero(held >= LONGEST_HOLD_S)
-    if holds.size == 0:
-        return None
-    text = f"the uplift at {support:g} m stays at {1e3 * uplift[starts[holds[0]]]:.3g} mm for {held[holds[0]]:.2g} s"
-    return Finding("doubt", f"{text} while a pantograph moves away from it")
+    longest = int(held.argmax())
+    text = f"the uplift at {support:g} m stays at {1e3 * uplift[starts[longest]]:.3g} mm for {held[longest]:.2g} s"
+    return HOLD.compare(
+        float(held[longest]), f"support at {support:g} m", f"{text} while a pantograph moves away from it"
+    )
 
 
 def _compare_supports(number: int, passages: _Passages) -> Finding | None:
@@ -126,34 +136,32 @@ def _compare_supports(number: int, passages: _Passages) -> Finding | None:
     if passages.support.size < 2:
         return None
     deviation = passages.constant - np.median(passages.constant)
-    if not np.ptp(deviation) > LARGEST_DEVIATION_M + passages.kink:
-        return None
     worst = int(np.abs(deviation).argmax())
-    return Finding(
-        "doubt",
+    return DEVIATION.compare(
+        1e3 * float(np.ptp(deviation) - passages.kink),
+        f"pantograph {number}",
         f"pantograph {number} passes the supports at heights that differ by {1e3 * np.ptp(deviation):.2g} mm from the "
         f"uplift there, most at {passages.support[worst]:g} m: position, contact height and uplift do not belong "
         "together",
     )
 
 
-def _compare_datums(case: Case, passages: dict[int, _Passages]) -> Finding | None:
+def _compare_datums(case: Case, passages: dict[int, _Passages]) -> Finding:
     """Compare the constants of pantographs of the same kind and uplift force."""
     parts = zip(case.pantographs, case.lift_forces, strict=True)
-    kinds = [(file, lift.stated_uplift_force) for file, lift in parts]
+    kinds, findings = [(file, lift.stated_uplift_force) for file, lift in parts], []
     for number, passed in passages.items():
         for other in range(1, number):
             if not (passed.support.size and passages[other].support.size):
                 continue
-            difference = float(np.median(passed.constant) - np.median(passages[other].constant))
-            if kinds[number - 1] == kinds[other - 1] and abs(difference) > LARGEST_DATUM_DIFFERENCE_M:
-                return Finding(
-                    "doubt",
+            if kinds[number - 1] == kinds[other - 1]:
+                difference = 1e3 * abs(float(np.median(passed.constant) - np.median(passages[other].constant)))
+                text = (
                     f"at the supports, the contact heights of the equal pantographs {other} and {number} differ by "
-                    f"{1e3 * abs(difference):.2g} mm from the uplift: position, contact height and uplift do not "
-                    "belong together",
+                    f"{difference:.2g} mm from the uplift: position, contact height and uplift do not belong together"
                 )
-    return None
+                findings.append(DATUM.compare(difference, f"pantographs {other} and {number}", text))
+    return worst_finding(findings)
 
 
 def _compare_gain(passages: dict[int, _Passages], step: float) -> Finding | None:
@@ -171,13 +179,11 @@ def _compare_gain(passages: dict[int, _Passages], step: float) -> Finding | None
     scatter = np.sqrt(float(((wire - gain * uplift) ** 2).sum()) / freedom)
     rounding = step / np.sqrt(6)  # of uplift and height
     error = np.hypot(scatter, rounding) / np.sqrt(squares)
-    if abs(gain - 1) <= LARGEST_UPLIFT_GAIN_ERROR + 3 * error:
-        return None
-    return Finding(
-        "doubt",
+    text = (
         f"between the supports, the contact height changes by {gain:.3g} times the uplift; check gain and unit of the "
-        "uplift",
+        "uplift"
     )
+    return UPLIFT_GAIN.compare(abs(gain - 1) - 3 * float(error), text=text)
 
 
 COINCIDENCE = Check(
@@ -186,4 +192,6 @@ COINCIDENCE = Check(
     why="an uplift that is frozen, scaled, of another support or of another run still shows a kink somewhere",
     needs="position, contact force, contact height and uplift at supports, to 0.1 mm",
     run=_check_coincidence,
+    measures=(HOLD, DEVIATION, DATUM, UPLIFT_GAIN),
+    causes=("not possible", "named by another check"),
 )

@@ -31,16 +31,26 @@ from pantocheck.conformance.line.elements.tension_section import SectionRise
 from pantocheck.conformance.quantities.filters import is_observable
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.check import TINY, Check, Finding, report_low_rate, report_not_made
+from pantocheck.conformance.runs.check import (
+    TINY,
+    Check,
+    Finding,
+    Measure,
+    report_low_rate,
+    report_not_made,
+    worst_finding,
+)
 
 PASSING_TOLERANCE_M = 5.0
 """Accepted distance between a support and the pantograph whose kink passes it [m]: the error of a measured position."""
 
+KINK_SHIFT = Measure("shift at which the wire bends at the supports", "m", {"contradiction": PASSING_TOLERANCE_M})
+
 COINCIDENCE_TOLERANCE_M = 0.5
 """Accepted shift of the coincidence [m]: two samples of a slow record."""
 
-LARGEST_SCATTER = 0.25
-"""Largest scatter at the passage, over the median of all shifts.
+SCATTER = Measure("scatter of height less uplift at the passages", "", {"unchecked": 0.25})
+"""Scatter at the passage, over the median of all shifts.
 
 Most simulated records have 0.05; equal spans at 200 samples per second have 0.15."""
 
@@ -63,7 +73,7 @@ SMALLEST_CONTACT = 0.25
 """Smallest sum of squared contact forces at the stated passages, over that of the best shift."""
 
 
-def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None:
+def _check_support_passing(case: Case, signals: RecordSignals) -> Finding:
     record, cutoff = signals.record, case.file.filter.cutoff_Hz
     try:
         passages = _Passages(case, signals)
@@ -72,27 +82,31 @@ def _check_support_passing(case: Case, signals: RecordSignals) -> Finding | None
     if passages.length > PASSING_TOLERANCE_M or not is_observable(cutoff, record.rate):
         return report_low_rate("support passing", record.rate)
     near = np.abs(passages.shifts) <= PASSING_TOLERANCE_M
-    unclear = []
+    unclear, findings = [], []
     for number in signals.pantographs:
+        part = f"pantograph {number}"
         kink, contact = passages.kinks(number)
         best = int(kink.argmax())
+        shift = passages.shifts[best]
         touching = contact >= SMALLEST_CONTACT * contact.max()
         if near[best] and touching[best] and kink[best] >= SMALLEST_KINK:
+            findings.append(KINK_SHIFT.compare(abs(shift), part))
             continue
         if touching[near].any() and kink[best] >= max(SMALLEST_KINK, CLEAR_RATIO * kink[near].max()):
-            shift = passages.shifts[best]
-            return Finding(
-                "contradiction",
-                f"the position of pantograph {number} contradicts the uplift: the wire bends at a support when the "
-                f"position is {abs(shift):.3g} m {'past' if shift > 0 else 'before'} it",
+            text = (
+                f"the position of {part} contradicts the uplift: the wire bends at a support when the "
+                f"position is {abs(shift):.3g} m {'past' if shift > 0 else 'before'} it"
             )
+            return KINK_SHIFT.compare(abs(shift), part, text)
         # On a periodic line other shifts coincide, too: a coincidence does not outweigh a clear kink elsewhere.
-        if not passages.coincide(number):
+        finding = SCATTER.compare(passages.scatter(number), part)
+        findings.append(finding)
+        if finding.kind == "unchecked":
             unclear.append(str(number))
     if unclear:
         text = f"the uplift at the supports shows no clear passage of pantograph {', '.join(unclear)}"
         return report_not_made("support passing", text)
-    return None
+    return worst_finding(findings)
 
 
 class _Passages:
@@ -135,11 +149,11 @@ class _Passages:
         scale = wire.number * wire.tension_N / (expected or np.inf)
         return np.asarray(scale * products / np.maximum(np.sqrt(squares * squares.max()), TINY)), squares
 
-    def coincide(self, number: int) -> bool:
-        """Whether contact height and uplift coincide at the stated passages, up to penetration and a constant."""
+    def scatter(self, number: int) -> float:
+        """Scatter of contact height less uplift and penetration at the stated passages, over that of all shifts."""
         record, file = self._signals.record, self._case.pantographs[number - 1]
         if record.contact_height is None:
-            return False
+            return np.inf
         height, force = record.contact_height[number - 1], record.force[number - 1]
         rest, differences = rest_heights(self._case, self._supports), []
         for support, uplift, rest_height in zip(self._supports, self._uplift, rest, strict=True):
@@ -151,8 +165,8 @@ class _Passages:
         scatter = _scatter(np.array(differences))
         at_passage = scatter[np.abs(self.shifts) <= COINCIDENCE_TOLERANCE_M]
         if not (np.isfinite(scatter).any() and np.isfinite(at_passage).any()):
-            return False
-        return bool(np.nanmin(at_passage) <= LARGEST_SCATTER * np.nanmedian(scatter))
+            return np.inf
+        return float(np.nanmin(at_passage) / max(float(np.nanmedian(scatter)), TINY))
 
     def _moment(self, number: int, support: float) -> RealArray:
         """Time at which the pantograph, shifted, passes a support [s]; nan outside the record."""
@@ -177,6 +191,7 @@ SUPPORT_PASSING = Check(
     why="shifted positions hardly change the statistics",
     needs="position, contact force and uplift at supports",
     run=_check_support_passing,
+    measures=(KINK_SHIFT, SCATTER),
 )
 
 

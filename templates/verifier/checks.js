@@ -2,9 +2,46 @@
 const STATEMENT = "self-declared conformance report, in the style of EN 50318";
 const STEPS = ["pantograph_model", "static_check", "reference_models", "line_test", "limits_of_validity"];
 
-const RECORD_CHECKS = [
-  "coverage", "motion", "support passing", "coincidence", "roll-off", "dynamics", "implied force", "mean force", "content", "copy",
-];
+// Consistency checks: causes of an outcome without a number, and measures with unit, side and thresholds.
+const RECORD_CHECKS = {
+  "coverage": [["holds", "does not hold"], {}],
+  "motion": [[], {
+    "difference of the speed by position and time": ["", "above", {"contradiction": 0.005}]
+  }],
+  "support passing": [["not possible"], {
+    "shift at which the wire bends at the supports": ["m", "above", {"contradiction": 5.0}],
+    "scatter of height less uplift at the passages": ["", "above", {"unchecked": 0.25}]
+  }],
+  "coincidence": [["not possible", "named by another check"], {
+    "longest constant part of an uplift": ["s", "above", {"doubt": 0.15}],
+    "difference of height less uplift between supports, beside the kink": ["mm", "above", {"doubt": 1.0}],
+    "difference of height less uplift between equal pantographs": ["mm", "above", {"doubt": 5.0}],
+    "error of the gain of the uplift, beside three standard errors": ["", "above", {"doubt": 0.03}]
+  }],
+  "roll-off": [["does not apply", "not possible"], {
+    "implied content above the cut-off": ["", "above", {"contradiction": 1.0, "doubt": 0.5}]
+  }],
+  "dynamics": [["not possible"], {
+    "misfit of the motion": ["", "above", {"contradiction": 0.1}],
+    "error of the gain of the force": ["", "above", {"contradiction": 0.03}],
+    "misfit of the motion behind a causal filter": ["", "above", {"doubt": 0.1}],
+    "error of the gain of the force behind a causal filter": ["", "above", {"doubt": 0.03}]
+  }],
+  "implied force": [["not possible", "does not apply", "named by another check"], {
+    "largest error of the force up to the cut-off": ["", "above", {"doubt": 0.15}],
+    "largest error of the force up to 50 Hz": ["", "above", {"doubt": 0.3}]
+  }],
+  "mean force": [["does not apply", "named by another check"], {
+    "difference of the mean force beside base spring and momentum": ["", "above", {"doubt": 0.03}]
+  }],
+  "content": [["not possible", "does not apply", "named by another check"], {
+    "content of the force over that of kinks": ["", "below", {"doubt": 0.08}]
+  }],
+  "copy": [["not possible", "does not apply", "named by another check"], {
+    "difference from the force of another pantograph": ["", "below", {"doubt": 0.01}],
+    "difference of the uplift at passages with the same force": ["mm", "above", {"doubt": 0.5}]
+  }]
+};
 
 // Facts that only `pantocheck verify` can prove; a test holds this list against its checks.
 const ONLY_VERIFY = [
@@ -12,7 +49,7 @@ const ONLY_VERIFY = [
   ["library", "Inputs, limits, units, texts and warnings of a library case are those of the installed library."],
   ["cases from outside", "Inputs, limits and texts of a case from outside are those of its distribution or folder."],
   ["revocation", "No certificate of a signer was revoked (lists among the trust roots)."],
-  ["record", "The record itself: the outcomes of its consistency checks, and its digest (option --record)."],
+  ["record", "The record itself: the numbers of its consistency checks, and its digest (option --record)."],
   ["rerun", "A new run of the simulator gives the same values (option --rerun)."],
   ["suite", "The stated version of the suite has the stated digest."],
   ["format", "Every key of results.json belongs to its format."],
@@ -135,18 +172,66 @@ function checkThinned(result) {
   return found;
 }
 
+// The outcome of a check follows from its number, or from the cause without one.
+const CAUSES = {
+  holds: "confirmed", "does not apply": "confirmed", "named by another check": "confirmed",
+  "does not hold": "contradiction", "not possible": "unchecked", "not reached": "not reached",
+};
+
+function judgeBasis({ kind, cause, number, side, thresholds }) {
+  if (kind !== "measured") return CAUSES[cause];
+  const beyond = (limit) => limit !== undefined && (side === "above" ? number > limit : number < limit);
+  return ["contradiction", "doubt", "unchecked"].find((outcome) => beyond(thresholds[outcome])) ?? "confirmed";
+}
+
+function checkBasis({ check, outcome, basis }) {
+  const found = [], follows = judgeBasis(basis), [causes, measures] = RECORD_CHECKS[check] ?? [[], {}];
+  if (outcome !== follows) found.push(`outcome '${outcome}' stated, '${follows}' follows from its number or cause`);
+  if (!(check in RECORD_CHECKS)) return found;
+  if (basis.kind !== "measured") {
+    const known = [...causes, "not reached"].includes(basis.cause);
+    return known ? found : [...found, `'${basis.cause}' stated; this check has a number`];
+  }
+  const stated = [basis.unit, basis.side, basis.thresholds], installed = measures[basis.measure];
+  if (!installed || compareTrees(stated, installed, 0).length) {
+    found.push(`the number or the thresholds of '${basis.measure}' are not those of the installed suite`);
+  }
+  return found;
+}
+
+// A check that does not apply, or a threshold for filtered forces, has a cause in the results.
+function checkCause({ record, signals, quantities, run }, { check, basis }) {
+  const applied = Object.values(signals?.pantographs ?? {}).map((part) => part.filter_applied_Hz ?? null);
+  if (basis.kind === "measured") {
+    const causal = basis.measure.includes("causal filter") && applied.includes(null);
+    return causal ? ["a causal filter is named, but the force was delivered without a filter"] : [];
+  }
+  if (basis.cause === "named by another check" && !record.checks.some((row) => row.outcome === "unchecked")) {
+    return ["no other check names a missing channel"];
+  }
+  if (basis.cause !== "does not apply") return [];
+  const applies = {
+    "roll-off": applied.some((f) => f !== null && Math.abs(f / run.filter.cutoff_Hz - 1) <= SAME_CUTOFF),
+    "implied force": record.checks.some((row) => row.check === "dynamics" && row.basis.kind === "measured"),
+    copy: Object.values(quantities).filter((values) => values.std_force_N).length > 1,
+  };
+  return applies[check] ? ["'does not apply' stated, but the results show that it applies"] : [];
+}
+
 // The state of a record follows from the outcomes of its checks, and these fit the remarks of the case.
-function checkState({ record, notes, warnings }) {
+function checkState(result) {
+  const { record, notes, warnings } = result;
   const found = [], rows = record?.checks ?? [], names = rows.map((row) => row.check), texts = rows.map((row) => row.text ?? "");
   if (!record) return [];
   if (!rows.length) return record.state === "unconfirmed" ? [] : [`state '${record.state}' of the record stated, but no check of it`];
-  if (names.join() !== RECORD_CHECKS.join()) found.push(`the checks of the record are ${names.join(", ")}`);
+  if (names.join() !== Object.keys(RECORD_CHECKS).join()) found.push(`the checks of the record are ${names.join(", ")}`);
   let contradicted = false;
   rows.forEach(({ check, outcome }, i) => {
     if ((outcome === "not reached") !== contradicted) {
       found.push(`check '${check}': outcome '${outcome}' stated ${contradicted ? "behind" : "without"} a contradiction`);
     }
     contradicted ||= outcome === "contradiction";
+    found.push(...[...checkBasis(rows[i]), ...checkCause(result, rows[i])].map((text) => `check '${check}': ${text}`));
     const silent = ["confirmed", "not reached"].includes(outcome), remarks = { doubt: warnings, unchecked: notes }[outcome];
     if ((texts[i] === "") !== silent) found.push(`check '${check}': outcome '${outcome}' does not fit its text`);
     if (remarks && !remarks.includes(texts[i])) found.push(`check '${check}': its text is missing among the remarks`);

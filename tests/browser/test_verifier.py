@@ -3,6 +3,7 @@
 import ast
 import base64
 import hashlib
+import json
 import re
 import tomllib
 from collections.abc import Iterator
@@ -179,7 +180,7 @@ COVERED = {
 }
 """Beginnings of statements outside of the modules of `MODULES`."""
 
-MODULES = {"library_check": "library", "repetition_check": "record"}
+MODULES = {"library_check": "library", "repetition_check": "record", "row_check": "record"}
 """Modules all of whose checks the verifier names as one."""
 
 IMPLEMENTED = {"numbers", "appended bytes", "signatures"}
@@ -211,8 +212,15 @@ def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
     assert set(documented) <= {*listed, *IMPLEMENTED, "missing parts", "origin"}
     assert {"record", "rerun", "revocation"} <= set(listed)
     script = (VERIFIER_FOLDER / "checks.js").read_text("utf-8")
-    names = re.findall('"([^"]+)"', script.partition("RECORD_CHECKS = [")[2].partition("]")[0])
-    assert names == [check.name for check in RECORD_CHECKS]
+    table = json.loads(script.partition("RECORD_CHECKS = ")[2].partition(";")[0])
+    assert table == {
+        check.name: [
+            [*check.causes],
+            {part.name: [part.unit, part.side, {**part.thresholds}] for part in check.measures},
+        ]
+        for check in RECORD_CHECKS
+    }
+    assert list(table) == [check.name for check in RECORD_CHECKS]
 
 
 def test_verifier_fetches_nothing_and_is_the_same_file_each_time() -> None:

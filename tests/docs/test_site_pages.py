@@ -14,6 +14,7 @@ from pantocheck.conformance.app.commands.command_list import COMMANDS, load_comm
 from pantocheck.conformance.app.schemas import FORMAT_NAMES, build_schema
 from pantocheck.conformance.cases.case_source import list_library
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.grading import case_evaluation
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities import filters
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -57,7 +58,10 @@ def test_every_threshold_has_its_value_and_a_reason(pages: dict[str, str]) -> No
     values = {name: value for name, value, _ in rows}
     assert values["HIGHEST_SHARE_OF_RATE"] == f"{filters.HIGHEST_SHARE_OF_RATE:g}"
     assert values["STOP_BAND"] == ", ".join(f"{value:g}" for value in record_checks.STOP_BAND)
-    assert values["CONTRADICTION"] == f"{record_checks.CONTRADICTION:g}"  # one of two numbers of a statement
+    assert values["HIGHEST_ORDER"] == f"{case_evaluation.HIGHEST_ORDER:g}"  # one of two numbers of a statement
+    assert (
+        "misfit of the motion: contradiction above 0.1;" in import_module("site_pages.check_table").build_check_table()
+    )
 
 
 def test_navigation_and_list_of_pages_are_complete(pages: dict[str, str]) -> None:

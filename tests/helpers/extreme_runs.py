@@ -11,7 +11,7 @@ from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import build_passage, record_passage
-from pantocheck.conformance.runs.check import CheckName
+from pantocheck.conformance.runs.check import CheckName, Finding
 from pantocheck.conformance.runs.record_checks import check_record
 from pantocheck.model import History, Passage, discretise, simulate_passage
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
@@ -69,6 +69,11 @@ def read_signals(case: Case, record: Record) -> RecordSignals:
     return RecordSignals(record, case.file.filter, case.line.geometry.supports)
 
 
+def list_problems(case: Case, signals: RecordSignals) -> dict[CheckName, Finding]:
+    """Findings of the checks that do not confirm a record."""
+    return {name: finding for name, finding in check_record(case, signals).items() if finding.kind != "confirmed"}
+
+
 def list_kinds(case: Case, record: Record) -> dict[CheckName, str]:
-    """Kind of the finding of every check that has one."""
-    return {name: finding.kind for name, finding in check_record(case, read_signals(case, record)).items()}
+    """Kind of every finding that does not confirm a record."""
+    return {name: finding.kind for name, finding in list_problems(case, read_signals(case, record)).items()}

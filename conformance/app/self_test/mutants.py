@@ -262,7 +262,7 @@ def _run_mutant(mutant: Mutant, case: Case, record: Record) -> MutantResult:
     result = grade_evaluation(evaluation, TRUST) if isinstance(outcome, Delivered) else grade_case(case, outcome, TRUST)
     criteria = evaluation.grade_limits(TRUST)
     outside = tuple(criterion.quantity for criterion in criteria if criterion.verdict == "fail")
-    checks = tuple(name for name, finding in evaluation.findings.items() if finding.kind != "unchecked")
+    checks = tuple(name for name, finding in evaluation.findings.items() if finding.kind in ("doubt", "contradiction"))
     # After an error the limits are not applied.
     detecting = {*checks, "limits"} if outside and result.verdict != "error" else {*checks}
     return MutantResult(

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers.extreme_runs import build_case, simulate
+from helpers.extreme_runs import build_case, list_problems, simulate
 from helpers.listed_spans import list_spans
 from helpers.section_lines import section_line
 from pantocheck.conformance.cases.case import Case
@@ -19,7 +19,6 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import build_passage, record_passage
-from pantocheck.conformance.runs.record_checks import check_record
 from pantocheck.conformance.runs.support_passing import rest_heights
 from pantocheck.conformance.runs.uplift_tuning import compute_working_height
 from pantocheck.model import discretise, simulate_passage
@@ -181,9 +180,9 @@ def test_record_of_an_uneven_line_is_free_of_findings(uneven: Case) -> None:
     """Two pantographs; without the heights at rest, coincidence finds 15 mm. Shifted by 10 m the record is refuted."""
     record = simulate(uneven)
     supports = uneven.line.geometry.supports
-    assert check_record(uneven, RecordSignals(record, uneven.file.filter, supports)) == {}
+    assert list_problems(uneven, RecordSignals(record, uneven.file.filter, supports)) == {}
     shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
-    assert check_record(uneven, RecordSignals(shifted, uneven.file.filter, supports)) != {}
+    assert list_problems(uneven, RecordSignals(shifted, uneven.file.filter, supports)) != {}
 
 
 @pytest.mark.parametrize("static_share", ["none", "level"])
@@ -208,7 +207,7 @@ def test_record_of_an_irregular_line_with_tolerances_is_free_of_findings(static_
         exact = rest_height(discretise(build_catenary(case.line), 0.5), np.array(supports))
         np.testing.assert_allclose(found, exact, atol=1e-9)
     record = simulate(case)
-    assert check_record(case, RecordSignals(record, case.file.filter, supports)) == {}
+    assert list_problems(case, RecordSignals(record, case.file.filter, supports)) == {}
 
 
 @pytest.fixture(scope="module")
@@ -233,6 +232,6 @@ def test_record_of_an_overlap_is_free_of_findings(overlapping: Case) -> None:
     record = simulate(overlapping)
     low_pass, supports = overlapping.file.filter, overlapping.line.geometry.supports
     assert record.evaluated[0] < 275.0 < record.evaluated[1]
-    assert check_record(overlapping, RecordSignals(record, low_pass, supports)) == {}
+    assert list_problems(overlapping, RecordSignals(record, low_pass, supports)) == {}
     shifted = replace(record, position=record.position + np.array([[0.0], [10.0]]))
-    assert check_record(overlapping, RecordSignals(shifted, low_pass, supports)) != {}
+    assert list_problems(overlapping, RecordSignals(shifted, low_pass, supports)) != {}

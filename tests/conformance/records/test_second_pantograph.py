@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from helpers.extreme_runs import list_problems
 from helpers.record_fixtures import change
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
-from pantocheck.conformance.runs.record_checks import check_record
 
 NOISE = Filter(cutoff_Hz=100.0)(np.random.default_rng(1).normal(0.0, 12.0, 20_000), 1000.0)
 """Force between the cut-off of 20 Hz and 100 Hz from a fixed seed [N]."""
@@ -34,18 +34,18 @@ FAULTS: dict[str, tuple[str, Callable[[Record, int], Record]]] = {
 
 
 def contradictions(case: Case, record: Record) -> dict[str, str]:
-    findings = check_record(case, RecordSignals(record, case.file.filter))
+    findings = list_problems(case, RecordSignals(record, case.file.filter))
     return {name: finding.text for name, finding in findings.items() if finding.kind == "contradiction"}
 
 
 def test_doubt_of_the_first_hides_no_contradiction(two_pantograph_case: Case, record: Record) -> None:
-    assert check_record(two_pantograph_case, RecordSignals(record, two_pantograph_case.file.filter)) == {}
+    assert list_problems(two_pantograph_case, RecordSignals(record, two_pantograph_case.file.filter)) == {}
     # Noise of the first at which the roll-off is doubted, five times this noise in the second.
     weak = 0.75 / 4.3  # At full noise, the implied content is 4.3 times that below the cut-off; 0.5 to 1 is a doubt.
     stated = replace(record, filter_applied_Hz=20.0)
     doubted = change(stated, "force", 0, lambda force: force + weak * NOISE[: force.size])
     low_pass = two_pantograph_case.file.filter
-    assert check_record(two_pantograph_case, RecordSignals(doubted, low_pass))["roll-off"].kind == "doubt"
+    assert list_problems(two_pantograph_case, RecordSignals(doubted, low_pass))["roll-off"].kind == "doubt"
     both = change(doubted, "force", 1, lambda force: force + 5 * weak * NOISE[: force.size])
     assert "pantograph 2" in contradictions(two_pantograph_case, both)["roll-off"]
 

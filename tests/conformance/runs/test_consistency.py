@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import lsim
 
+from helpers.extreme_runs import list_problems
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.grading.case_grading import grade_case
@@ -16,12 +17,12 @@ from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
-from pantocheck.conformance.runs.check import CheckName, Finding
-from pantocheck.conformance.runs.force_dynamics import DYNAMICS, ResponseFit, compare_motion
+from pantocheck.conformance.runs.check import HOLDS, CheckName, Finding, Measure, report_low_rate, report_missing
+from pantocheck.conformance.runs.force_dynamics import DYNAMICS, LATE_MISFIT, MISFIT, ResponseFit, compare_motion
 from pantocheck.conformance.runs.record_checks import (
     MOTION,
+    RECORD_CHECKS,
     _compare,
-    check_record,
     judge_record_state,
     list_check_rows,
 )
@@ -42,7 +43,7 @@ def rough(record: Record) -> Record:
 
 
 def findings(case: Case, record: Record) -> dict[CheckName, Finding]:
-    return check_record(case, RecordSignals(record, case.file.filter))
+    return list_problems(case, RecordSignals(record, case.file.filter))
 
 
 def kinds(case: Case, record: Record) -> list[tuple[CheckName, str]]:
@@ -129,7 +130,7 @@ def test_positions_that_contradict_speed_or_supports_are_found(case_250: Case, r
         assert ("motion", "contradiction") in kinds(case_250, moved)
     assert kinds(case_250, moved) == [("motion", "contradiction")]
     exact = SimpleNamespace(time=np.linspace(0.0, 1.0, 11), position=np.linspace(0.0, 50.0, 11)[None], speed=50.0)
-    assert MOTION.run(case_250, SimpleNamespace(record=exact)) is None
+    assert MOTION.run(case_250, SimpleNamespace(record=exact)).kind == "confirmed"
     for shift, found in ((10.0, [("support passing", "contradiction")]), (3.0, [])):
         assert kinds(case_250, replace(record, position=record.position + shift)) == found
     assert kinds(case_250, replace(record, support_position=None, support_uplift=None)) == [
@@ -150,15 +151,18 @@ def test_contradiction_is_an_error_and_a_missing_channel_a_note(case_250: Case, 
 # State of a record by the findings of its checks.
 def test_state_follows_from_the_worst_finding() -> None:
     """Beside a contradiction, a missing channel is not the reason: the record cannot be graded even with it."""
-    rows = list_check_rows({})
+    confirmed = {check.name: HOLDS for check in RECORD_CHECKS}
+    rows = list_check_rows(confirmed)
     assert {row.outcome for row in rows} == {"confirmed"}
     assert judge_record_state(rows) == ("consistent", "every consistency check that applies confirms the record")
-    findings: dict[CheckName, Finding] = {"support passing": Finding("unchecked", "no uplift")}
-    assert judge_record_state(list_check_rows(findings | {"dynamics": Finding("doubt", "late force")})) == (
+    findings = confirmed | {"support passing": report_missing("no uplift")}
+    late = {"dynamics": LATE_MISFIT.compare(0.2, text="late force")}
+    assert judge_record_state(list_check_rows(findings | late)) == (
         "unconfirmed",
         "no uplift; late force",
     )
-    rows = list_check_rows(findings | {"dynamics": Finding("contradiction", "gain")})
+    reached = dict(list(findings.items())[:5])
+    rows = list_check_rows(reached | {"dynamics": MISFIT.compare(0.2, text="gain")})
     assert judge_record_state(rows) == ("contradicted", "gain")
     outcomes = {row.check: row.outcome for row in rows}
     assert (outcomes["roll-off"], outcomes["implied force"]) == ("confirmed", "not reached")
@@ -171,8 +175,13 @@ Disturb = Callable[[int, float], Record]
 """Function that disturbs the motion of one head."""
 
 
-def check(case: Case, train_record: Record) -> Finding | None:
+def check(case: Case, train_record: Record) -> Finding:
     return DYNAMICS.run(case, RecordSignals(train_record, case.file.filter))
+
+
+def check_outcome(case: Case, train_record: Record) -> tuple[str, str]:
+    found = check(case, train_record)
+    return found.kind, found.text
 
 
 def fit_pantograph(case: Case, train_record: Record, row: int) -> ResponseFit:
@@ -213,7 +222,7 @@ def test_motion_that_the_force_does_not_explain_is_stated(
     train_record = disturb(row, share)
     unexplained = fit_pantograph(two_pantograph_case, train_record, row).unexplained
     assert unexplained == pytest.approx(share, abs=0.05)
-    assert check(two_pantograph_case, train_record) == Finding(
+    assert check_outcome(two_pantograph_case, train_record) == (
         "contradiction",
         f"pantograph {row + 1}: the contact force contradicts the contact height: "
         f"the force explains only {100 * (1 - unexplained):.0f} % of the motion",
@@ -225,7 +234,7 @@ def test_misfit_up_to_a_tenth_is_accepted(
     two_pantograph_case: Case, disturb: Disturb, share: float, accepted: bool
 ) -> None:
     """The misfit s / sqrt(1 - s^2) is 0.09 and 0.12; its threshold is 0.1."""
-    assert (check(two_pantograph_case, disturb(1, share)) is None) is accepted
+    assert (check(two_pantograph_case, disturb(1, share)).kind == "confirmed") is accepted
 
 
 def test_value_on_a_threshold_is_accepted(
@@ -234,10 +243,9 @@ def test_value_on_a_threshold_is_accepted(
     """Each threshold in turn is set to the very number of the record."""
     train_record = disturb(0, 0.12)
     result = fit_pantograph(two_pantograph_case, train_record, 0)
-    monkeypatch.setattr(force_dynamics, "LARGEST_MISFIT", result.misfit)
-    monkeypatch.setattr(force_dynamics, "LARGEST_GAIN_ERROR", abs(1 / result.gain - 1))
-    assert check(two_pantograph_case, train_record) is None
-    monkeypatch.setattr(force_dynamics, "LARGEST_MISFIT", 0.1)
+    numbers = {"misfit": result.misfit, "gain": abs(1 / result.gain - 1)}
+    exact = tuple(Measure(name, "", {"contradiction": number}) for name, number in numbers.items())
+    assert force_dynamics._compare(1, result, measures=exact).kind == "confirmed"
     monkeypatch.setattr(force_dynamics, "CLEAR", result.unexplained)
     found = check(two_pantograph_case, train_record)
     assert "explains only" in found.text, "the share that remains is not below the threshold"
@@ -265,8 +273,9 @@ def test_tolerance_of_the_mean_force_has_the_change_of_momentum(case_250: Case) 
 def test_check_needs_a_rate_for_the_filter(two_pantograph_case: Case, rate: float, made: bool) -> None:
     """20 Hz are 0.4 of 50 samples per second."""
     found = check(two_pantograph_case, Wave(rate=rate).record(two_pantograph_case))
-    too_low = Finding("unchecked", f"the dynamics check was not made: a rate of {rate:g} Hz is too low")
-    assert found == (None if made else too_low)
+    too_low = report_low_rate("dynamics", rate)
+    assert found.text == ("" if made else f"the dynamics check was not made: a rate of {rate:g} Hz is too low")
+    assert made or found == too_low
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -279,8 +288,9 @@ def test_still_head_under_a_constant_force_is_not_checked(
     force[row] = 119.0
     height[row] *= 0.9e-3 / height[row].std()
     found = check(two_pantograph_case, replace(train_record, force=force, contact_height=height))
-    assert found == Finding(
-        "unchecked", f"the dynamics check was not made: the head of pantograph {row + 1} hardly moves"
+    assert (found.kind, found.text) == (
+        "unchecked",
+        f"the dynamics check was not made: the head of pantograph {row + 1} hardly moves",
     )
     height[row] *= 1.6
     moving = check(two_pantograph_case, replace(train_record, force=force, contact_height=height))
