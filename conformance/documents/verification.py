@@ -21,6 +21,7 @@ from pantocheck.conformance.documents.document_reading import (
 from pantocheck.conformance.documents.library_check import check_library
 from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
+from pantocheck.conformance.documents.row_check import check_rows
 from pantocheck.conformance.documents.signal_check import find_signal_gaps
 from pantocheck.conformance.documents.signature_check import is_signed_pdf
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -101,6 +102,7 @@ def verify_certificate(document: Certificate) -> Verification:
         check_pages(document),
         *updates,
         *check_library(results),
+        *check_rows(results),
         *_name_reference(results),
     )
     return Verification(results, (*_name_versions(document, checks), *checks))

@@ -79,7 +79,7 @@ def pack_signals(
             continue
         if window.stop - window.start > MOST_SAMPLES:
             return None
-        height, channels = _keep_sections(signals, readings), signals.arc_channels
+        height, channels = signals.contact_height, signals.arc_channels
         arcs, loaded = (None, None) if channels is None else map(pack_samples, channels[:, window])
         packed[str(number)] = PantographSamples(
             filter_applied_Hz=signals.filter_applied_Hz,
@@ -120,18 +120,6 @@ def _find_window(signals: PantographSignals, readings: Sequence[FilterAndSection
         first, last = min(first, int(begin) - settling), max(last, int(stop) + settling)
     # One sample more at each end: a section may begin between two samples.
     return slice(max(first - 1, 0), min(last + 1, position.size))
-
-
-def _keep_sections(signals: PantographSignals, readings: Sequence[FilterAndSection]) -> RealArray | None:
-    """Contact height inside the sections of all evaluations, NaN elsewhere; None if there is none."""
-    height = signals.contact_height
-    if height is None:
-        return None
-    kept = np.full(height.size, np.nan)
-    for section in (signals.section, *(section for _, section in readings)):
-        first, last = np.searchsorted(signals.position, [section[0] - 1e-9, section[1] - 1e-9])
-        kept[first:last] = height[first:last]
-    return kept
 
 
 def _pack_uplift(line: LineSignals, sections: Sequence[Stretch], train_m: float) -> list[SupportSamples]:
