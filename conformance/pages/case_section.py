@@ -26,6 +26,7 @@ from pantocheck.conformance.pages.quantity_tables import (
     list_skipped,
     list_uncertainty_basis,
 )
+from pantocheck.conformance.pages.record_check_table import build_check_section
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, mark_case, verification_blocks
@@ -107,6 +108,7 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
     parts = (*((doc.BulletList(basis),) if basis else ()), *((quantities,) if quantities.rows else ()))
     if parts:
         yield doc.Section("All quantities, with uncertainty by component", parts, folded=True)
+    yield from build_check_section(case)
     yield from build_condition_section(case)
     if skipped := list_skipped(case):
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)

@@ -191,10 +191,9 @@ def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Bl
         yield section.blocks[0]
     rule, risk = describe_rule(results).partition(": ")[0], results.decision.partition(":")[2]
     rule = f"{rule}, probability of a wrong acceptance at most {risk}" if risk else rule
-    chance = describe_chance(results)
     facts = [
         ("Decision rule", rule),
-        ("Probability", chance and f"that all counted values lie inside their limits: {chance}"),
+        ("Probability", describe_chance(results)),
         ("Uncertainty", state_incomplete(results)),
     ]
     yield doc.Facts(tuple((name, text) for name, text in (*facts, *_list_reasons(results, first)) if text))
@@ -276,5 +275,4 @@ def _describe_use(results: Results, first_page: FirstPage) -> Iterator[doc.Block
     facts = {f"Steps {state}": ", ".join(states[state]) for state in read_words()["state"] if state in states}
     yield doc.select_facts(facts)
     nature = f"This is a {results.statement}. It is not a certification by a third party."
-    scope = "The result holds for this system, these cases and these inputs only."
-    yield doc.BulletList((nature, scope, *first_page.warnings))
+    yield doc.BulletList((nature, *first_page.warnings))

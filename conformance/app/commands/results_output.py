@@ -24,6 +24,7 @@ from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, describe_condition
 from pantocheck.conformance.pages.criteria_table import describe_close
 from pantocheck.conformance.pages.document_facts import list_administration
+from pantocheck.conformance.pages.record_check_table import CHECK_HEADINGS, describe_row
 from pantocheck.conformance.pages.scope_page import describe_changes
 from pantocheck.conformance.pages.two_verdicts import describe_comparison, mark_case, mark_results
 from pantocheck.conformance.pages.verdict_reasons import build_headline, describe_record, state_decision
@@ -107,13 +108,21 @@ def _describe_case(case: CaseResult, footnotes: Sequence[str]) -> Iterator[Rende
 
 
 def _list_all_values(case: CaseResult) -> Iterator[RenderableType]:
-    """All quantities of a case that are single numbers."""
+    """All quantities of a case that are single numbers, and the consistency checks of its record."""
     missing = list_unknown(case.uncertainty_basis)
     table = build_quantities_table(case.quantities, case.uncertainty, list_names(case.quantities), missing)
     if table.row_count:
         yield Text()
         yield Text(f"All values of {case.id}", "bold")
         yield table
+    if case.record is not None and case.record.checks:
+        rows = [
+            tuple(text.translate({ord("–"): "-", ord("−"): "-"}) for text in describe_row(row))
+            for row in case.record.checks
+        ]
+        yield Text()
+        yield Text(f"Consistency checks of {case.id}", "bold")
+        yield build_table(*map(str.lower, CHECK_HEADINGS), unbroken=("check", "value", "outcome"), rows=rows)
 
 
 def _list_criteria(criteria: Sequence[Criterion], missing: Sequence[str] = ()) -> Iterator[RenderableType]:

@@ -80,8 +80,8 @@ def verify_command(
         write_atomically(write_verifier, build_verifier(build_suite().version))
         if document is None:
             digest = file_digest(write_verifier)
-            conclusion = f"Verifier with the SHA-256 {digest}: open it in a browser, and drop a certificate on it."
-            return CommandOutput(escape_text(conclusion), {"digest": digest}, files=[write_verifier])
+            conclusion = escape_text(f"Verifier for a browser, {digest}: open it, and drop a certificate on it.")
+            return CommandOutput(conclusion, {"digest": digest}, files=[write_verifier])
     if document is None:
         raise InputError("argument FILE", "missing", "Name a certificate or a results.json.")
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
