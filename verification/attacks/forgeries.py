@@ -60,12 +60,12 @@ OUTSIDE = {
     "time step and element length": "",
     "time of the run": "",
     "administrative data": "",
-    "all forces scaled, regraded": "",
     "date": "a date follows from no result; the time stamp of a signature shows it",
 }
 """Kinds that are consistent, and the remark that a reader sees. A signature shows them."""
 
 SHORT_STATEMENTS = {
+    "Numbers of consistency checks": "checks of the record",
     "The embedded numbers": "numbers",
     "Parts that every run": "missing parts",
     "Inputs, limits": "library",
