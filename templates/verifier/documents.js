@@ -41,7 +41,8 @@ async function readDocument(bytes) {
     return { kind: "HTML", text: blocks[0][1], page, digest };
   }
   if (!beginning.startsWith("{")) throw new Error("the file is neither a PDF nor an HTML page nor JSON");
-  return { kind: "JSON", text: decode(bytes) };
+  const text = decode(bytes);
+  return { kind: "JSON", text, digest: await sha256(new TextEncoder().encode(writeAttachment(text))) };
 }
 
 // English words of a page by their words in the language of the page.
@@ -51,13 +52,23 @@ const WORDS = {
   pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED",
 };
 
-const findNumber = (text) => /[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/i.exec(text.replace(/[\u2009\u00a0]/g, ""))?.[0].replace("−", "-");
+const findNumbers = (text) =>
+  (text.replace(/[\u2009\u00a0]/g, "").match(/[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/gi) ?? []).map((number) => number.replace("−", "-"));
 
 // Whether a printed number is a value, rounded to its last digit.
 function isRounded(text, value) {
-  const digits = findNumber(text), power = /e/i.test(digits), places = (digits.split(".")[1] ?? "").length;
+  const [digits] = findNumbers(text), power = /e/i.test(digits), places = (digits.split(".")[1] ?? "").length;
   const step = power ? Math.abs(Number(digits)) * 0.05 : 10 ** -places;
   return Math.abs(Number(digits) - value) <= step * (0.5 + 1e-6) + 1e-9 * Math.abs(value);
+}
+
+// Whether a cell prints one of some values, each of a short list, or the number and the range of a long list.
+function isPrinted(text, stated, values) {
+  const numbers = findNumbers(text), range = (list) => [list.length, smallest(list), largest(list)];
+  const lists = stated.filter((value) => Array.isArray(value) && numbers.length === 3);
+  if (lists.some((list) => range(list).every((value, i) => isRounded(numbers[i], value)))) return true;
+  const parts = text.split(", ").filter((part) => findNumbers(part).length);
+  return parts.every((part) => values.some((value) => value !== null && isRounded(part, value)));
 }
 
 // English word of a printed verdict without its symbol.
@@ -70,15 +81,17 @@ function checkTables(section, result, english) {
   for (const line of section?.querySelectorAll("tr") ?? []) {
     const [, name, item] = /^(.*?)(?:\[(\d+)\])?$/.exec(line.querySelector("th code")?.textContent ?? ""), cells = {};
     for (const cell of line.querySelectorAll("td[data-label]")) cells[english(cell.dataset.label)] = cell.textContent.trim();
-    if (!name || (cells.Case !== undefined && !cells.Case.endsWith(result.id)) || cells.Value === undefined || !findNumber(cells.Value)) continue;
+    if (!name || (cells.Case !== undefined && !cells.Case.endsWith(result.id)) || cells.Value === undefined || !findNumbers(cells.Value).length) continue;
     const anyone = cells.Pantograph === undefined, owner = /^\d+$/.test(cells.Pantograph ?? "") ? cells.Pantograph : "0";
     const stated = Object.keys(result.quantities).filter((key) => anyone || key === owner)
       .map((key) => result.quantities[key][name]).filter((value) => value !== undefined);
     const values = stated.flatMap((value) => (item ? selectItem(value, Number(item)) : value));
     if (!values.length) continue;
     count += 1;
-    if (!values.some((value) => value !== null && isRounded(cells.Value, value))) {
-      found.push(`${name}: '${cells.Value}' is printed, ${values.map(exact).join(" or ")} follows from the results`);
+    if (!isPrinted(cells.Value, item ? [] : stated, values)) {
+      const follows = values.length > 6 ? `${values.length} values, ${exact(smallest(values))} to ${exact(largest(values))}`
+        : values.map(exact).join(" or ");
+      found.push(`${name}: '${cells.Value}' is printed, ${follows} follows from the results`);
     }
     const rows = [...result.criteria, ...(result.verification?.criteria ?? [])]
       .filter((row) => row.quantity === name && (anyone || String(row.pantograph) === owner));
@@ -111,7 +124,7 @@ function checkPage(page, digest, results) {
 // Report on a document: its checks by outcome, as `pantocheck verify` prints them.
 async function verifyDocument(bytes, name = "document", signatureFile = null, roots = null) {
   const document = await readDocument(bytes), results = JSON.parse(document.text), checks = [];
-  const origin = await checkOrigin(bytes, document, signatureFile, roots && readRoots(roots.content, roots.name));
+  const origin = await checkOrigin(bytes, document, signatureFile, roots && [roots].flat().flatMap(({ content, name: file }) => readRoots(content, file)));
   if (results.schema !== "pantocheck.results/1") throw new Error("the document holds no results of Pantocheck");
   const add = (outcome, statement, details = []) => checks.push({ outcome, statement, details });
   const judged = (proved, contradicted, details) =>

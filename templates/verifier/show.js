@@ -49,9 +49,17 @@ function describeWidth(row, { uncertainty_basis: basis }) {
   return !SIGNAL_NAME.test(row.quantity) ? "exact" : missing ? "not known" : "± 0";
 }
 
-function tabulate(result) {
-  const table = element("table"), add = (cells, name) => {
-    const row = element("tr");
+// Mark of a verdict on criteria as on a page: a pass with a value close to a limit is CLOSE.
+const markRows = (verdict, rows) =>
+  verdict === "pass" && rows.some((row) => row.verdict === "pass" && row.close?.length) ? "PASS, CLOSE" : WORDS[verdict] ?? verdict;
+
+// Whether a contradiction names a row: its case, quantity and pantograph.
+const names = (line, { id }, row) => [`${id}:`, `${id},`].some((start) => line.startsWith(start))
+  && line.split(/\W+/).includes(row.quantity) && (/pantograph (\d+)/.exec(line)?.[1] ?? String(row.pantograph)) === String(row.pantograph);
+
+function tabulate(result, contradictions) {
+  const table = element("table"), add = (cells, name, attributes) => {
+    const row = element("tr", "", attributes);
     row.append(...cells.map((cell) => element(name, cell)));
     table.append(row);
   };
@@ -60,13 +68,17 @@ function tabulate(result) {
     const limits = `${row.lower === null ? "" : formatG(row.lower, 6)} … ${row.upper === null ? "" : formatG(row.upper, 6)}`;
     const text = (value, digits, unit = "") => ((value ?? null) === null ? "—" : `${formatG(value, digits)} ${unit}`);
     const [value, margin] = [text(row.value, 6, row.unit), text(row.margin, 2)];
-    add([row.quantity, row.pantograph || "line", value, describeWidth(row, result), limits, margin, row.verdict], "td");
+    const wrong = contradictions.some((line) => names(line, result, row)), mark = markRows(row.verdict, [row]);
+    const verdict = wrong ? `${mark} (contradicted)` : mark;
+    add([row.quantity, row.pantograph || "line", value, describeWidth(row, result), limits, margin, verdict], "td", wrong && { class: "contradicted" });
   }
   return table;
 }
 
 function showReport(report) {
-  output.replaceChildren(element("h2", report.name), element("p", report.conclusion, { class: `conclusion ${report.authentic ? "authentic" : report.state}` }));
+  const output = element("section"), contradicted = report.checks.filter((check) => check.outcome === "contradicted");
+  const contradictions = contradicted.flatMap((check) => check.details);
+  output.append(element("h2", report.name), element("p", report.conclusion, { class: `conclusion ${report.authentic ? "authentic" : report.state}` }));
   if (report.digest) output.append(element("p", `Digest of the results: ${report.digest}`, { class: "small" }));
   for (const [outcome, heading] of Object.entries(HEADINGS)) {
     const checks = report.checks.filter((check) => check.outcome === outcome);
@@ -81,7 +93,9 @@ function showReport(report) {
     output.append(element("h3", heading), list);
   }
   for (const result of report.results.cases) {
-    output.append(element("h3", `${result.title} (${result.id}): ${result.verdict}`), tabulate(result));
+    const name = result.library === "modified" ? `modified copy of ${result.id}` : result.id;
+    const heading = `${result.title} (${name}): ${markRows(result.verdict, result.criteria)}`;
+    output.append(element("h3", heading), tabulate(result, contradictions));
     for (const key of Object.keys(result.traces)) {
       if (!result.traces[key].force_20_N?.length) continue;
       const signals = report.evaluated[result.id]?.[key];
@@ -92,28 +106,40 @@ function showReport(report) {
       }
     }
   }
+  return output;
 }
 
-const given = { document: null, signature: null, roots: null };
+const given = { documents: [], signatures: [], roots: [], changes: 0 };
 
-// A document replaces the one before with its signature; trust roots and a signature file are added to it.
+// Documents replace those before with their signatures; trust roots and signature files are added to them.
 async function showFiles(files) {
-  const list = [...files], find = (test) => list.find((file) => test.test(file.name)) ?? null;
-  const signature = find(/\.p7s$/i), roots = find(/\.(pem|crt|cer|der)$/i), chosen = list.find((file) => ![signature, roots].includes(file));
-  if (chosen) Object.assign(given, { document: chosen, signature: null });
-  if (signature) given.signature = signature;
-  if (roots) given.roots = roots;
-  const read = async (file) => (file ? new Uint8Array(await file.arrayBuffer()) : null), { name } = given.document ?? {};
-  output.replaceChildren(element("p", name ? "The document is read and computed again …" : "Drop the certificate, too."));
-  if (!name) return;
-  try {
-    const trusted = given.roots && { name: given.roots.name, content: await read(given.roots) };
-    const report = await verifyDocument(await read(given.document), name, await read(given.signature), trusted);
-    const names = [name, given.signature?.name, given.roots && `trust roots ${given.roots.name}`].filter(Boolean);
-    showReport({ ...report, name: names.join(", ") });
-  } catch (error) {
-    output.replaceChildren(element("p", `${name}: ${error.message}. Nothing is proved.`, { class: "conclusion contradicted" }));
+  const list = [...files], pick = (test) => list.filter((file) => test.test(file.name)), change = ++given.changes;
+  const signatures = pick(/\.p7s$/i), roots = pick(/\.(pem|crt|cer|der)$/i);
+  const documents = list.filter((file) => ![...signatures, ...roots].includes(file));
+  if (documents.length) Object.assign(given, { documents, signatures: [] });
+  given.signatures.push(...signatures);
+  if (roots.length) given.roots = roots;
+  const read = async (file) => (file ? new Uint8Array(await file.arrayBuffer()) : null), count = given.documents.length;
+  output.replaceChildren(element("p", count ? "The document is read and computed again …" : "Drop the certificate, too."));
+  if (!count) return;
+  const shown = [], used = [];
+  for (const file of given.documents) {
+    const { name } = file, own = given.signatures.findLast((other) => count === 1 || other.name === `${name}.p7s`);
+    if (own) used.push(own);
+    try {
+      const trusted = [];
+      for (const root of given.roots) trusted.push({ name: root.name, content: await read(root) });
+      const report = await verifyDocument(await read(file), name, await read(own), trusted.length ? trusted : null);
+      const parts = [name, own?.name, trusted.length && `trust roots ${trusted.map((root) => root.name).join(", ")}`];
+      shown.push(showReport({ ...report, name: parts.filter(Boolean).join(", ") }));
+    } catch (error) {
+      shown.push(element("p", `${name}: ${error.message}. Nothing is proved.`, { class: "conclusion contradicted" }));
+    }
   }
+  const listNames = (all) => all.map((file) => file.name).join(", "), unused = given.signatures.filter((file) => !used.includes(file));
+  if (unused.length) shown.unshift(element("p", `Not used: ${listNames(unused)}. The name of a signature file is that of its document with .p7s.`));
+  if (count > 1) shown.unshift(element("p", `${count} documents, a section for each: ${listNames(given.documents)}.`));
+  if (change === given.changes) output.replaceChildren(...shown);
 }
 
 document.getElementById("file").addEventListener("change", (event) => showFiles(event.target.files));

@@ -172,7 +172,7 @@ async function checkOrigin(bytes, document, signatureFile, roots) {
   const names = facts.map(({ signer }, i) => `signature ${i + 1} (${signer})`);
   const broken = facts.flatMap(({ damage, distrust }, i) => damage ? [`${names[i]}: ${damage}`]
     : given && distrust ? [`${names[i]}: not trusted, ${distrust}`] : []);
-  const contradictions = [...changes, ...broken, ...(given && !facts.length ? [note || "no signature, although trust roots are given"] : [])];
+  const contradictions = [...changes, ...broken, ...(given && !facts.length && note ? [note] : [])];
   const lines = facts.flatMap((part, i) => {
     const { signer, issuer, role, damage, distrust, root, time, stamped, stampProblem } = part, trusted = !damage && !distrust;
     const trust = damage ? `invalid: ${damage}` : distrust ? `not trusted: ${distrust}` : `trusted: its chain leads to ${root}`;
@@ -183,8 +183,9 @@ async function checkOrigin(bytes, document, signatureFile, roots) {
     return [`signature ${i + 1}: ${trusted ? "signed by" : "claims to be signed by"} ${signer}${role ? ` as ${role}` : ""} (${trust}).`,
       `Signing certificate issued by ${issuer}. ${checked}`];
   });
+  if (!facts.length) lines.push(note || "unsigned: nothing shows who made this document.");
+  if (!facts.length && !note && given) lines.push("The document has no signature to compare with the trust roots.");
   if (facts.length) lines.push("Revocation of certificates was not checked: verification uses no network.");
   const authentic = facts.length > 0 && given && !note && !contradictions.length;
-  return { authentic, contradictions, note, signers: facts.map(({ signer }) => signer),
-    lines: lines.length ? lines : [note || "unsigned: nothing shows who made this document."] };
+  return { authentic, contradictions, note, signers: facts.map(({ signer }) => signer), lines };
 }

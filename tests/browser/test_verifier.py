@@ -2,6 +2,7 @@
 
 import ast
 import base64
+import copy
 import hashlib
 import json
 import re
@@ -15,13 +16,16 @@ import pytest
 
 from helpers.verifier_page import Report, Verify
 from pantocheck.conformance import documents
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.documents.document_reading import read_certificate
 from pantocheck.conformance.documents.verification import verify_certificate
 from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.criteria_table import describe_criterion
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.translation import translate
+from pantocheck.conformance.pages.two_verdicts import mark_rows
 from pantocheck.conformance.pages.verifier_file import SIGNATURE_LIBRARY, VERIFIER_FOLDER, build_verifier
+from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
@@ -48,8 +52,8 @@ def list_outcomes(report: Report, outcome: str) -> list[str]:
 def test_genuine_document_is_consistent_and_unsigned(
     genuine: Genuine, verifier_page: Any, verify: Verify, tmp_path: Path, kind: str
 ) -> None:
-    json = next(list_result_forgeries(genuine, "time of the run", SEED))[1]
-    content = {"json": json, "html": genuine.html.encode(), "pdf": genuine.pdf}[kind]
+    results = next(list_result_forgeries(genuine, "time of the run", SEED))[1]
+    content = {"json": results, "html": genuine.html.encode(), "pdf": genuine.pdf}[kind]
     report = verify(content, f"certificate.{kind}")
     assert report["state"] == "consistent", report["checks"]
     assert report["conclusion"].startswith("UNSIGNED: the numbers are consistent, anyone can have written")
@@ -155,6 +159,73 @@ def test_bytes_behind_a_pdf_are_found(genuine: Genuine, verify: Verify) -> None:
     report = verify(genuine.pdf + b"\n1 0 obj\n<</ByteRange [0 1]>>\nendobj\nstartxref\n1\n%%EOF\n", "certificate.pdf")
     broken = "The signatures do not hold, or the document was changed after signing."
     assert broken in list_outcomes(report, "contradicted")
+
+
+@pytest.mark.thorough
+def test_headings_and_rows_of_the_shown_report(genuine: Genuine, verifier_page: Any, tmp_path: Path) -> None:
+    """The heading names a modified copy, verdicts are those of the page, and a forged limit marks its row alone."""
+    results = copy.deepcopy(genuine.results)
+    case = results["cases"][0]
+    case["library"] = "modified"
+    row = next(row for row in case["criteria"] if row["verdict"] == "pass")
+    row["upper"] += 5.0
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps(results), "utf-8")
+    verifier_page.set_input_files("#file", str(path))
+    verifier_page.wait_for_selector("tr.contradicted")
+    assert f"(modified copy of {case['id']}): FAIL" in verifier_page.locator("h3").last.inner_text()
+    assert "sha256:" in verifier_page.inner_text(".small")
+    marked = verifier_page.locator("tr.contradicted")
+    assert marked.count() == 1
+    assert marked.locator("td").first.inner_text() == row["quantity"]
+    assert marked.locator("td").last.inner_text().endswith("(contradicted)")
+    texts = [mark_rows(entry["verdict"], [Criterion.model_validate(entry)]) for entry in case["criteria"]]
+    shown = verifier_page.locator("td:last-child").all_inner_texts()
+    words = read_words()["verdict"]
+    assert [text.removesuffix(" (contradicted)") for text in shown] == [words[text]["word"] for text in texts]
+    assert "PASS, CLOSE" in " ".join(shown)
+
+
+@pytest.mark.thorough
+def test_several_documents_are_all_checked(genuine: Genuine, verifier_page: Any, tmp_path: Path) -> None:
+    for name, content in (("a.pdf", genuine.pdf), ("b.html", genuine.html.encode()), ("c.json", b"{}")):
+        (tmp_path / name).write_bytes(content)
+    verifier_page.set_input_files("#file", [str(path) for path in sorted(tmp_path.iterdir())])
+    verifier_page.locator(".conclusion").nth(2).wait_for()
+    first = verifier_page.locator("#report > p").first.inner_text()
+    assert first == "3 documents, a section for each: a.pdf, b.html, c.json."
+    states = [text.partition(":")[0] for text in verifier_page.locator(".conclusion").all_inner_texts()]
+    assert states == ["UNSIGNED", "UNSIGNED", "c.json"]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_printed_range_of_a_list_is_that_of_the_results(genuine: Genuine, verify: Verify, language: Language) -> None:
+    results = copy.deepcopy(genuine.results)
+    results["cases"][0]["quantities"].setdefault("0", {})["dropper_length_m"] = [0.53231 + 0.05 * n for n in range(9)]
+    page = render_html(replace(build_certificate(Results.model_validate(results)), language=language))
+    text = translate("9 values, 0.53231 to 0.93231", language).text
+    assert text in page
+    for printed, found in (
+        (text, False),
+        (text.replace("0.53231", "0.53233"), True),
+        (text.replace("9 ", "8 ", 1), True),
+    ):
+        report = verify(page.replace(text, printed).encode(), "certificate.html")
+        assert found == any("dropper_length_m:" in line for check in report["checks"] for line in check["details"])
+
+
+@pytest.mark.thorough
+def test_start_and_section_together_can_cause_a_contact_loss(genuine: Genuine, verify: Verify) -> None:
+    """As in `verify`: neither changes the value alone; an uncertainty below that of its components contradicts them."""
+    for start, found in ((0.0, False), (0.1, True)):
+        results = copy.deepcopy(genuine.results)
+        parts, widths = (results["cases"][0].setdefault(key, {}) for key in ("uncertainty_components", "uncertainty"))
+        parts.setdefault("1", {})["contact_loss_pct"] = {"start": start, "section": 0.0}
+        widths.setdefault("1", {})["contact_loss_pct"] = 3e-4
+        report = verify(json.dumps(results).encode(), "results.json")
+        text = "uncertainty of contact_loss_pct does not follow"
+        assert found == any(text in line for check in report["checks"] for line in check["details"])
 
 
 # Statements of `pantocheck verify`, and the part of the verifier that makes the check or names it as not proved.
