@@ -74,8 +74,8 @@ class SignatureReport:
                 lines.append(f"signature {number} ({facts.signer}): {facts.damage}")
             elif self.roots_given and facts.distrust:
                 lines.append(f"signature {number} ({facts.signer}): not trusted, {facts.distrust}")
-        if self.roots_given and not self.signatures:
-            lines.append(self.note or "no signature, although trust roots are given")
+        if self.roots_given and not self.signatures and self.note:
+            lines.append(self.note)
         return tuple(lines)
 
     @property
@@ -87,7 +87,8 @@ class SignatureReport:
 def describe_signatures(report: SignatureReport) -> list[str]:
     """Signatures in words, one or more lines each: signer, role, time, trust, and limits of the check."""
     if not report.signatures:
-        return [report.note or "unsigned: nothing shows who made this document."]
+        compared = [NO_SIGNATURE] if report.roots_given and not report.note else []
+        return [report.note or "unsigned: nothing shows who made this document.", *compared]
     lines = []
     for number, facts in enumerate(report.signatures, 1):
         role = f" as {facts.role}" if facts.role else ""
@@ -97,6 +98,7 @@ def describe_signatures(report: SignatureReport) -> list[str]:
     return [*lines, REVOCATION if report.lists_given else NO_REVOCATION]
 
 
+NO_SIGNATURE = "The document has no signature to compare with the trust roots."
 REVOCATION = "Revocation of certificates was checked by the lists among the trust roots."
 NO_REVOCATION = "Revocation of certificates was not checked: verification uses no network."
 

@@ -36,8 +36,8 @@ def list_issuer_facts(results: Results, date: int) -> tuple[tuple[str, str], ...
 def list_check_facts(results: Results, digest: str) -> tuple[tuple[str, str], ...]:
     """Means of checking a report, and the digest of its results with the administrative data, without the page."""
     return (
-        ("Verification", VERIFICATION),
         ("Verifier", describe_verifier(results.suite)),
+        ("Verification", VERIFICATION),
         ("Digest of the results", digest),
     )
 

@@ -117,7 +117,7 @@ def test_signature_files(genuine: Genuine, signers: Signers, roots_file: Path, v
     for number, (reason, sign_file) in enumerate(list_holders(signers)):
         document = write(tmp_path / f"{number}", "certificate.html", html)
         if not number:
-            compare(verify, document, roots_file)  # no signature, although a trust root is given
+            compare(verify, document, roots_file)  # unsigned, with a trust root
         sign_file(document)
         report, _ = compare(verify, document, roots_file)
         assert reason in "\n".join(list_details(report, *ORIGINS)), reason

@@ -85,7 +85,7 @@ def verify_command(
     if document is None:
         raise InputError("argument FILE", "missing", "Name a certificate or a results.json.")
     report = verify_report(document, record or (), rerun, trust_roots, folders or ())
-    verification = report.verification
+    verification, numbers_only = report.verification, numbers_only and trust_roots is None
     facts = {name: getattr(verification, name) for name in ("state", "verdict", "cases", "criteria")}
     accepted = verification.consistent and (numbers_only or report.origin in ("authentic", "repeated"))
     exit_code = 1 if not accepted else 0 if any_verdict else EXIT_CODES[verification.verdict]
