@@ -136,6 +136,7 @@ def evaluate_campaign(
         systems=list(design.systems),
         inputs=inputs,
         sources=dict(_list_sources(prepared)),
+        contacts=prepared.contacts,
         total=design.count_runs(),
         finished=finished,
         failed=failed,

@@ -58,6 +58,8 @@ class PreparedCampaign:
     """
     origins: dict[str, CaseOrigin]
     """Source of each case from outside, by its id."""
+    contacts: dict[str, str]
+    """Contact of each case with pantographs, and its trust, by its id."""
 
     def drive(
         self, store: CampaignStore, executor: RunExecutor, report: Callable[[CampaignProgress], None] = lambda _: None
@@ -106,7 +108,12 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         "suite": suite_digest(),
     }
     origins = {case.id: case.origin for _, case in cases.values() if case.origin is not None}
-    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases), origins)
+    contacts = {
+        case.id: f"{contact.description} ({contact.trust})"
+        for _, case in cases.values()
+        for contact in [file.contact for file in case.pantographs[:1]]
+    }
+    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases), origins, contacts)
 
 
 def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float | None]]:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.condition_sections import BAND_MARK
 from pantocheck.conformance.pages.study_chart import draw_chart, draw_map, draw_tornado
 from pantocheck.conformance.pages.words import clean_tree, format_percent, format_value
 from pantocheck.conformance.results.campaign_format import (
@@ -71,6 +72,7 @@ def _build_facts(results: CampaignResults) -> doc.Facts:
         "Verdicts of the runs": verdicts,
         **results.inputs,
         **_join_sources(results.sources),
+        f"{BAND_MARK} Condition of 20-50 Hz": "; ".join(dict.fromkeys(results.contacts.values())),
         "Suite": f"Pantocheck {results.suite.version}",
         "Digest of the suite": results.suite.digest,
     }

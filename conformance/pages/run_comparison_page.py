@@ -12,6 +12,7 @@ from pantocheck.conformance.core.figure_style import FULL, GREY, HALF, INK, Plot
 from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import clean_model
+from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED
 from pantocheck.conformance.pages.criteria_table import Basis
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
@@ -41,6 +42,11 @@ RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "
     "the first subject. An asterisk marks a difference that exceeds the joint 95 % uncertainty of both values. "
     "The uncertainty of a record is that of its length; its discretisation error is not known."
+)
+
+UNKNOWN_CONTACT = (
+    f"{BAND_MARK} Values from 20 to 50 Hz are conditional on the contact stiffness of each subject, which a record "
+    "does not state."
 )
 
 
@@ -75,6 +81,8 @@ def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
     if owner.agreements:
         blocks.append(_build_agreement_table(owner.agreements, names[0]))
     blocks.append(_build_quantity_table(owner.quantities, names))
+    if any(item.name == CONDITIONED for item in owner.quantities):
+        blocks.append(doc.SmallPrint(UNKNOWN_CONTACT))
     return doc.Section(name_pantograph(owner.number).capitalize(), tuple(blocks))
 
 
@@ -100,8 +108,8 @@ def _build_quantity_table(quantities: tuple[ComparedQuantity, ...], names: list[
 
 
 def _name_quantity(name: str) -> str:
-    unit = quantity_unit(name)
-    return f"{quantity_label(name)} [{unit}]" if unit else quantity_label(name)
+    unit, mark = quantity_unit(name), f" {BAND_MARK}" if name == CONDITIONED else ""
+    return f"{quantity_label(name)}{mark} [{unit}]" if unit else quantity_label(name)
 
 
 def format_compared(quantity: ComparedQuantity, index: int) -> str:

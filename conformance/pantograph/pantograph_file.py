@@ -62,6 +62,13 @@ class ContactTable(SourcedTable):
                 yield validation_problem(key, f"not a key of the law {self.law!r}", "Leave it out, or change the law.")
 
     @property
+    def description(self) -> str:
+        """Law in words, with the stiffness of a spring."""
+        if self.stiffness_N_m is None:
+            return {"hertz": "contact by the law of Hertz", "constraint": "contact by a constraint"}[self.law]
+        return f"contact spring of {self.stiffness_N_m / 1000:g} kN/m"
+
+    @property
     def hertz_coefficient(self) -> float:
         """Force per penetration^1.5 by Hertz's law; infinite with another law [N/m^1.5]."""
         if self.effective_modulus_N_m2 is None or self.effective_radius_m is None:

@@ -100,6 +100,8 @@ class CampaignResults(ResultsPart):
     """Varied inputs with their ranges as text."""
     sources: dict[str, str] = {}
     """Source and trust of varied inputs, where they are stated."""
+    contacts: dict[str, str] = {}
+    """Contact of each base case, on which its values from 20 to 50 Hz are conditional."""
     total: int
     finished: int
     failed: int

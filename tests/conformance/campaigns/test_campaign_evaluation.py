@@ -203,6 +203,8 @@ def test_runs_that_differ_in_a_seed_have_statistics(tmp_path: Path) -> None:
     assert (statistics.runs, statistics.mean.value) == (10, 5.5)
     assert [chart for chart in results.charts if chart.x_label.endswith("seed")] == []
     assert results.sources == {f"{droppers}.seed": "draw of 2026 (secondary)"}
+    assert set(results.contacts.values()) == {"contact spring of 50 kN/m (secondary)"}
+    assert "contact spring of 50 kN/m (secondary)" in render_html(build_campaign_report(results))
 
 
 def shift_force(row: RunRow, shift: float, system: str) -> RunRow:
@@ -221,6 +223,7 @@ def test_comparison_has_the_differences_of_equal_inputs(tmp_path: Path, system: 
             store.add(row)
             if run.number > 1:
                 other.add(shift_force(row, -5.0 if run.number == 3 else -2.0, system))
+        other.commit()
         with read_store(tmp_path / "b") as opened:
             (comparison,) = compare_values(pair_runs(store, opened, [mean_force]), [mean_force])
     assert (comparison.runs, comparison.place) == (3, "cheap, speed_km_h = 200.2")
