@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.findings import GradedFinding, PublishedFinding
 from pantocheck.conformance.core.results_part import FiniteNumber, ResultsPart
+from pantocheck.conformance.core.sourced_table import NonNegative
 from pantocheck.conformance.core.trust import Computed, LimitTrust
 from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_verdict
 
@@ -80,20 +81,20 @@ class Criterion(Requirement):
     value: FiniteNumber | None
     verdict: Verdict
     margin: float | None
-    discretisation_error: float | None
+    discretisation_error: NonNegative | None
     """Change when element length and time step are halved."""
-    spread: float | None = None
+    spread: NonNegative | None = None
     """Largest change when the analysis section is shifted span by span; it is not part of `uncertainty`."""
     reason: str | None
     """Data that are missing, or distance beyond a limit."""
-    uncertainty: float | None = None
+    uncertainty: NonNegative | None = None
     """Half-width of the 95 % interval: it holds 95 % of the joint sample of all components."""
     conformity: Annotated[float | None, Field(ge=0, le=1)] = None
     """Probability that the value lies inside its limits, from `draws`; null: not known."""
     draws: Annotated[list[FiniteNumber], Field(exclude_if=lambda draws: not draws)] = []
     """Joint sample of the value; draws of the same number belong together in all criteria of a case. Missing: none."""
-    components: dict[ComponentName, float] = {}
-    limit_uncertainty: float | None = 0.0
+    components: dict[ComponentName, NonNegative] = {}
+    limit_uncertainty: NonNegative | None = 0.0
     """Half-width of the 95 % interval of a limit from a measured record; null: the record states none."""
     close: list[str] = []
     """Remark on a value whose `uncertainty` and `limit_uncertainty` combined exceed its distance from a limit."""

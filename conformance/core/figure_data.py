@@ -11,10 +11,9 @@ Part = TypeVar("Part", bound=ResultsPart)
 
 def check_lengths(part: Part, *lists: list[float]) -> Part:
     """Return a part whose lists have one length."""
-    if len(set(map(len, lists))) > 1:
-        raise ValueError(
-            f"lists of {' and '.join(str(len(numbers)) for numbers in lists)} numbers, expected one length"
-        )
+    lengths = dict.fromkeys(map(len, lists))
+    if len(lengths) > 1:
+        raise ValueError(f"lists of {' and '.join(map(str, lengths))} numbers, expected one length")
     return part
 
 

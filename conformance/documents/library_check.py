@@ -113,7 +113,9 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     others = [fact.name for fact in expected.derived if fact not in result.derived]
     if others:
         yield f"derived values differ from those of the library: {', '.join(others)}"
-    if result.conditions not in ([], expected.conditions):
+    if result.signals is not None and result.signals.line_supports_m != [float(x) for x in case.line.geometry.supports]:
+        yield "the supports of the embedded signals differ from those of the library"
+    if result.conditions != expected.conditions:
         yield "the conditions of the values differ from those of the library"
     if not set(result.input_studies) <= list_possible_sentences(case):
         yield "the sentences on errors of the inputs differ from those of the library"

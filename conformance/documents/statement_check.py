@@ -45,6 +45,9 @@ def check_case_statements(case: CaseResult) -> Iterator[str]:
     targets = Counter(row.target for row in (() if case.verification is None else case.verification.criteria))
     if max(targets.values(), default=0) > 1:
         yield "a criterion of the verification occurs twice"
+    targets = Counter(row.target for row in case.criteria if not row.is_drift)
+    if case.library == "identical" and case.profile is None and max(targets.values(), default=0) > 1:
+        yield "a criterion of the case occurs twice"
     yield from _check_reason(case)
 
 

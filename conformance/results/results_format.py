@@ -304,6 +304,10 @@ class Results(ResultsPart):
     """Steps of the EN 50318 procedure for a dossier; missing: no dossier."""
     cases: list[CaseResult]
 
+    @model_validator(mode="after")
+    def _join_samples(self) -> Self:
+        return check_lengths(self, *(row.draws for case in self.cases for row in case.criteria if row.draws))
+
     def to_dict(self) -> dict[str, Any]:
         """Results as plain lists, dictionaries, text and numbers, in the order of the format."""
         return self.model_dump(mode="json", by_alias=True)

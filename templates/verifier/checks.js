@@ -53,6 +53,7 @@ const ONLY_VERIFY = [
   ["rerun", "A new run of the simulator gives the same values (option --rerun)."],
   ["suite", "The stated version of the suite has the stated digest."],
   ["format", "Every key of results.json belongs to its format."],
+  ["statements", "No case is repeated, no note foreign, the run did not start in the future, and every reason follows."],
   ["dossier", "The verdicts of the steps of a dossier, and the bounds of a comparison with a baseline."],
   ["remarks", "Remarks on other readings of the evaluation, and on limits that a user widened."],
   ["static values", "Values of the line at rest, of studies and of the reference simulator."],

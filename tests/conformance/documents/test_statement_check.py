@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 
 from pantocheck.conformance.documents.document_reading import ResultsFile
 from pantocheck.conformance.documents.statement_check import FAST_CLOCK, check_date
@@ -40,6 +41,12 @@ CHANGES: dict[str, tuple[Callable[[Tree], object], str]] = {
         lambda t: case_of(t)["verification"]["criteria"].append(case_of(t)["verification"]["criteria"][-1]),
         "a criterion of the verification occurs twice",
     ),
+    "criterion twice": (
+        lambda t: case_of(t)["criteria"].append(case_of(t)["criteria"][-1]), "a criterion of the case occurs twice"
+    ),
+    "supports": (
+        lambda t: case_of(t)["signals"]["line_supports_m"].pop(), "the supports of the embedded signals differ"
+    ),
     "second formulation": (
         lambda t: case_of(t)["verification"].update(confirmed_by="a line"), "verification: omitted quantities, second"
     ),
@@ -49,6 +56,7 @@ CHANGES: dict[str, tuple[Callable[[Tree], object], str]] = {
     "edition": (lambda t: case_of(t).update(edition=None), "edition: EN 50318:2002 in the library, nothing"),
     "weakened limit": (lambda t: case_of(t)["limit_changes"].append("A"), "but the limits are those of the library"),
     "digest of limits": (lambda t: case_of(t).update(limits_digest="A"), "digest of the limits: another one"),
+    "conditions": (lambda t: case_of(t).update(conditions=[]), "the conditions of the values differ"),
     "height": (
         lambda t: case_of(t)["signals"]["pantographs"]["1"].update(contact_height_m=None),
         "confirmed without a contact height",
@@ -72,6 +80,23 @@ def test_statement_that_does_not_follow_is_found(name: str, wave_results: Result
     change(tree)
     found = list_contradictions(tree)
     assert any(text in line for line in found), found
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda row: row["draws"].pop(), "lists of 999 and 1000 numbers, expected one length"),
+        (lambda row: row.update(limit_uncertainty=-1.0), "greater than or equal to 0"),
+        (lambda row: row["components"].update(start=-1.0), "greater than or equal to 0"),
+    ],
+)
+def test_joint_sample_or_width_without_meaning_is_refused(
+    change: Callable[[Tree], object], text: str, wave_results: Results
+) -> None:
+    tree = wave_results.to_dict()
+    change(case_of(tree)["criteria"][0])
+    with pytest.raises(ValidationError, match=text):
+        Results.model_validate(tree)
 
 
 def test_date_may_be_a_day_ahead_of_the_clock() -> None:
