@@ -107,7 +107,7 @@ def _list_heights(line: LineFile, heights: Sequence[RealArray]) -> dict[str, Any
         rows += [f"{number},{x!r},{value:.6f}" for x, value in zip(schedule.x_m, values.tolist(), strict=True)]
     with TemporaryDirectory() as folder:
         base, supports, droppers = (Path(folder) / name for name in ("line.toml", "supports.csv", "droppers.csv"))
-        base.write_text(tomli_w.dumps(line.model_dump(mode="json", exclude_none=True)), encoding="utf-8")
-        supports.write_text(export_supports(line), encoding="utf-8")
-        droppers.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        base.write_text(tomli_w.dumps(line.model_dump(mode="json", exclude_none=True)), encoding="utf-8", newline="\n")
+        supports.write_text(export_supports(line), encoding="utf-8", newline="\n")
+        droppers.write_text("\n".join(rows) + "\n", encoding="utf-8", newline="\n")
         return import_line(base, supports, droppers)

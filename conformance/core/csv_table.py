@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import TextIOWrapper
+from io import StringIO, TextIOWrapper
 from itertools import chain
 from pathlib import Path
 from typing import TextIO
@@ -11,7 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.files import MAX_FILE_BYTES, convert_read_errors, open_file
+from pantocheck.conformance.core.files import MAX_FILE_BYTES, convert_read_errors, open_file, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import ChannelNames, MeasuredTable, TableColumn
 from pantocheck.conformance.core.text_reading import (
@@ -132,7 +132,7 @@ def open_text(path: Path, where: str, settings: TextSettings) -> Iterator[TextIO
 
 
 def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int) -> None:
-    """Write a CSV table (decimal point, commas).
+    """Write a CSV table (decimal point, commas), in a new folder if needed.
 
     Args:
         path: The file.
@@ -141,7 +141,9 @@ def write_csv_table(path: Path, names: list[str], values: RealArray, digits: int
         digits: Significant digits.
     """
     head = ",".join(names)
-    np.savetxt(path, values, f"%.{digits}g", ",", header=head, comments="", encoding="utf-8")
+    text = StringIO()
+    np.savetxt(text, values, f"%.{digits}g", ",", header=head, comments="")
+    write_atomically(path, text.getvalue().encode())
 
 
 def _list_columns(layout: TextLayout) -> tuple[TableColumn, ...]:

@@ -178,10 +178,7 @@ class _Span:
 
 def _list_dampers(line: DiscretisedLine) -> tuple[RealArray, ...]:
     """Arrays from which the damping matrix of a line is assembled."""
-    beams = line.beams
-    by_mass = beams.mass_coefficient[:, None] * beams.mass_per_length
-    by_stiffness = (beams.stiffness_coefficient[:, None] * part for part in (beams.tension, beams.bending_stiffness))
-    return by_mass, *by_stiffness, beams.lumped_damping, line.connectors.damping
+    return (*line.beams.dampers, line.connectors.damping)
 
 
 def _derive_shapes(span: _Span, positions: Positions) -> tuple[RealArray, RealArray, IntegerArray]:

@@ -95,6 +95,12 @@ class Beams(NamedTuple):
     flexibility: Array
     """Residual flexibility of each element, see `element_flexibility`, (B, S-1, 7) [m/N]."""
 
+    @property
+    def dampers(self) -> tuple[Array, ...]:
+        """Arrays from which the damping matrix is assembled."""
+        by_stiffness = (self.stiffness_coefficient[:, None] * part for part in (self.tension, self.bending_stiffness))
+        return self.mass_coefficient[:, None] * self.mass_per_length, *by_stiffness, self.lumped_damping
+
 
 def build_beams(catenary: Catenary, mesh: Mesh, known_flexibility: Array | None = None) -> Beams:
     """Build the wires and lumped parts of a line as rows of beams; `known_flexibility`: that of the same wires."""

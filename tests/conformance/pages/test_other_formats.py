@@ -30,7 +30,10 @@ def test_junit_counts_what_the_results_say(results: dict[str, Any]) -> None:
         for element, counter in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
             assert int(suite.get(counter)) == len(suite.findall(f"testcase/{element}"))
     [failure] = root.iter("failure")
-    assert re.match(r"31\.\d+ N, limits 32 to 34, margin -0\.32\d\d, secondary$", failure.get("message"))
+    assert re.match(
+        r"31\.\d+ N, limits 32 to 34, margin -0\.32\d\d, secondary \(0\.32 N below the lower limit\)$",
+        failure.get("message"),
+    )
     properties = {p.get("name"): p.get("value") for p in suites[0].iter("property")}
     assert properties["suite_version"] == "0.1.0"
     assert properties["system"] == "Pantocheck reference simulator 0.1.0 (builtin)"
