@@ -22,6 +22,7 @@ from verification.tables.resolving_power import (
     find_first_change,
     measure_input,
     name_criteria,
+    predict_forces,
     write_file,
 )
 
@@ -49,6 +50,28 @@ def test_first_change_is_bracketed_within_a_tenth() -> None:
     bound, tried = search((0.3, 1e9))
     assert bound.passed <= 0.3 < bound.noticed <= bound.passed + 0.1  # below the first error: a tenth of that
     assert tried[0] == 1.0
+
+
+def test_search_starts_at_the_error_of_a_similar_case() -> None:
+    for limit, most in ((11.3, 6), (0.3, 9), (90.0, 8)):
+        tried: list[float] = []
+
+        def grade(error: float, tried: list[float] = tried, limit: float = limit) -> Grade:
+            tried.append(error)
+            return FAIL if error > limit else PASS
+
+        bound = find_first_change(grade, lambda found: found.passes, 1.0, 100.0, start=9.0)
+        assert tried[0] == 9.0
+        assert bound.passed <= limit < bound.noticed <= bound.passed + 0.1 * max(bound.noticed, 1.0)
+        assert len(tried) <= most
+
+
+def test_uplift_forces_follow_a_parabola_through_the_nearest_errors() -> None:
+    (case_twin,) = (case for case in select_cases(["en50318-2018/ac-simple/320-twin"]) if not case.is_static)
+    stated = [lift.stated_uplift_force for lift in case_twin.lift_forces]
+    forces = {error: tuple(f + 2 * error + 0.5 * error**2 for f in stated) for error in (1.0, 2.0, 50.0)}
+    known = {error: PASS._replace(uplift_forces=force) for error, force in forces.items()} | {3.0: PASS}
+    assert predict_forces(case_twin, known, 4.0) == pytest.approx([f + 16.0 for f in stated])
 
 
 def test_larger_error_that_passes_again_does_not_hide_the_first_change() -> None:
@@ -128,7 +151,7 @@ def test_error_that_a_case_does_not_support_has_a_reason(case_250: Case, name: s
 
 def test_wrong_input_is_graded_as_a_record_of_the_case(case_250: Case) -> None:
     """Own inputs pass; 4 % more tension fails the verification alone; 6 % more frame mass is a contradiction."""
-    assert grade_error(case_250, INPUTS["tension of the contact wire"], 0.0) == PASS
+    assert grade_error(case_250, INPUTS["tension of the contact wire"], 0.0)[:3] == PASS[:3]
     tension = grade_error(case_250, INPUTS["tension of the contact wire"], 4.0)
     assert (tension.passes, tension.passes_criteria) == (False, True)
     frame = grade_error(case_250, INPUTS["mass of the frame"], 6.0)
@@ -141,7 +164,7 @@ def test_bounds_of_an_input_both_ways(case_250: Case, monkeypatch: pytest.Monkey
     """+12.5 % fails the criteria, +3.5 % and -2 % the verification; each error is simulated once."""
     tried: list[float] = []
 
-    def grade(case: Case, item: object, error: float) -> Grade:
+    def grade(case: Case, item: object, error: float, start: object) -> Grade:
         tried.append(error)
         if error > 12.5:
             return Grade("fail", "fail", "std_force_N (criteria), max_force_N (verification)")
@@ -159,11 +182,11 @@ def test_bounds_of_an_input_both_ways(case_250: Case, monkeypatch: pytest.Monkey
 
 def test_interrupted_file_is_continued(case_250: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, items = tmp_path / "power.toml", list(INPUTS.values())[:3]
-    monkeypatch.setattr(resolving_power, "grade_error", lambda case, item, error: FAIL if error > 3.3 else PASS)
+    monkeypatch.setattr(resolving_power, "grade_error", lambda case, item, error, start: FAIL if error > 3.3 else PASS)
     complete_file(case_250, path, 1e9, items[:1])
     first = read_study(path, ResolvingPowerFile)
     assert [bounds.name for bounds in first.input] == [items[0].name]
-    monkeypatch.setattr(resolving_power, "grade_error", lambda case, item, error: PASS)
+    monkeypatch.setattr(resolving_power, "grade_error", lambda case, item, error, start: PASS)
     complete_file(case_250, path, 1e9, items)
     second = read_study(path, ResolvingPowerFile)
     assert second.input[0] == first.input[0]

@@ -91,6 +91,8 @@ class Grade(NamedTuple):
     """Verdict by verification up to 50 Hz; `info` without a converged solution."""
     reason: str
     """Quantities or check that are not passed, with their verdict; empty if all pass."""
+    uplift_forces: tuple[float, ...] = ()
+    """Uplift force of every pantograph [N]."""
 
     @property
     def passes_criteria(self) -> bool:
@@ -185,13 +187,14 @@ def simulate_varied(varied: Case, treatment: str | None = None) -> PassageRun:
     return run_passage(varied, line if treatment is None else TREATMENTS[treatment](line), mesh)
 
 
-def grade_error(case: Case, item: CaseInput, error: float) -> Grade:
+def grade_error(case: Case, item: CaseInput, error: float, start: tuple[float, ...] = ()) -> Grade:
     """Grade a record of the case that was simulated with an error of one input.
 
     Args:
         case: Case that the record claims to belong to.
         item: Input.
         error: Error of the input [unit of the input].
+        start: Start values of tuned uplift forces [N]; default: those of the case.
 
     Returns:
         Verdicts.
@@ -200,11 +203,13 @@ def grade_error(case: Case, item: CaseInput, error: float) -> Grade:
         NotApplicable: The case does not have the input, or no simulation with this error is possible.
     """
     changes = list_changes(case, item, error)
+    if all(lift.target_mean_force for lift in case.lift_forces) and not any("uplift" in key for key in item.keys):
+        changes += tuple(build_change(f"pantograph[{i}].uplift_force_N", force) for i, force in enumerate(start, 1))
     try:
         passage = simulate_varied(load_varied(case, changes))
     except (InputError, SimulationError) as problem:
         raise NotApplicable(f"no simulation: {' '.join(str(problem).split())}") from problem
-    return grade_record(case, passage)
+    return grade_record(case, passage)._replace(uplift_forces=passage.uplift_forces)
 
 
 def grade_record(case: Case, passage: PassageRun) -> Grade:
