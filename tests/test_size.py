@@ -16,7 +16,7 @@ FOREIGN = {"uplot", "pkijs"}
 LARGEST = {
     ("model", "conformance"): 76_290,
     ("templates",): 3_600,
-    ("verification",): 17_200,
+    ("verification",): 17_250,
     ("tests",): 53_600,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
