@@ -15,7 +15,6 @@ from pantocheck.conformance.core.files import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import (
     ChannelNames,
-    EveryChannel,
     MeasuredTable,
     TableColumn,
     convert_damage_errors,
@@ -41,7 +40,7 @@ def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[Measu
         where = f"record '{path.name}'"
         runs = sorted((name for name in file if name.startswith("run_")), key=_run_number)
         if not runs:
-            nested = isinstance(names, EveryChannel) and any(isinstance(item, h5py.Group) for item in file.values())
+            nested = bool(names) and any(isinstance(item, h5py.Group) for item in file.values())
             return [_read_groups(file, path.name, largest) if nested else _read_root(file, path.name)]
         columns = _read_columns(file, bool(names), where)
         return [_read_run(file, name, k if len(runs) > 1 else 0, columns, path.name) for k, name in enumerate(runs, 1)]

@@ -12,6 +12,7 @@ import scipy.io
 from scipy.io.matlab import MatReadError
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.channel_names import find_time_factor
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.core.hdf5_table import open_hdf5, read_numbers
 from pantocheck.conformance.core.input_error import InputError
@@ -24,7 +25,6 @@ from pantocheck.conformance.core.measured_table import (
     stack_channels,
 )
 
-MATLAB_TIME_NAMES = ("time", "time_s", "t")
 NUMERIC_CLASSES = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
 COMPRESSED = 15
 """Type of a compressed element of version 5."""
@@ -36,9 +36,10 @@ def read_matlab_table(path: Path, names: ChannelNames, largest: int) -> list[Mea
     """Read the run of a MATLAB file; arguments and errors as in `measured_table.Reader`."""
     where = f"record '{path.name}'"
     arrays = _read_version_7_3(path, where, largest) if h5py.is_hdf5(path) else _read_version_5(path, where, largest)
-    time = next((array.ravel() for array in _find_arrays(arrays, MATLAB_TIME_NAMES) if array.size > 1), None)
+    times = {name: factor for name in arrays if (factor := find_time_factor(name, None)) is not None}
+    time = next((times[name] * arrays[name].ravel() for name in times if arrays[name].size > 1), None)
     rate = next((float(array.ravel()[0]) for array in _find_arrays(arrays, RATE_NAMES) if array.size), None)
-    data = {name: array for name, array in arrays.items() if name.lower() not in MATLAB_TIME_NAMES + RATE_NAMES}
+    data = {name: array for name, array in arrays.items() if name not in times and name.lower() not in RATE_NAMES}
     if isinstance(names, EveryChannel):
         columns, values = _list_vectors(data, where, largest)
     elif names and all(name in data for name in names):

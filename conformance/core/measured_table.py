@@ -12,6 +12,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.channel_names import find_time_factor
 from pantocheck.conformance.core.extras import refuse_missing_package, require_package
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.core.input_error import InputError
@@ -26,9 +27,6 @@ LIBRARY_ERRORS: tuple[type[Exception], ...] = (
 """Exceptions that the libraries of the file formats raise for damaged files."""
 
 SAMPLED_TOGETHER = "All channels of a record need the same sampling times."
-
-TIME_NAMES = ("time", "time_s", "t", "t_s", "zeit", "temps")
-"""Names of a time column, in lower case."""
 
 
 @dataclass(frozen=True)
@@ -91,17 +89,29 @@ class MeasuredTable:
         """Name of the file in messages."""
         return f"record '{self.source}'"
 
+    def find_time_column(self) -> tuple[int, float] | None:
+        """Index of the first increasing column with the name of a time, and its factor to seconds; None without any."""
+        for index, column in enumerate(self.columns):
+            factor, values = find_time_factor(column.label, column.unit), self.values[:, index]
+            if factor is not None and np.isfinite(values).all() and values[-1] > values[0]:
+                return index, factor
+        return None
+
     def separate_time(self) -> "MeasuredTable":
-        """Same table with its first column as time column [s], if the name of this column is a name of time.
+        """Same table with its column of the time, if it has one, apart from the channels [s].
 
         Raises:
             InputError: The table has no other column.
         """
-        if (self.columns[0].name or "").lower() not in TIME_NAMES:
+        if (found := self.find_time_column()) is None:
             return self
+        index, factor = found
         if len(self.columns) == 1:
             raise InputError(self.where, "holds the time column only", "Store at least one channel beside the time.")
-        return replace(self, values=self.values[:, 1:], columns=self.columns[1:], time=self.values[:, 0])
+        columns = (*self.columns[:index], *self.columns[index + 1 :])
+        return replace(
+            self, values=np.delete(self.values, index, axis=1), columns=columns, time=factor * self.values[:, index]
+        )
 
 
 @contextmanager

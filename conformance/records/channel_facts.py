@@ -1,15 +1,15 @@
 """Facts about the channels of a measured table: ranges, gaps, repetitions and suspicious contents."""
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.measured_table import TIME_NAMES, MeasuredTable, TableColumn
+from pantocheck.conformance.core.channel_names import find_factor, has_word, list_meanings
+from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
 from pantocheck.conformance.core.units import find_key_units
-from pantocheck.conformance.records.column_values import find_factor, find_stated_unit
+from pantocheck.conformance.records.column_values import find_stated_unit
 from pantocheck.conformance.records.force_checks import find_clipping
 from pantocheck.conformance.records.record import CHANNELS
 
@@ -21,9 +21,6 @@ HELD_SHARE = 0.5
 
 SELDOM_SHARE = 0.95
 """Share of unchanged samples from which a channel counts as slow or coarsely resolved: one change in twenty samples."""
-
-TIME_WORDS = (*TIME_NAMES, "zeit", "tiempo", "tempo")
-"""Words of a time, as whole names or at the end of a name."""
 
 
 @dataclass(frozen=True)
@@ -130,31 +127,16 @@ def _find_equal(table: MeasuredTable) -> dict[int, str]:
 
 def find_time(table: MeasuredTable) -> TimeFacts | None:
     """Time of a table: a column with a name of time, the time of the file, or its rate; None without any."""
-    for i, column in enumerate(table.columns):
-        factor = _find_time_factor(column)
-        if factor is not None and np.isfinite(table.values[:, i]).all():
-            return describe_time(f"column {column.label!r}", column, table.values[:, i] * factor)
+    if (found := table.find_time_column()) is not None:
+        index, factor = found
+        column = table.columns[index]
+        return describe_time(f"column {column.label!r}", column, table.values[:, index] * factor)
     if table.time is not None:
         return describe_time("time of the file", None, table.time)
     if table.rate is not None:
         duration = (table.values.shape[0] - 1) / table.rate
         return TimeFacts("sampling interval of the file", None, table.rate, duration, ())
     return None
-
-
-def strip_group(column: TableColumn) -> str:
-    """Name of a column without the groups of its file."""
-    return (column.name or "").rpartition("/")[2].strip()
-
-
-def _find_time_factor(column: TableColumn) -> float | None:
-    """Factor of a time column to seconds; None for a column without the name or the unit of a time."""
-    name = strip_group(column).lower().split("[")[0].split("(")[0].strip()
-    unit = find_stated_unit(column)
-    if unit is None:
-        return 1.0 if name in TIME_WORDS else None
-    named = name in TIME_WORDS or name.endswith(tuple(word for word in TIME_WORDS if len(word) > 3))
-    return find_factor(unit, find_key_units("s")) if named else None
 
 
 def describe_time(source: str, column: TableColumn | None, time: RealArray) -> TimeFacts | None:
@@ -180,16 +162,6 @@ def describe_time(source: str, column: TableColumn | None, time: RealArray) -> T
 
 
 # Probable meaning of the channels of a logger file, by unit and name; a guess for a sidecar that is to be checked.
-_WORDS = {
-    "force": r"force|kraft|effort|fuerza|forza|^f_?\d|^fc",
-    "position": r"position|chainage|kilomet|^km|strecke|ort\b|^x\b|^pk|abszisse|\bweg\b",
-    "speed": r"speed|geschw|vitesse|veloc|^v\b",
-    "contact_height": r"height|h(ö|oe)he|hauteur|altezza|altura",
-    "uplift": r"uplift|anhub|soul(è|e)vement",
-}
-_ACCELERATION = re.compile(r"accel|beschl|^acc|^a_?\d|^s\d+_[xyz]", re.IGNORECASE)
-
-
 def guess_channels(facts: Sequence[ChannelFacts]) -> dict[str, list[ChannelFacts]]:
     """Columns that probably hold each channel of a force record, in the order of the file.
 
@@ -197,14 +169,9 @@ def guess_channels(facts: Sequence[ChannelFacts]) -> dict[str, list[ChannelFacts
     """
     found: dict[str, list[ChannelFacts]] = {}
     for fact in facts:
-        name = strip_group(fact.column)
-        for channel, words in _WORDS.items():
-            if fact.missing == 1 or not re.search(words, name, re.IGNORECASE):
-                continue
-            units = find_key_units(CHANNELS[channel].unit)
-            if fact.unit is None or find_factor(fact.unit, units) is not None:
-                found.setdefault(channel, []).append(fact)
-                break
+        channel = next((channel for channel, _ in list_meanings(fact.column.label, fact.column.unit)), None)
+        if fact.missing < 1 and channel in CHANNELS and channel != "time":
+            found.setdefault(channel, []).append(fact)
     return found
 
 
@@ -216,7 +183,7 @@ def list_force_signals(facts: Sequence[ChannelFacts]) -> list[ChannelFacts]:
         for fact in facts
         if fact.missing < 1
         and fact.unit is not None
-        and re.search(_WORDS["force"], strip_group(fact.column), re.IGNORECASE)
+        and has_word(fact.column.label, "force")
         and find_factor(fact.unit, units) is None
     ]
 
@@ -225,4 +192,10 @@ def is_acceleration(fact: ChannelFacts) -> bool:
     """Whether a column probably holds the acceleration of a mass drop."""
     if fact.unit is not None:
         return find_factor(fact.unit, find_key_units("m_s2")) is not None
-    return _ACCELERATION.search(strip_group(fact.column)) is not None
+    return next((channel for channel, _ in list_meanings(fact.column.label, None)), None) == "acceleration"
+
+
+def is_drop_channel(fact: ChannelFacts) -> bool:
+    """Whether a column may be a channel of a mass drop: a motion, the force of a hammer, or a signal without a unit."""
+    known = (find_key_units(unit) for unit in ("m_s2", "m_s", "m", "N"))
+    return fact.unit is None or any(find_factor(fact.unit, units) is not None for units in known)

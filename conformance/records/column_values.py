@@ -9,11 +9,12 @@ import numpy as np
 from pydantic import Field
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.channel_names import find_factor, split_unit
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.measured_table import MeasuredTable, TableColumn
 from pantocheck.conformance.core.sourced_table import InputTable, Positive, Problems, cross_check, validation_problem
 from pantocheck.conformance.core.texts import DocumentationPage
-from pantocheck.conformance.core.units import SPELLINGS, find_key_units, is_unit, key_suffix
+from pantocheck.conformance.core.units import find_key_units
 from pantocheck.conformance.records.record import ChannelRows, find_column
 
 FileColumnName = Annotated[
@@ -79,8 +80,6 @@ ColumnSource = ColumnTable | SensorSum
 # EN 50317 correct their force sensors in this way; the equation is Newton's second law.
 TIME_COLUMN = "time"
 """Name of the time that a file holds beside its channels."""
-
-_BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")
 
 
 @dataclass(frozen=True)
@@ -179,17 +178,8 @@ def add_time_column(table: MeasuredTable) -> MeasuredTable:
 
 
 def find_stated_unit(column: TableColumn) -> str | None:
-    """Unit that a file states for a column: its own, or one in brackets at the end of the name; None without."""
-    if column.unit:
-        return column.unit
-    match = _BRACKETS.search(column.name or "")
-    return match[1].strip() if match and match[1].strip() and is_unit(match[1]) else None
-
-
-def find_factor(text: str, known: Mapping[str, float]) -> float | None:
-    """Factor of a unit to the SI unit; None if it is no unit of this quantity. `known` as from `find_key_units`."""
-    name = text.strip()
-    return known.get(key_suffix(SPELLINGS.get(name.lower(), name)))
+    """Unit that a file states for a column: its own, or one at the end of the name; None without."""
+    return column.unit or split_unit(column.name or "")[1]
 
 
 def _convert(text: str, known: Mapping[str, float], place: str) -> float:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.core.channel_names import find_factor
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file
 from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
 from pantocheck.conformance.core.measured_table import (
@@ -22,7 +23,6 @@ from pantocheck.conformance.core.toml_file import read_model, read_toml
 from pantocheck.conformance.core.units import find_key_units, suggest_key
 from pantocheck.conformance.records.column_values import (
     add_time_column,
-    find_factor,
     list_left_out_sensors,
     read_mapped_rows,
 )

@@ -25,6 +25,7 @@ from pantocheck.conformance.records.channel_facts import (
     find_time,
     guess_channels,
     is_acceleration,
+    is_drop_channel,
     list_channel_facts,
     list_force_signals,
 )
@@ -258,7 +259,9 @@ def _list_position_help(guesses: dict[str, list[ChannelFacts]]) -> Iterator[str]
 
 def draft_drop_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
     """Sidecar of a mass-drop record."""
-    channels = [fact for fact in facts if time is None or fact.column is not time.column]
+    others = [fact for fact in facts if time is None or fact.column is not time.column]
+    channels = [(number, fact) for number, fact in enumerate(others, 1) if fact.missing < 1 and is_drop_channel(fact)]
+    unused = [fact.column.label for fact in others if all(fact is not used for _, used in channels)]
     rate = "200.0" if time is None else f"{time.rate:.6g}"
     rate = rate if "." in rate or "e" in rate else f"{rate}.0"
     lines = [
@@ -280,7 +283,9 @@ def draft_drop_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts
         "# trigger_nominal_s = 5.0         # planned time of the release",
         *_list_layout(layout),
     ]
-    for number, fact in enumerate(channels, 1):
+    if unused:
+        lines += ["", f"# not used: {', '.join(json.dumps(name, ensure_ascii=False) for name in unused)}"]
+    for number, fact in channels:
         name = fact.column.name or f"channel {number}"
         unit = json.dumps(fact.unit or "m/s2", ensure_ascii=False)
         lines += [
