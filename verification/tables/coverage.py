@@ -21,17 +21,11 @@ these seeds, and no other seed enters the table. Earlier settings of the interva
 True values. A mean, a deviation or a share: the value of 60,000 spans. An extreme or a number of events: the mean value
 of all records of the row.
 
-Outcomes of a row, by the share of intervals that contain the true value and its 95 % confidence interval (Wilson):
+Outcomes of a row are those of verification/tables/interval_share.py; the smallest width with correct coverage is the
+95 % quantile of the distance between value and true value in the row. Further outcomes:
 
-    FAIL             the share is outside of 93 % to 97 %
-    93 to 97 %       the share is inside, but the confidence interval excludes 95 %
-    shortfall width  the median half-width is more than 1.5 times the smallest one with correct coverage, which is the
-                     95 % quantile of the distance between value and true value in the row
-    95 %             none of these
     no share         the product states no share for the interval (extremes)
     range            the product states a range of what was run
-
-The confidence interval of a correct interval of 95 % excludes 95 % in 5 % of the rows.
 """
 
 import argparse
@@ -46,7 +40,6 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len
 from scipy.signal import butter, lfilter, sosfreqz
 
-from pantocheck.conformance.campaigns.sample_statistics import wilson_interval
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.quantities.evaluation import LINE, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
@@ -62,6 +55,7 @@ from pantocheck.conformance.records.length_uncertainty import (
     length_uncertainties,
     uplift_uncertainties,
 )
+from verification.tables.interval_share import SHARE_COLUMNS, IntervalShare
 
 RATE, SPAN_M = 200, 60.0
 """Samples per span and per second; span length [m], so that the speed is 60 m/s."""
@@ -154,8 +148,8 @@ def _noise(random: np.random.Generator, count: int, samples: int) -> RealArray:
     return np.asarray(irfft(lines * np.sqrt(size / 2 * density), size)[:, :samples])
 
 
-HEADING = """\
-| quantity | spans | correlation | intervals | contained [%] | confidence [%] | width ratio | outcome |
+HEADING = f"""\
+| quantity | spans | correlation | {SHARE_COLUMNS} | outcome |
 |---|--:|--:|--:|--:|---|--:|---|"""
 """Head of a table of rows in Markdown."""
 
@@ -166,46 +160,22 @@ class Row(NamedTuple):
     quantity: str
     spans: int
     rho: float
-    count: int
-    """Number of intervals of the kind."""
-    contained: int
-    """Number of those that contain the true value."""
-    width_ratio: float
-    """Median half-width over the smallest one with correct coverage."""
+    intervals: IntervalShare
+    """Those of the kind."""
     kind: type[LengthUncertainty]
     """Kind of the intervals: of a statistic if a record has one, or of an extreme, or a range."""
 
     @property
-    def share(self) -> float:
-        """Share that contains the true value [%]."""
-        return 100 * self.contained / self.count
-
-    @property
-    def confidence(self) -> tuple[float, float]:
-        """95 % confidence interval of the share (Wilson) [%]."""
-        lower, upper = wilson_interval(self.contained, self.count)
-        return 100 * lower, 100 * upper
-
-    @property
     def text(self) -> str:
         """Row of a table in Markdown."""
-        lower, upper = self.confidence
-        return (
-            f"| {self.quantity} | {self.spans} | {self.rho:g} | {self.count} | {self.share:.1f} "
-            f"| {lower:.1f} to {upper:.1f} | {self.width_ratio:.2f} | {self.outcome} |"
-        )
+        return f"| {self.quantity} | {self.spans} | {self.rho:g} | {self.intervals.text} | {self.outcome} |"
 
     @property
     def outcome(self) -> str:
         """Outcome by the rule of this module."""
-        lower, upper = self.confidence
         if self.kind is not StatisticInterval:
             return "no share" if self.kind is ExtremeInterval else "range"
-        if not 93 <= self.share <= 97:
-            return "FAIL"
-        if self.width_ratio > 1.5:
-            return "shortfall width"
-        return "95 %" if lower <= 95 <= upper else "93 to 97 %"
+        return self.intervals.outcome
 
 
 def measure_rows(spans: int, rho: float, records: int) -> list[Row]:
@@ -287,7 +257,7 @@ def build_row(
     distance = np.abs(values - (grown if name in GROWING else limits)[name])
     contained = int(np.sum(distance[np.array(selected)] <= widths))
     ratio = float(np.median(widths) / np.quantile(distance, 0.95))
-    return Row(name, spans, rho, widths.size, contained, ratio, kind)
+    return Row(name, spans, rho, IntervalShare(widths.size, contained, ratio), kind)
 
 
 def print_rows(rows: Iterable[Row]) -> list[Row]:
@@ -304,7 +274,9 @@ def list_worst(rows: Iterable[Row]) -> list[Row]:
     """Row of each quantity with the largest distance of its share from 95 %, among the intervals of 95 %."""
     worst: dict[str, Row] = {}
     for row in rows:
-        if row.kind is StatisticInterval and abs(row.share - 95) >= abs(worst.get(row.quantity, row).share - 95):
+        if row.kind is StatisticInterval and abs(row.intervals.share - 95) >= abs(
+            worst.get(row.quantity, row).intervals.share - 95
+        ):
             worst[row.quantity] = row
     return list(worst.values())
 

@@ -1,35 +1,51 @@
-"""Records of mass drops in the field, by superposition of modes: a cheap surrogate of the full simulation.
+"""Records of mass drops in the field, with known poles.
 
-The modes of a line are driven by the release of a weight and, if there is wind, by an independent random force on each
-mode below 3 Hz, before and after the release. Sensors add noise, white or coloured, and may have clocks of their own.
-The line is linear: droppers that slacken are the subject of the full simulation.
+The reference simulator releases a mass; droppers slacken under it and after the release. If there is wind, each mode
+also has an independent random force below 3 Hz, before and after the release. Sensors add noise, white or coloured, and
+may have clocks of their own. The tensions of the line differ from those that it states.
+
+The true poles are the eigenvalues of the equations of motion with every dropper taut, in the discrete time of the
+simulator: mass with the correction of `model/fem/mass_correction.py`, and s = (2 / dt) artanh(lambda dt / 2) for the
+average acceleration. They include the coupling of the modes by the damping.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-from pantocheck.conformance.cases.library import library_folder
+from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.drop_simulation import decimate, describe_line
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.line.line_parameters import MECHANICAL, scale_line
 from pantocheck.conformance.results.identified_modes import MeasuredLine
-from pantocheck.model import Kind, Rayleigh, discretise
-from pantocheck.model.modal.modes import compute_modes_below, damping_ratios, deflection_at
+from pantocheck.conformance.runs.case_run import integrate_mass_drop
+from pantocheck.model import Catenary, DiscretisedLine, Kind, Modes, Rayleigh, discretise
+from pantocheck.model.dynamics.drop_values import MassDropSetup
+from pantocheck.model.fem.mass_correction import mass_correction
+from pantocheck.model.modal.modes import compute_modes_below, deflection_at, free_vectors
+from pantocheck.model.statics.assembly import assemble_matrices
 
-Real = NDArray[np.float64]
 LINES = {
     "six spans, 20 and 15 kN": (1.0, 1.0, (63.0, 63.0, 58.5, 63.0, 54.0, 63.0), (0.055, 5e-5, 0.075, 8e-5)),
     "six spans, 27 and 21 kN": (1.35, 1.4, (54.0, 63.0, 58.5, 63.0, 54.0, 58.5), (0.04, 8e-5, 0.06, 5e-5)),
     "five spans, 15 and 12 kN": (0.75, 0.8, (63.0, 54.0, 58.5, 54.0, 63.0), (0.08, 4e-5, 0.05, 9e-5)),
 }
 """Factors of the tensions of both wires, spans [m], and coefficients of mass [1/s] and stiffness [s] of each."""
-RATE, REST, RUN_UP, GRAVITY = 100.0, 10.0, 240.0, 9.80665
-HIGHEST = 14.0
+WIRES = {"CW": "contact wire", "MW": "messenger wire"}
+"""Names of the wires in a record and in the model."""
+RATE, REST, RUN_UP = 100.0, 10.0, 240.0
+"""Samples per second; rest before the release, and ambient motion before the record [s]."""
+ELEMENT, STEP, PLACES = 0.75, 0.002, 2.25
+"""Length of the elements [m], time step [s], and distance of the possible places of mass and sensors [m]."""
+HIGHEST = 10.0
 """Highest frequency of a mode [Hz]."""
+WIND_CORNER = 3.0
+"""Corner of the random forces [Hz]."""
 
 
 @dataclass(frozen=True)
@@ -45,127 +61,186 @@ class Disturbance:
 
 
 @dataclass(frozen=True)
-class LineModes:
-    """Modes of one line: true frequencies [Hz], damping ratios, and shapes at the possible places of sensors."""
+class Layout:
+    """Places of mass and sensors, and length of a record."""
 
-    line: MeasuredLine
-    frequency: Real
-    ratio: Real
-    places: tuple[tuple[str, float], ...]
-    shape: Real
-    """(places, modes) [kg^-1/2]."""
+    mass: float
+    """Mass [kg]."""
+    drop: tuple[str, float]
+    sensors: tuple[tuple[str, float], ...]
+    """Wire and position of mass and sensors [-, m]; the first two sensors are on different wires."""
+    minutes: float
+    """Length after the release [min]."""
+
+
+@dataclass(frozen=True)
+class BuiltLine:
+    """Line with the tensions that it has, and with those that it states."""
+
+    stated: Catenary
+    description: MeasuredLine
+    """Line as its records state it."""
+    mesh: DiscretisedLine
+    """Line as it is, with stations at mass and sensors."""
+    modes: Modes
+    poles: ComplexArray
+    """Poles of the taut line, one for each mode, (m,) [1/s]."""
 
 
 @dataclass(frozen=True)
 class FieldRecord:
-    """Record, and the frequencies [Hz] and damping ratios of all its modes."""
+    """Record with its truth."""
 
     record: DropRecord
-    frequency: Real
-    ratio: Real
+    line: BuiltLine
+    decay: RealArray
+    """Motion by the drop alone, on the clock of the first sensor, (n, c) [m/s2]."""
+    taut: float
+    """Time after which no dropper is slack, in the time of the record [s]."""
+    noise: float
+    """Standard deviation of the white noise [m/s2]."""
+    coloured: float
+    """That of the coloured noise [m/s2]."""
+    ambient: RealArray
+    """Standard deviation of the acceleration by the force on each mode per sample, far above its resonance, (m,)."""
+    shape: RealArray
+    """Deflection of the modes at the sensors, (c, m) [kg^-1/2]."""
 
 
-def build_line_modes(name: str, scatter: tuple[float, float] = (0.0, 0.0)) -> LineModes:
-    """Modes of a line whose tensions of contact and messenger wire are off by a relative scatter."""
+def draw_layout(random: np.random.Generator, name: str, sensors: int, mass: tuple[float, float]) -> Layout:
+    """Layout on a line, with a mass between two bounds [kg] and 2 to 4 minutes."""
+    places = np.arange(PLACES, sum(LINES[name][2]), PLACES)
+    wires = ["CW", "MW", *("CW",) * (sensors - 2)]
+    chosen = random.choice(places, sensors + 1, replace=False).tolist()
+    return Layout(
+        float(random.uniform(*mass)),
+        ("CW", chosen[-1]),
+        tuple(zip(wires, chosen[:-1], strict=True)),
+        float(random.uniform(2.0, 4.0)),
+    )
+
+
+def build_line(name: str, factors: tuple[float, float], places: tuple[float, ...]) -> BuiltLine:
+    """Line whose tensions of contact and messenger wire are the stated ones times factors, with stations [m]."""
     contact, messenger, spans, (b_cw, a_cw, b_mw, a_mw) = LINES[name]
     file = read_model(library_folder() / "mass-drop-line" / "line.toml", LineFile, "line")
     schedules = {58.5: "58.5 m", 54.0: "54 m", 63.0: None}
     row = type(file.geometry.span_list[0])
-    listed = tuple(row(length_m=span, droppers=schedules[span]) for span in spans)
-    stated = (file.contact_wire.tension_N * contact, file.messenger_wire.tension_N * messenger)
+    geometry = {"span_list": tuple(row(length_m=span, droppers=schedules[span]) for span in spans)}
     wires = {
-        key: getattr(file, key).model_copy(update={"tension_N": tension * (1 + error)})
-        for key, tension, error in zip(("contact_wire", "messenger_wire"), stated, scatter, strict=True)
+        key: getattr(file, key).model_copy(update={"tension_N": getattr(file, key).tension_N * factor})
+        for key, factor in (("contact_wire", contact), ("messenger_wire", messenger))
     }
-    geometry = file.geometry.model_copy(update={"span_list": listed})
-    catenary = build_catenary(file.model_copy(update={**wires, "geometry": geometry}))
+    file = file.model_copy(update={**wires, "geometry": file.geometry.model_copy(update=geometry)})
+    stated = build_catenary(file)
     damping = {Kind.CONTACT_WIRE: Rayleigh(b_cw, a_cw), Kind.MESSENGER_WIRE: Rayleigh(b_mw, a_mw)}
-    catenary = type(catenary)(**{**catenary.__dict__, "damping": {**catenary.damping, **damping}})
-    stations = tuple(float(x) for x in np.arange(2.25, sum(spans), 2.25))
-    mesh = discretise(catenary, 1.5, stations)
+    stated = replace(stated, damping={**stated.damping, **damping})
+    mesh = discretise(scale_line(stated, MECHANICAL[:2], factors), ELEMENT, places)
     modes = compute_modes_below(mesh, HIGHEST)
-    ratio = damping_ratios(mesh, modes)
-    places, shape = [], []
-    for kind, short in ((Kind.CONTACT_WIRE, "CW"), (Kind.MESSENGER_WIRE, "MW")):
-        for x in stations:
-            wire = next((w for w in catenary.wires if w.kind is kind and w.start <= x <= w.end), None)
-            if wire is not None:
-                places.append((short, x))
-                shape.append(deflection_at(mesh, modes, mesh.mesh.row_of[wire.name, "z"], x))
-    table = np.array(shape)
-    vertical = np.abs(table).max(axis=0) > 1e-3
-    line = MeasuredLine(spans_m=spans, contact_wire_tension_N=stated[0], messenger_wire_tension_N=stated[1])
-    return LineModes(line, modes.frequency[vertical], ratio[vertical], tuple(places), table[:, vertical])
+    return BuiltLine(stated, describe_line(file), mesh, modes, compute_poles(mesh, modes))
+
+
+def compute_poles(mesh: DiscretisedLine, modes: Modes) -> ComplexArray:
+    """Poles of the taut line in the discrete time of the simulator, one for each mode, (m,) [1/s]."""
+    vectors, omega, m = free_vectors(mesh, modes), 2 * np.pi * modes.frequency, modes.frequency.size
+    damping = vectors @ (assemble_matrices(mesh).damping @ vectors.T)
+    correction = np.zeros((m, m))
+    for row in range(modes.shape.shape[1]):
+        ends = np.concatenate([modes.shape[:, row, :-1], modes.shape[:, row, 1:]], axis=2)
+        correction += np.einsum("mea,eab,neb->mn", ends, mass_correction(mesh.beams, row, STEP), ends, optimize=True)
+    inverse = np.linalg.inv(np.eye(m) - correction)
+    system = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse * omega**2, -inverse @ damping]])
+    found = np.linalg.eigvals(system)
+    found = found[found.imag > 0]
+    return np.asarray(2 / STEP * np.arctanh(found[np.argsort(found.imag)] * STEP / 2))
 
 
 def make_record(
-    modes: LineModes,
-    rng: np.random.Generator,
-    disturbance: Disturbance,
-    sensors: int = 4,
-    minutes: float = 2.0,
-    mass: float = 40.0,
-    noise: float = 0.003,
+    random: np.random.Generator, line: BuiltLine, layout: Layout, disturbance: Disturbance, noise: float = 0.003
 ) -> FieldRecord:
-    """Record of one drop; the places of the mass and of the sensors are drawn."""
-    wires = [[i for i, (wire, _) in enumerate(modes.places) if wire == short] for short in ("CW", "MW")]
-    drawn = [int(rng.choice(wires[number % 2 if number < 2 else 0])) for number in range(sensors)]
-    drop = int(rng.choice(wires[0]))
-    release = REST + rng.uniform(-0.3, 0.3)
-    n = int((REST + 60 * minutes) * RATE)
-    omega = 2 * np.pi * modes.frequency
-    shape = modes.shape[drawn]
-    rates = np.concatenate([[0.0], disturbance.clock * rng.standard_normal(sensors - 1)])
-    starts = np.concatenate([[0.0], rng.uniform(-0.02, 0.02, sensors - 1)]) * (disturbance.clock > 0)
-    ambient = np.zeros((modes.frequency.size, n))
-    if disturbance.wind:
-        ambient = _ambient_motion(modes, rng, n)
-        ambient *= noise * disturbance.wind / _band_rms((shape @ ambient).T)
-    signals = np.empty((n, sensors))
-    poles = omega * (-modes.ratio + 1j * np.sqrt(1 - modes.ratio**2))
-    for s in range(sensors):
-        t = np.arange(n) / RATE * (1 + rates[s]) + starts[s]
-        after = t >= release
-        # Free decay from the static deflection under the weight: acceleration phi_s phi_d m g at the release.
-        start = -mass * GRAVITY * modes.shape[drop] * shape[s] / omega**2
-        free = np.zeros(n)
-        residue = start * poles.conj() / (poles.conj() - poles) * poles**2
-        free[after] = 2 * (np.exp(np.outer(t[after] - release, poles)) @ residue).real
-        wind = np.interp(t, np.arange(n) / RATE, shape[s] @ ambient) if rates[s] or starts[s] else shape[s] @ ambient
-        signals[:, s] = free + wind
-    signals += noise * rng.standard_normal(signals.shape)
-    if disturbance.coloured:
-        signals += noise * disturbance.coloured * _coloured_noise(rng, n, sensors)
-    channels = tuple(DropChannel(f"S{i}_z", i, "z", *modes.places[place]) for i, place in enumerate(drawn, 1))
-    wire, x = modes.places[drop]
-    record = DropRecord(
-        "surrogate", "surrogate", RATE, signals, channels, drop=DropDescription(mass, wire, x, REST), line=modes.line
+    """Simulate a drop and disturb its record; `noise` is the white noise of the sensors [m/s2]."""
+    hanging = REST + STEP * round(random.uniform(-0.3, 0.3) / STEP)
+    sensors = [(WIRES[wire], x) for wire, x in layout.sensors]
+    setup = MassDropSetup(
+        mass=layout.mass,
+        wire=WIRES[layout.drop[0]],
+        position=layout.drop[1],
+        release_duration=0.0,
+        hanging=hanging,
+        duration=60 * layout.minutes,
+        time_step=STEP,
+        sensors=tuple(sensors),
     )
-    return FieldRecord(record, modes.frequency, modes.ratio)
+    motion = integrate_mass_drop(line.mesh.catenary, ELEMENT, setup)
+    decay = decimate(motion.motion[:, :, 2].T, round(1 / RATE / STEP))
+    rows = [deflection_at(line.mesh, line.modes, line.mesh.mesh.row_of[wire, "z"], x) for wire, x in sensors]
+    shape, (n, count) = np.array(rows), decay.shape
+    signals, ambient = decay, np.zeros(line.poles.size)
+    if disturbance.wind:
+        modal = _ambient_motion(line.poles, random, n)
+        scale = noise * disturbance.wind / _band_rms((shape @ modal).T)
+        signals = signals + scale * (shape @ modal).T
+        ambient = scale * _force_gain(line.poles)
+    if disturbance.clock:
+        rates = disturbance.clock * random.standard_normal(count - 1)
+        starts = random.uniform(-0.02, 0.02, count - 1)
+        signals = _read_by_clocks(signals, rates, starts)
+    signals = signals + noise * random.standard_normal(signals.shape)
+    if disturbance.coloured:
+        signals = signals + noise * disturbance.coloured * _coloured_noise(random, n, count)
+    channels = tuple(DropChannel(f"S{i}_z", i, "z", *place) for i, place in enumerate(layout.sensors, 1))
+    drop = DropDescription(layout.mass, *layout.drop, REST)
+    record = DropRecord("simulated", "simulated", RATE, signals, channels, drop=drop, line=line.description)
+    taut = hanging + (motion.last_slack or 0.0)
+    return FieldRecord(record, line, decay, taut, noise, noise * disturbance.coloured, ambient, shape)
 
 
-def _ambient_motion(modes: LineModes, rng: np.random.Generator, n: int) -> Real:
+def _force_gain(poles: ComplexArray) -> RealArray:
+    """Gain of the filter of the forces at the frequency of each mode, (m,) [-]."""
+    low = scipy.signal.butter(1, WIND_CORNER, fs=RATE)
+    return np.asarray(np.abs(scipy.signal.freqz(*low, worN=np.abs(poles), fs=2 * np.pi * RATE)[1]))
+
+
+def _ambient_motion(poles: ComplexArray, random: np.random.Generator, n: int) -> RealArray:
     """Acceleration of the modal coordinates under independent forces below 3 Hz, stationary, (m, n)."""
     total = n + int(RUN_UP * RATE)
-    low = scipy.signal.butter(1, 3.0, fs=RATE)
+    low = scipy.signal.butter(1, WIND_CORNER, fs=RATE)
     rows = []
-    for omega, ratio in zip(2 * np.pi * modes.frequency, modes.ratio, strict=True):
-        b, a = scipy.signal.bilinear([1, 0, 0], [1, 2 * ratio * omega, omega**2], RATE)
+    for pole in poles:
+        b, _ = scipy.signal.bilinear([1, 0, 0], [1, -2 * pole.real, abs(pole) ** 2], RATE)
         # The bilinear map moves the resonance: the pole of the recursion is that of the mode.
-        q = np.exp((-ratio + 1j * np.sqrt(1 - ratio**2)) * omega / RATE)
+        q = np.exp(pole / RATE)
         a = np.array([1.0, -2 * q.real, abs(q) ** 2])
-        force = scipy.signal.lfilter(*low, rng.standard_normal(total))
+        force = scipy.signal.lfilter(*low, random.standard_normal(total))
         rows.append(scipy.signal.lfilter(b, a, force)[-n:])
     return np.array(rows)
 
 
-def _band_rms(signals: Real) -> float:
+def _band_rms(signals: RealArray) -> float:
     sections = scipy.signal.butter(4, [0.6, 7.6], "band", fs=RATE, output="sos")
     return float(np.sqrt(np.mean(scipy.signal.sosfiltfilt(sections, signals, axis=0) ** 2)))
 
 
-def _coloured_noise(rng: np.random.Generator, n: int, channels: int) -> Real:
-    spectrum = np.fft.rfft(rng.standard_normal((n, channels)), axis=0)
-    spectrum /= np.sqrt(1 + np.fft.rfftfreq(n, 1 / RATE)[:, None] ** 2)
-    noise = np.fft.irfft(spectrum, n, axis=0)
+def coloured_density(n: int) -> RealArray:
+    """Power of the coloured noise at the spectral lines of n samples, over that of white noise of the same RMS [-]."""
+    power = 1 / (1 + np.fft.rfftfreq(n, 1 / RATE) ** 2)
+    return np.asarray(power / power.mean())
+
+
+def _coloured_noise(random: np.random.Generator, n: int, channels: int) -> RealArray:
+    spectrum = np.fft.rfft(random.standard_normal((n, channels)), axis=0)
+    noise = np.fft.irfft(spectrum * np.sqrt(coloured_density(n))[:, None], n, axis=0)
     return np.asarray(noise / noise.std(axis=0))
+
+
+def _read_by_clocks(signals: RealArray, rates: RealArray, starts: RealArray) -> RealArray:
+    """Signals, (n, c), as all sensors but the first read them by clocks with other rates [-] and starts [s]."""
+    n, pad, finer = signals.shape[0], 200, 4
+    padded = np.pad(signals, ((pad, pad), (0, 0)), mode="edge")
+    dense = scipy.signal.resample(padded, finer * padded.shape[0], axis=0)
+    time = np.arange(dense.shape[0]) / (finer * RATE) - pad / RATE
+    read = [
+        scipy.interpolate.CubicSpline(time, column)(np.arange(n) / RATE * (1 + rate) + start)
+        for column, rate, start in zip(dense.T, np.r_[0.0, rates], np.r_[0.0, starts], strict=True)
+    ]
+    return np.column_stack(read)
