@@ -5,86 +5,76 @@ Each schema is self-contained, because TOML editors (Taplo) do not follow refere
 
 import json
 from collections import Counter
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Any, cast
 
 from pydantic import BaseModel
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
-from pantocheck.conformance.campaigns.campaign_file import CampaignFile
-from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.converged_file import ConvergedFile
-from pantocheck.conformance.cases.input_studies import ConditionsFile, ResolvingPowerFile
-from pantocheck.conformance.cases.limits import LimitsFile
-from pantocheck.conformance.cases.profile_file import Profile
-from pantocheck.conformance.comparison.comparison_limits import ComparisonLimits
-from pantocheck.conformance.comparison.static_record import StaticSidecar
 from pantocheck.conformance.core.validation_messages import DescribedSchema
-from pantocheck.conformance.dossier.dossier_file import DossierFile
-from pantocheck.conformance.drops.drop_sidecar import DropSidecar as MassDropSidecar
-from pantocheck.conformance.execution.plan import Plan
-from pantocheck.conformance.line.elements.damping import DampingFile
-from pantocheck.conformance.line.line_file import LineFile
-from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.conformance.pantograph.response_record import ResponseSidecar
-from pantocheck.conformance.records.record_sidecar import RecordSidecar
-from pantocheck.conformance.records.record_summary import RecordSummary
-from pantocheck.conformance.results.administration import Administration
-from pantocheck.conformance.results.campaign_format import CampaignResults
-from pantocheck.conformance.results.comparison_format import ResponseComparison, RunComparison, StaticComparison
-from pantocheck.conformance.results.damping_format import DampingResults
-from pantocheck.conformance.results.drop_comparison_format import DropComparison
-from pantocheck.conformance.results.identification_format import IdentificationFile
-from pantocheck.conformance.results.identified_modes import ModesFile
-from pantocheck.conformance.results.pantograph_fit_format import PantographFit
-from pantocheck.conformance.results.population_format import PopulationFile
-from pantocheck.conformance.results.results_format import Results
-from pantocheck.conformance.runs.protocol_messages import answer_schema, request_schema
-from pantocheck.conformance.runs.resolution import ModelUncertaintyFile
 
-USER_FORMATS: dict[str, type[BaseModel]] = {
-    "case": CaseFile,
-    "line": LineFile,
-    "pantograph": PantographFile,
-    "damping": DampingFile,
-    "limits": LimitsFile,
-    "plan": Plan,
-    "campaign": CampaignFile,
-    "dossier": DossierFile,
-    "record": RecordSidecar,
-    "mass-drop": MassDropSidecar,
-    "static": StaticSidecar,
-    "response": ResponseSidecar,
-    "comparison-limits": ComparisonLimits,
-    "summary": RecordSummary,
-    "profile": Profile,
-    "administration": Administration,
-}
-"""TOML files that users write; `reference_cases/schema` has their schemas, for editors."""
 
-READ_FORMATS: dict[str, type[BaseModel]] = {
-    **USER_FORMATS,
-    "converged": ConvergedFile,
-    "model-uncertainty": ModelUncertaintyFile,
-    "resolving-power": ResolvingPowerFile,
-    "conditions": ConditionsFile,
-}
-"""TOML files that users write, and those of computed values of the library."""
+class Formats(Mapping[str, type[BaseModel]]):
+    """Models of file formats by name; the file of a model is imported when the model is needed."""
 
-WRITTEN_FORMATS: dict[str, type[BaseModel]] = {
-    "results": Results,
-    "modes": ModesFile,
-    "identification": IdentificationFile,
-    "population": PopulationFile,
-    "damping-fit": DampingResults,
-    "comparison": RunComparison,
-    "static-comparison": StaticComparison,
-    "campaign-results": CampaignResults,
-    "drop-comparison": DropComparison,
-    "response-comparison": ResponseComparison,
-    "pantograph-fit": PantographFit,
-}
+    def __init__(self, places: Mapping[str, str]) -> None:
+        self.places = places
+        """File and class of each model."""
+
+    def __getitem__(self, name: str) -> type[BaseModel]:
+        file, _, model = self.places[name].rpartition(".")
+        return cast(type[BaseModel], getattr(import_module(f"pantocheck.conformance.{file}"), model))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.places)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+
+READ_FORMATS = Formats(
+    {
+        "case": "cases.case_file.CaseFile",
+        "line": "line.line_file.LineFile",
+        "pantograph": "pantograph.pantograph_file.PantographFile",
+        "damping": "line.elements.damping.DampingFile",
+        "limits": "cases.limits.LimitsFile",
+        "plan": "execution.plan.Plan",
+        "campaign": "campaigns.campaign_file.CampaignFile",
+        "dossier": "dossier.dossier_file.DossierFile",
+        "record": "records.record_sidecar.RecordSidecar",
+        "mass-drop": "drops.drop_sidecar.DropSidecar",
+        "static": "comparison.static_record.StaticSidecar",
+        "response": "pantograph.response_record.ResponseSidecar",
+        "comparison-limits": "comparison.comparison_limits.ComparisonLimits",
+        "summary": "records.record_summary.RecordSummary",
+        "profile": "cases.profile_file.Profile",
+        "administration": "results.administration.Administration",
+        "converged": "cases.converged_file.ConvergedFile",
+        "model-uncertainty": "runs.resolution.ModelUncertaintyFile",
+        "resolving-power": "cases.input_studies.ResolvingPowerFile",
+        "conditions": "cases.input_studies.ConditionsFile",
+    }
+)
+"""TOML files that users write, and those of computed values; `reference_cases/schema` has their schemas."""
+
+WRITTEN_FORMATS = Formats(
+    {
+        "results": "results.results_format.Results",
+        "modes": "results.identified_modes.ModesFile",
+        "identification": "results.identification_format.IdentificationFile",
+        "population": "results.population_format.PopulationFile",
+        "damping-fit": "results.damping_format.DampingResults",
+        "comparison": "results.comparison_format.RunComparison",
+        "static-comparison": "results.comparison_format.StaticComparison",
+        "campaign-results": "results.campaign_format.CampaignResults",
+        "drop-comparison": "results.drop_comparison_format.DropComparison",
+        "response-comparison": "results.comparison_format.ResponseComparison",
+        "pantograph-fit": "results.pantograph_fit_format.PantographFit",
+    }
+)
 """JSON files that the suite writes."""
 
 FORMAT_NAMES = (*READ_FORMATS, *WRITTEN_FORMATS, "command-request", "command-answer")
@@ -121,8 +111,9 @@ def build_schema(name: str) -> dict[str, Any]:
     elif name in WRITTEN_FORMATS:
         schema = WRITTEN_FORMATS[name].model_json_schema(schema_generator=WrittenSchema, mode="serialization")
     else:
-        messages = {"command-request": request_schema, "command-answer": answer_schema}
-        schema = messages[name](WrittenSchema)
+        from pantocheck.conformance.runs.protocol_messages import answer_schema, request_schema
+
+        schema = (request_schema if name == "command-request" else answer_schema)(WrittenSchema)
     return {"$schema": DRAFT, **_share_properties(schema)}
 
 

@@ -292,3 +292,10 @@ def recognise_named_file(keys: Collection[str]) -> str | None:
     }
     best = max(shares, key=lambda kind: shares[kind])
     return best if shares[best] else None
+
+
+def leave_out_required(pattern: str, cases: list[Case]) -> list[Case]:
+    """Cases that the pattern selects itself, without the cases that they require."""
+    exact = [case for case in cases if case.id == pattern]
+    required = {name for case in cases for name in case.file.requires}
+    return exact or [case for case in cases if case.id not in required] or cases

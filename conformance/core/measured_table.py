@@ -211,6 +211,8 @@ TABLE_FORMATS = (
     MDF,
 )
 
+TABLE_SUFFIXES = tuple(suffix for table_format in TABLE_FORMATS for suffix in table_format.suffixes)
+
 
 def list_suffixes(formats: tuple[TableFormat, ...]) -> str:
     """Usual suffixes of formats as text for a message: `.csv, .uff or .h5`."""

@@ -32,7 +32,7 @@ Owner = Annotated[str, Field(pattern="^[0-9]{1,2}$", description="number of a pa
 class ResultsPart(BaseModel):
     """Part of results.json: numbers are finite, unknown keys are rejected."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 # Suite in the files that it writes.

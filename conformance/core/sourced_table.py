@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from inspect import isfunction
 from typing import Annotated, Any, Protocol, Self, TypeVar, cast
 
 from pydantic import (
@@ -64,8 +65,8 @@ def validate_table(model: type[T], data: Any, handler: ModelWrapValidatorHandler
 @cache
 def _list_checks(model: type[BaseModel]) -> tuple[str, ...]:
     """Names of the cross checks of a model, those of its base classes first."""
-    names = [name for base in reversed(model.__mro__) for name, item in vars(base).items() if hasattr(item, _MARK)]
-    return tuple(dict.fromkeys(names))
+    members = [member for base in reversed(model.__mro__) for member in vars(base).items()]
+    return tuple(dict.fromkeys(name for name, item in members if isfunction(item) and hasattr(item, _MARK)))
 
 
 def _find_problems(table: BaseModel, complete: bool) -> list[PydanticCustomError]:
@@ -177,7 +178,7 @@ def is_absent(value: object) -> bool:
 class InputTable(BaseModel):
     """Table of an input file: unknown keys, NaN and infinity are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
     @model_validator(mode="wrap")
     @classmethod

@@ -25,10 +25,8 @@ from pantocheck.conformance.documents.authenticity_check import (
 )
 from pantocheck.conformance.documents.document_reading import (
     DATA_BLOCK,
-    Certificate,
     HtmlCertificate,
     PdfCertificate,
-    ResultsFile,
     list_version_differences,
 )
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
@@ -209,13 +207,14 @@ class PageDifferences:
     """Parts that no version of Pantocheck writes."""
 
 
-def check_pages(document: Certificate) -> DocumentCheck:
+def check_pages(document: HtmlCertificate | PdfCertificate) -> DocumentCheck:
     """Check the pages of a document against its results.
 
     Raises:
         InputError: The date of a PDF cannot be read.
     """
-    proved, contradicted = _statements(document)
+    proved = "Texts, figures and metadata are those that the embedded results give, byte for byte."
+    contradicted = "The document is not the one that its embedded results give."
     try:
         found = _compare(document)
     except (KeyError, IndexError, ValueError, TypeError) as error:
@@ -229,8 +228,6 @@ def check_pages(document: Certificate) -> DocumentCheck:
         return judge_details(proved, contradicted, shorten_details(found.all))
     if wrong := [*found.foreign, *_find_other_verdict(document)]:
         return judge_details(proved, "The document shows something else than its embedded results.", wrong)
-    if isinstance(document, ResultsFile):
-        return DocumentCheck("incomplete", "The layout of the file was not compared.")
     if found.texts:
         statement = "The texts are not those of the installed version."
     else:
@@ -238,12 +235,8 @@ def check_pages(document: Certificate) -> DocumentCheck:
     return DocumentCheck("incomplete", statement, shorten_details(found.texts))
 
 
-def _compare(document: Certificate) -> PageDifferences:
+def _compare(document: HtmlCertificate | PdfCertificate) -> PageDifferences:
     match document:
-        case ResultsFile(_, content, results):
-            same = content == results.to_json()
-            text = "the file is not as Pantocheck writes it: keys, their order, digits or spaces differ"
-            return PageDifferences(same, (text,))
         case HtmlCertificate(_, text):
             page = render_html(_build_certificate(document, read_html_date(text)))
             if text == page:
@@ -277,11 +270,9 @@ def _build_certificate(document: HtmlCertificate | PdfCertificate, date: int) ->
     return replace(build_dated_certificate(document.results, date), language=_read_language(document))
 
 
-def _read_language(document: Certificate) -> Language:
+def _read_language(document: HtmlCertificate | PdfCertificate) -> Language:
     """Language that a document states; English if it states none of the suite."""
     match document:
-        case ResultsFile():
-            stated = ""
         case HtmlCertificate(_, text):
             found = LANGUAGE.search(text)
             stated = found.group(1) if found else ""
@@ -294,13 +285,11 @@ def _read_language(document: Certificate) -> Language:
     return next((language for language in LANGUAGES if language == stated), LANGUAGES[0])
 
 
-def _find_other_verdict(document: Certificate) -> Iterator[str]:
+def _find_other_verdict(document: HtmlCertificate | PdfCertificate) -> Iterator[str]:
     """Title and heading of every version name the verdict."""
     language = _read_language(document)
     word = translate(name_verdict(mark_results(document.results)), language).text
     match document:
-        case ResultsFile():
-            return
         case HtmlCertificate(_, text, _):
             title = heading = read_title(text)
         case PdfCertificate():
@@ -313,12 +302,3 @@ def _find_other_verdict(document: Certificate) -> Iterator[str]:
         yield f"the title does not begin with the verdict {word}: {quote(title)}"
     if word not in heading:
         yield f"the first page does not print the verdict {word} in its heading: {quote(heading)}"
-
-
-def _statements(document: Certificate) -> tuple[str, str]:
-    if isinstance(document, ResultsFile):
-        return "The file is as Pantocheck writes it.", "The file is not as Pantocheck writes it."
-    return (
-        "Texts, figures and metadata are those that the embedded results give, byte for byte.",
-        "The document is not the one that its embedded results give.",
-    )

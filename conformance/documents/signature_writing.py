@@ -17,7 +17,6 @@ from pantocheck.conformance.documents.key_files import (
     parse_signatures,
     run_in_own_thread,
 )
-from pantocheck.conformance.pages.pdf import render_signature_box
 
 ROLE_PREFIX = "urn:pantocheck:role:"
 """Beginning of the name of a role in a signature; roles are names of the kind URI (RFC 5755, section 4.4.5)."""
@@ -208,6 +207,8 @@ def _build_stamp(signer: Signer, edges: tuple[int, int, int, int]) -> Any:
     from pyhanko.pdf_utils.layout import AxisAlignment, BoxConstraints, Margins, SimpleBoxLayoutRule
     from pyhanko.pdf_utils.reader import PdfFileReader
     from pyhanko.stamp import StaticStampStyle
+
+    from pantocheck.conformance.pages.pdf import render_signature_box
 
     lines = (
         f"Signed by {signer.key.holder} as {signer.role}",

@@ -12,6 +12,7 @@ from pantocheck.conformance.documents.cms_check import SignatureReport, describe
 from pantocheck.conformance.documents.document_reading import (
     Certificate,
     PdfCertificate,
+    ResultsFile,
     find_false_version,
     list_revision_ends,
     list_suite_differences,
@@ -19,7 +20,6 @@ from pantocheck.conformance.documents.document_reading import (
     read_certificate,
 )
 from pantocheck.conformance.documents.library_check import check_library
-from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.row_check import check_rows
 from pantocheck.conformance.documents.signal_check import find_signal_gaps
@@ -99,13 +99,27 @@ def verify_certificate(document: Certificate) -> Verification:
     checks = (
         _check_numbers(results),
         *_check_completeness(results),
-        check_pages(document),
+        _check_pages(document),
         *updates,
         *check_library(results),
         *check_rows(results),
         *_name_reference(results),
     )
     return Verification(results, (*_name_versions(document, checks), *checks))
+
+
+def _check_pages(document: Certificate) -> DocumentCheck:
+    """Check of the pages, or of the layout of a results.json."""
+    if not isinstance(document, ResultsFile):
+        from pantocheck.conformance.documents.page_check import check_pages  # plots, which no results.json needs
+
+        return check_pages(document)
+    if document.content == document.results.to_json():
+        return DocumentCheck("proved", "The file is as Pantocheck writes it.")
+    if list_version_differences(document):
+        return DocumentCheck("incomplete", "The layout of the file was not compared.")
+    text = "the file is not as Pantocheck writes it: keys, their order, digits or spaces differ"
+    return DocumentCheck("contradicted", "The file is not as Pantocheck writes it.", (text,))
 
 
 def _name_versions(document: Certificate, checks: Iterable[DocumentCheck]) -> list[DocumentCheck]:

@@ -6,7 +6,7 @@ from hashlib import sha256
 
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.texts import TEMPLATES
-from pantocheck.conformance.pages.html import PageCode, join_scripts
+from pantocheck.conformance.pages.page_code import PageCode, join_scripts
 from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.pages.words import read_words
 from pantocheck.conformance.results.report_files import LANGUAGES

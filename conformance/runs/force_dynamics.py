@@ -8,7 +8,7 @@ its amplitude and its lag reveal a wrong gain or unit of the force, or a shift i
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import expm
+import scipy  # loads scipy.linalg when it is used
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
@@ -163,7 +163,7 @@ def _simulate(matrix: RealArray, drive: RealArray, force: RealArray, step: float
     k = drive.size
     extended = np.zeros((k + 2, k + 2))
     extended[:k, :k], extended[:k, k], extended[k, k + 1] = step * matrix, step * drive, 1.0
-    exponential = expm(extended)
+    exponential = scipy.linalg.expm(extended)
     advance, at_start, ramp = exponential[:k, :k], exponential[:k, k], exponential[:k, k + 1]
     driven = np.outer(force[:-1], at_start) + np.outer(np.diff(force), ramp)
     states = np.zeros((force.size, k))

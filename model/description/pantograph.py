@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
+import scipy  # loads scipy.linalg when it is used
 
 from pantocheck.model.description.arrays import Array
 
@@ -169,7 +169,7 @@ def equilibrium(pantograph: Pantograph, head_height: float) -> tuple[Array, floa
 
 def frequencies(pantograph: Pantograph) -> Array:
     """Undamped natural frequencies with the base fixed and the head free, ascending [Hz]."""
-    w2 = eigh(pantograph.stiffness, pantograph.mass, eigvals_only=True)
+    w2 = scipy.linalg.eigh(pantograph.stiffness, pantograph.mass, eigvals_only=True)
     return np.asarray(np.sqrt(np.maximum(w2, 0.0)) / (2 * np.pi))
 
 

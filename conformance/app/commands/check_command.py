@@ -12,7 +12,6 @@ from pantocheck.conformance.app.commands.console import indent_text
 from pantocheck.conformance.app.commands.guard import BAD_INPUT, strip_control_characters
 from pantocheck.conformance.app.file_check import check_input_file, list_input_files
 from pantocheck.conformance.app.schemas import FORMAT_NAMES, READ_FORMATS, build_schema, format_schema
-from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.texts import count_noun
@@ -40,7 +39,10 @@ def check_command(
     """
     if not (files or folders):
         raise InputError("command line", "no file is named", "Name files or folders, or a folder of cases by --cases.")
-    open_catalogue(folders or ())  # refuses ids and names of the library
+    if folders:
+        from pantocheck.conformance.cases.catalogue import open_catalogue
+
+        open_catalogue(folders)  # refuses ids and names of the library
     files = [*(files or ()), *(folders or ())]
     checked: list[dict[str, object]] = []
     problems = faulty = 0

@@ -28,8 +28,12 @@ from pantocheck.conformance.app.commands.output_settings import (
     use_settings,
 )
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 
 OUTPUT_SCHEMA = "pantocheck.output/1"
+
+EXIT_CODES: dict[Verdict, int] = {**dict.fromkeys(WORST_FIRST, 1), "pass": 0, "error": 2, "info": 3}
+"""Exit code by verdict: 0 only for `pass`, 3 where no limit judges."""
 
 
 class Unwrapped(Text):

@@ -7,14 +7,14 @@ from typing import Annotated
 import tomli_w
 import typer
 
-from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case, leave_out_required
+from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text
 from pantocheck.conformance.app.commands.options import read_line
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.catalogue import open_catalogue
-from pantocheck.conformance.cases.library import recognise_named_file, select_cases
+from pantocheck.conformance.cases.library import leave_out_required, recognise_named_file, select_cases
 from pantocheck.conformance.cases.study_tables import MassDrop
 from pantocheck.conformance.core.figure_data import DrawnSymbol
 from pantocheck.conformance.core.files import check_writable, write_atomically

@@ -7,11 +7,10 @@ import tomli_w
 import typer
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text, format_number, style_verdict
 from pantocheck.conformance.app.commands.options import ElementOption, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.comparison.line_update import (

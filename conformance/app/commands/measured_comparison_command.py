@@ -10,7 +10,7 @@ import numpy as np
 import typer
 from rich.console import RenderableType
 
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     build_table,
     escape_text,
@@ -20,7 +20,6 @@ from pantocheck.conformance.app.commands.console import (
 )
 from pantocheck.conformance.app.commands.options import ElementOption, LineOption, ResponsesArgument, read_line
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.app.notebook.opened_drop import read_drop_run
 from pantocheck.conformance.comparison.comparison_limits import DROPS, RESPONSES, read_comparison_limits
 from pantocheck.conformance.comparison.drop_comparison import DampingChoice, DropTask, compare_drop

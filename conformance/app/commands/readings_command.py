@@ -16,11 +16,11 @@ from pantocheck.conformance.app.commands.console import (
     build_table,
     escape_text,
     indent_text,
-    select_main,
     style_verdict,
 )
 from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.app.commands.quantities_table import select_main
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import DEFAULT_READING
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue

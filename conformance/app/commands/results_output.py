@@ -10,17 +10,18 @@ from rich.text import Text
 from pantocheck.conformance.app.commands.command_output import STANDING_REMARKS, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     FittedTable,
-    build_quantities_table,
     build_table,
     escape_text,
-    format_width,
     indent_text,
-    list_names,
-    select_main,
     style_verdict,
 )
+from pantocheck.conformance.app.commands.quantities_table import (
+    build_quantities_table,
+    format_width,
+    list_names,
+    select_main,
+)
 from pantocheck.conformance.core.criterion import Criterion
-from pantocheck.conformance.core.verdicts import WORST_FIRST, Verdict
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, describe_condition
 from pantocheck.conformance.pages.criteria_table import describe_close
 from pantocheck.conformance.pages.document_facts import list_administration
@@ -32,9 +33,6 @@ from pantocheck.conformance.pages.words import clean_text
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin, format_graded, name_value
 from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Results, name_case
-
-EXIT_CODES: dict[Verdict, int] = {**dict.fromkeys(WORST_FIRST, 1), "pass": 0, "error": 2, "info": 3}
-"""Exit code by verdict: 0 only for `pass`, 3 where no limit judges."""
 
 LEGEND = (
     "+-: uncertainty of the value; margin: relative distance to the nearer limit, 1 in the middle between two "

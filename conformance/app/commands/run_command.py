@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import error_console, escape_text
 from pantocheck.conformance.app.commands.interruption import Interruption, receive_signals
 from pantocheck.conformance.app.commands.options import (
@@ -27,7 +27,7 @@ from pantocheck.conformance.app.commands.options import (
 )
 from pantocheck.conformance.app.commands.output_settings import current_settings
 from pantocheck.conformance.app.commands.progress_display import report_cases
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES, build_results_output
+from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.cases.library import read_limits
 from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.cases.profile_file import load_profile

@@ -7,9 +7,10 @@ import typer
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption, complete_case
 from pantocheck.conformance.app.commands.command_output import CommandOutput
-from pantocheck.conformance.app.commands.console import build_quantities_table, escape_text, list_names, select_main
+from pantocheck.conformance.app.commands.console import escape_text
 from pantocheck.conformance.app.commands.options import SetOption, choose_train_case
 from pantocheck.conformance.app.commands.progress_display import follow_steps
+from pantocheck.conformance.app.commands.quantities_table import build_quantities_table, list_names, select_main
 from pantocheck.conformance.cases.catalogue import open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.core.files import check_writable

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import RenderableType
 
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     build_table,
     escape_text,
@@ -25,7 +25,6 @@ from pantocheck.conformance.app.commands.options import (
     read_stated_administration,
 )
 from pantocheck.conformance.app.commands.progress_display import report_cases
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.core.files import check_writable
 from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.dossier.dossier_reading import read_dossier

@@ -10,17 +10,14 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.cases_option import CasesOption
-from pantocheck.conformance.app.commands.command_output import CommandOutput
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES, CommandOutput
 from pantocheck.conformance.app.commands.console import escape_text, indent_text
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
 from pantocheck.conformance.app.notebook.verified_report import VerifiedReport, verify_report
 from pantocheck.conformance.core.files import file_digest, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.documents.authenticity_check import CheckOutcome
 from pantocheck.conformance.documents.verification import Verification
-from pantocheck.conformance.grading.results_building import build_suite
-from pantocheck.conformance.pages.verifier_file import build_verifier
 
 HEADINGS: dict[CheckOutcome, str] = {
     "contradicted": "Contradictions",
@@ -77,6 +74,9 @@ def verify_command(
     pantocheck verify --write-verifier verifier.html
     """
     if write_verifier is not None:
+        from pantocheck.conformance.grading.results_building import build_suite
+        from pantocheck.conformance.pages.verifier_file import build_verifier
+
         write_atomically(write_verifier, build_verifier(build_suite().version))
         if document is None:
             digest = file_digest(write_verifier)

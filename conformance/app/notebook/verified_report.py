@@ -12,12 +12,6 @@ from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
 from pantocheck.conformance.documents.cms_check import SignatureReport
 from pantocheck.conformance.documents.library_check import check_outside_cases
-from pantocheck.conformance.documents.repetition_check import (
-    check_record_quantities,
-    check_rerun,
-    find_record_result,
-    list_known_cases,
-)
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import DocumentState, Verification, check_origin, verify_document
 from pantocheck.conformance.results.results_format import Results
@@ -100,12 +94,14 @@ def verify_report(
     signatures = check_signatures(path, roots)
     results, catalogue = verification.results, open_catalogue(cases)
     checks, repeated = check_outside_cases(results, catalogue), set[str]()
+    if records or rerun:  # signal processing and the simulator
+        from pantocheck.conformance.documents import repetition_check as repetition
     for record in map(Path, records):
-        checks += check_record_quantities(results, record, catalogue)
-        repeated.add(find_record_result(results, record).id)
+        checks += repetition.check_record_quantities(results, record, catalogue)
+        repeated.add(repetition.find_record_result(results, record).id)
     if rerun:
-        checks += check_rerun(results, catalogue)
-        repeated |= list_known_cases(results, catalogue)
+        checks += repetition.check_rerun(results, catalogue)
+        repeated |= repetition.list_known_cases(results, catalogue)
     verification = verification.add_checks([*checks, *check_origin(signatures)])
     origin = _find_origin(signatures, _is_repeated(results, repeated))
     return VerifiedReport(verification, origin, tuple(facts.signer for facts in signatures.signatures))

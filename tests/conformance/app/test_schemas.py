@@ -10,7 +10,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from helpers.command_line import pantocheck
-from pantocheck.conformance.app.schemas import FORMAT_NAMES, USER_FORMATS, build_schema, format_schema
+from pantocheck.conformance.app.schemas import FORMAT_NAMES, READ_FORMATS, build_schema, format_schema
 from pantocheck.conformance.line.library_folder import library_folder
 
 FOLDER = library_folder() / "schema"
@@ -33,12 +33,12 @@ def test_schema_is_valid_and_self_contained(name: str) -> None:
     assert pantocheck("schema", name).output == format_schema(schema)
 
 
-def test_kept_schemas_are_those_of_the_files_that_users_write() -> None:
+def test_kept_schemas_are_those_of_the_models() -> None:
     kept = {path.name.removesuffix(".schema.json"): json.loads(path.read_text("utf-8")) for path in FOLDER.iterdir()}
     # Versions of pydantic write 0 or 0.0; both are the same number.
-    stale = {name for name in USER_FORMATS if kept.get(name) != build_schema(name)}
+    stale = {name for name in READ_FORMATS if kept.get(name) != build_schema(name)}
     assert not stale, "run for each: pantocheck schema NAME --out reference_cases/schema"
-    assert kept.keys() == USER_FORMATS.keys()
+    assert kept.keys() == READ_FORMATS.keys()
 
 
 def test_files_of_the_library_follow_the_schema_that_they_name() -> None:

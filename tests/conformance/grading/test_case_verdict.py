@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from helpers.command_line import pantocheck
 from helpers.converged_fixtures import StateConverged
 from helpers.example_results import example, passing_case
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.criterion import CaseVerification
 from pantocheck.conformance.core.input_error import InputError

@@ -11,13 +11,13 @@ import pytest
 
 from pantocheck.conformance.drops.identification_plan import read_identification_plan
 from pantocheck.conformance.pages.document import Document, PlainHeader
-from pantocheck.conformance.pages.html import (
+from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.page_code import (
     CHOICE_SCRIPTS,
     CURVE_SCRIPTS,
     TABLE_SCRIPTS,
     read_plain_code,
     read_results_code,
-    render_html,
 )
 
 TEMPLATES = Path(__file__).parents[3] / "templates"

@@ -18,7 +18,7 @@ from helpers.command_line import SKIPPER, pantocheck
 from pantocheck.conformance.app.commands import line_file_command, run_command, system_self_test_command
 from pantocheck.conformance.app.commands.command_list import COMMANDS
 from pantocheck.conformance.app.commands.guard import guard_command
-from pantocheck.conformance.app.schemas import build_schema
+from pantocheck.conformance.app.schemas import READ_FORMATS, WRITTEN_FORMATS, build_schema
 from pantocheck.conformance.app.self_test.mutants import SelfTest
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import list_library, select_cases
@@ -268,11 +268,33 @@ def test_every_case_of_the_library_is_listed_with_trust_source_and_forces() -> N
     assert rows["en50318-2002/300"].split()[-2:] == ["8", "secondary"]
 
 
-def test_list_of_cases_needs_neither_signal_processing_nor_the_compiler() -> None:
-    """Their imports take longer than the list itself."""
-    code = "import sys; from pantocheck.conformance.app.commands import cases_command; print(*sys.modules)"
-    output = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
-    assert {"scipy.signal", "scipy.linalg", "numba"}.isdisjoint(output.stdout.split())
+HEAVY = {f"scipy.{name}" for name in ("signal", "stats", "interpolate", "ndimage", "optimize", "integrate", "spatial")}
+
+
+def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_the_compiler(tmp_path: Path) -> None:
+    """Their imports take longer than these commands; nor do the formats of other files load."""
+    source = ("--system", "record:en50318-2002/known-passing-code")
+    pantocheck("run", "en50318-2002/250", *source, "--out", tmp_path / "out", "--formats", "json")
+    code = (
+        "import sys; from pantocheck.conformance.app.commands.command_list import app\n"
+        "for words in sys.argv[1].split(';'):\n"
+        "    try: app(words.split())\n"
+        "    except SystemExit as end: assert end.code in (0, 1), words\n"
+        "    print('modules after', words, *sys.modules)"
+    )
+    words = (
+        "new pantograph a.toml;cases;show en50318-2002/250;check a.toml;new line b.toml;new case c.toml --line b.toml;"
+        "check b.toml c.toml;verify out/results.json"
+    )
+    command = [sys.executable, "-c", code, words]
+    result = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300, cwd=tmp_path)
+    loaded = [set(line.split()) for line in result.stdout.splitlines() if line.startswith("modules after")]
+    assert len(loaded) == len(words.split(";"))
+    assert loaded[-1].isdisjoint({*HEAVY, "matplotlib", "jinja2", "numba", "typst", "pypdf"})
+    assert loaded[2].isdisjoint({"scipy.linalg", "scipy.sparse"})
+    formats = {place.rpartition(".")[0] for place in {**READ_FORMATS.places, **WRITTEN_FORMATS.places}.values()}
+    read = {"pantograph.pantograph_file", "cases.case_file", "cases.limits", "line.line_file", "line.elements.damping"}
+    assert {name for name in formats if f"pantocheck.conformance.{name}" in loaded[-2]} <= read
 
 
 def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path: Path) -> None:
@@ -285,8 +307,7 @@ def test_run_without_pages_needs_neither_filters_of_scipy_nor_plotting(tmp_path:
     )
     command = [sys.executable, "-c", code, str(tmp_path / "out")]
     output = subprocess.run(command, check=True, capture_output=True, text=True, timeout=300)
-    heavy = {"signal", "stats", "interpolate", "ndimage", "optimize", "integrate", "spatial"}
-    assert {f"scipy.{name}" for name in heavy}.isdisjoint(output.stdout.split())
+    assert HEAVY.isdisjoint(output.stdout.split())
     assert {"matplotlib", "typst"}.isdisjoint(output.stdout.split())
     assert "numba" in output.stdout.split()
 
