@@ -7,7 +7,12 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import json_digest
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, ComparisonLimit
-from pantocheck.conformance.comparison.response_deviation import grade_responses, response_deviation, summarise_band
+from pantocheck.conformance.comparison.response_deviation import (
+    find_supported_frequency,
+    grade_responses,
+    response_deviation,
+    summarise_band,
+)
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.input_error import InputError
@@ -132,6 +137,7 @@ def _describe_response(
         phase_deviation_deg=tuple(np.degrees(deviation.imag)),
         model=_build_model_curve(form, curve_frequency, model_stiffness(pantograph, curve_frequency)),
         bands=bands,
+        supported_to_Hz=find_supported_frequency(frequency, deviation),
     )
 
 

@@ -71,6 +71,30 @@ def summarise_band(record: ResponseRecord, deviation: ComplexArray, band: Respon
     )
 
 
+LARGEST_SUPPORTED_DEVIATION = 0.2
+"""Complex deviation, RMS of a third of an octave, with which a response supports a model: that of a line test."""
+
+
+def find_supported_frequency(frequency: RealArray, deviation: ComplexArray) -> float | None:
+    """Highest frequency up to which a response supports the model [Hz]; None: not even in its first third of an octave.
+
+    Thirds of an octave follow each other from the lowest row on; a third without a row, or with a larger deviation,
+    ends the supported range.
+
+    Args:
+        frequency: Frequency of each row with a measured value, increasing, (n,) [Hz].
+        deviation: Deviation of each row, (n,).
+    """
+    highest, edge, third = None, float(frequency[0]), 2 ** (1 / 3)
+    while edge < frequency[-1]:
+        upper = min(edge * third, float(frequency[-1]))
+        inside = (frequency >= edge) & (frequency <= upper)
+        if not inside.any() or np.sqrt(np.mean(np.abs(deviation[inside]) ** 2)) > LARGEST_SUPPORTED_DEVIATION:
+            break
+        highest = edge = upper
+    return highest
+
+
 def band_weights(frequency: RealArray, band: ResponseBand) -> RealArray:
     """Share of the logarithmic axis of a band that is nearest to each frequency, (n,) ndarray with the sum 1."""
     log = np.log(frequency)

@@ -99,7 +99,7 @@ class Criterion(Requirement):
     close: list[str] = []
     """Remark on a value whose `uncertainty` and `limit_uncertainty` combined exceed its distance from a limit."""
     readings: Annotated[list[str], Field(exclude_if=lambda remarks: not remarks)] = []
-    """Remarks on the documented readings of the evaluation under which the value lies on the other side of a limit."""
+    """Remarks on the documented readings and contacts under which the value lies on the other side of a limit."""
     finding: GradedFinding | None = None
     doubt: Annotated[str | None, Field(exclude_if=lambda text: text is None)] = None
     """Reason why a pass does not count: the user widened a limit of the library, or chose a tolerance that tests
@@ -118,7 +118,7 @@ class Criterion(Requirement):
 
     @property
     def depends_on_reading(self) -> bool:
-        """Whether another documented reading of the evaluation would reverse the verdict of a counted value."""
+        """Whether another documented reading or contact would reverse the verdict of a counted value."""
         return bool(self.readings) and self.verdict in ("pass", "fail")
 
     @property

@@ -130,7 +130,7 @@ def _check_criteria(
 def _check_readings(case: CaseResult) -> Iterator[str]:
     """Remarks on other readings of the evaluation must follow from their values, and these from each other."""
     for row in case.criteria:
-        if row.readings != list_reading_remarks(row, case.readings):
+        if row.readings != list_reading_remarks(row, case.readings, case.conditions):
             place = f"{row.quantity} of pantograph {row.pantograph}"
             yield f"{place}: the remarks on readings do not follow from their values"
     for row in () if case.verification is None else case.verification.criteria:

@@ -1,6 +1,6 @@
 """Grades under every documented reading of the evaluation: filter, bands and analysis section."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.cases.case_file import Reading
@@ -15,7 +15,7 @@ from pantocheck.conformance.quantities.filters import needs_filter
 from pantocheck.conformance.quantities.limit_text import format_graded
 from pantocheck.conformance.quantities.unavailable import AlreadyFiltered
 from pantocheck.conformance.records.record import Record
-from pantocheck.conformance.results.case_facts_format import ReadingFacts
+from pantocheck.conformance.results.case_facts_format import ConditionFacts, ReadingFacts
 
 
 def evaluate_readings(evaluation: CaseEvaluation) -> list[ReadingFacts]:
@@ -63,21 +63,36 @@ def judge_reading(criterion: Criterion, reading: ReadingFacts) -> tuple[float | 
     return value, "skip" if value is None or limits == (None, None) else judge(value, *limits)
 
 
-def list_reading_remarks(criterion: Criterion, readings: Sequence[ReadingFacts]) -> list[str]:
-    """Remarks on the readings under which the value of a criterion lies on the other side of a limit."""
+def list_reading_remarks(
+    criterion: Criterion, readings: Sequence[ReadingFacts], conditions: Sequence[ConditionFacts]
+) -> list[str]:
+    """Remarks on readings and contacts under which the value of a criterion lies on the other side of a limit."""
     if criterion.value is None or criterion.is_drift or (criterion.lower, criterion.upper) == (None, None):
         return []
     judged = judge(criterion.value, criterion.lower, criterion.upper)
-    others = [(reading.id, *judge_reading(criterion, reading)) for reading in readings]
+    others = [(f"under the reading '{reading.id}'", *judge_reading(criterion, reading)) for reading in readings]
+    others += [(f"with {name}", value, verdict) for name, value, verdict in _judge_contacts(criterion, conditions)]
     return [
-        f"under the reading '{name}' the value is "
-        f"{format_graded(value, criterion.lower, criterion.upper).value} {criterion.unit}".rstrip()
+        f"{name} the value is {format_graded(value, criterion.lower, criterion.upper).value} {criterion.unit}".rstrip()
         + f", {'inside' if verdict == 'pass' else 'outside'} the limits"
         for name, value, verdict in others
         if verdict not in ("skip", judged)
     ]
 
 
-def mark_readings(criteria: Sequence[Criterion], readings: Sequence[ReadingFacts]) -> list[Criterion]:
+def _judge_contacts(
+    criterion: Criterion, conditions: Sequence[ConditionFacts]
+) -> Iterator[tuple[str, float | None, Verdict]]:
+    """Name of each other contact, the value with it by its stored relative change, and its verdict."""
+    for condition in conditions:
+        change = condition.changes.get(str(criterion.pantograph), {}).get(criterion.quantity)
+        if condition.is_contact and change is not None and criterion.value is not None:
+            value = criterion.value + abs(criterion.value) * change / 100
+            yield condition.name, value, judge(value, criterion.lower, criterion.upper)
+
+
+def mark_readings(
+    criteria: Sequence[Criterion], readings: Sequence[ReadingFacts], conditions: Sequence[ConditionFacts]
+) -> list[Criterion]:
     """Criteria with the remarks of `list_reading_remarks`."""
-    return [row.model_copy(update={"readings": list_reading_remarks(row, readings)}) for row in criteria]
+    return [row.model_copy(update={"readings": list_reading_remarks(row, readings, conditions)}) for row in criteria]

@@ -28,8 +28,9 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import name_figure
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
-from pantocheck.conformance.quantities.bands import BANDS
+from pantocheck.conformance.quantities.bands import BANDS, EXTENDED_BAND
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.supported_frequency import find_supported_Hz
 
 LISTED_SUPPORTS = 3
 """Largest number of supports that a caption lists one by one."""
@@ -43,12 +44,13 @@ def draw_case_figures(case: CaseResult, number: int, anchor: str) -> Iterator[do
     yield from _chart_figures(case.charts)
     limited = [row for row in case.criteria if not row.is_drift]
     for key, trace in sorted(case.traces.items(), key=lambda item: (len(item[0]), item[0])):
+        supported = find_supported_Hz(case.supported, key)
         if trace.position_m:
-            curves = doc.Curves("force", number, key)
+            curves = doc.Curves("force", number, key, supported)
             figure = _force_figure(key, trace, select_reference_force(case, key))
             yield replace(figure, anchor=name_figure(anchor, key), curves=curves)
         if trace.spectrum.frequency_Hz:
-            yield _spectrum_figure(key, trace, case.quantities.get(key, {}))
+            yield _spectrum_figure(key, trace, case.quantities.get(key, {}), supported)
         if trace.histogram:
             yield _histogram_figure(key, trace, trace.histogram)
     supports = [support for support in case.uplift if support.time_s]
@@ -95,15 +97,19 @@ def _force_figure(key: str, trace: Traces, reference: list[float]) -> doc.Figure
     return doc.Figure(draw_force(trace, reference), text, caption)
 
 
-def _spectrum_figure(key: str, trace: Traces, quantities: Mapping[str, Number]) -> doc.Figure:
+def _spectrum_figure(
+    key: str, trace: Traces, quantities: Mapping[str, Number], supported_Hz: float | None
+) -> doc.Figure:
     values = [
         f"{low:g} to {high:g} Hz: {format_value(select_single(quantities[name]))} N"
         for low, high, name in BANDS
         if quantities.get(name) is not None
     ]
     caption = f"Pantograph {key}: amplitude spectrum of the force, with the RMS of its bands."
+    if supported_Hz is not None and supported_Hz < EXTENDED_BAND.high:
+        caption += f" Grey: above {supported_Hz:.3g} Hz, not supported."
     alternative = f"{caption} {'; '.join(values)}." if values else caption
-    return doc.Figure(draw_spectrum(trace, quantities), alternative, caption, wide=False)
+    return doc.Figure(draw_spectrum(trace, quantities, supported_Hz), alternative, caption, wide=False)
 
 
 def _histogram_figure(key: str, trace: Traces, histogram: Histogram) -> doc.Figure:
@@ -204,8 +210,11 @@ def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -
 
 
 @render_svg
-def draw_spectrum(trace: Traces, quantities: Mapping[str, Number]) -> Figure:
-    """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS."""
+def draw_spectrum(trace: Traces, quantities: Mapping[str, Number], supported_Hz: float | None = None) -> Figure:
+    """Single-sided amplitude spectrum of the unfiltered force with the three bands and their RMS.
+
+    Above the supported frequency [Hz], bands and spectrum are grey.
+    """
     frequency, amplitude = trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N
     figure = Figure(figsize=(HALF, 2.0))
     axes = figure.subplots()
@@ -216,7 +225,11 @@ def draw_spectrum(trace: Traces, quantities: Mapping[str, Number]) -> Figure:
         axes.axvline(high, color=GREY, linewidth=0.8, linestyle="--")
         rms = select_single(quantities.get(quantity))
         text = f"{low}–{high}" + (f"\n{format_value(rms, 3)}" if rms is not None else "")
-        axes.text((low + high) / 2, 1.02, text, ha="center", transform=axes.get_xaxis_transform(), **above)
+        colour = INK if supported_Hz is None or high <= supported_Hz else GREY
+        place = ((low + high) / 2, 1.02)
+        axes.text(*place, text, ha="center", color=colour, transform=axes.get_xaxis_transform(), **above)
+    if supported_Hz is not None and supported_Hz < EXTENDED_BAND.high:
+        axes.axvspan(supported_Hz, EXTENDED_BAND.high, color=GREY, alpha=0.6, linewidth=0, zorder=3)
     axes.text(-0.02, 1.02, "Hz\nrms [N]", ha="right", transform=axes.transAxes, **above)
     axes.set_ylim(bottom=0)
     axes.set(xlim=(0, 50), xticks=[0, 5, 10, 20, 30, 40, 50], xlabel="frequency [Hz]", ylabel="amplitude [N]")

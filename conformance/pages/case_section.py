@@ -20,6 +20,7 @@ from pantocheck.conformance.pages.criteria_table import (
 )
 from pantocheck.conformance.pages.document_facts import list_case_facts
 from pantocheck.conformance.pages.first_page import FirstPage
+from pantocheck.conformance.pages.frequency_section import build_frequency_section
 from pantocheck.conformance.pages.line_figure import find_earlier_drawing, line_figures, scheme_figures
 from pantocheck.conformance.pages.quantity_tables import (
     build_quantity_table,
@@ -110,6 +111,7 @@ def _list_details(shown: ShownCase) -> Iterator[doc.Section]:
         yield doc.Section("All quantities, with uncertainty by component", parts, folded=True)
     yield from build_check_section(case)
     yield from build_condition_section(case)
+    yield from build_frequency_section(case.supported)
     if skipped := list_skipped(case):
         yield doc.Section("Skipped", (doc.BulletList(skipped),), folded=True)
     if notes := _list_notes(shown):

@@ -1,4 +1,4 @@
-"""Conditions of the values of a case: contact spring of the band from 20 to 50 Hz, untraced inputs, resolving power.
+"""Conditions of the values of a case: contact of the band from 20 to 50 Hz, untraced inputs, resolving power.
 
 A value of this band has a mark wherever a table of the case shows it; the condition stands once in the section.
 """
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pantocheck.conformance.pages import document as doc
+from pantocheck.conformance.pages.frequency_section import frequency_blocks, mute_row
 from pantocheck.conformance.pages.words import (
     format_signed,
     name_pantograph,
@@ -18,41 +19,40 @@ from pantocheck.conformance.results.case_facts_format import ConditionFacts
 from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
 CONDITIONED = "rms_20_50_N"
-"""Quantity that depends on the contact spring more than on any other input."""
+"""Quantity that depends on the contact more than on any other input."""
 BAND_MARK = "‡"
 """Mark of its values."""
-CONTACT = "contact stiffness"
-"""Begin of the names of the conditions with another contact spring."""
+SPRINGLESS = {"hertz": "contact by the law of Hertz", "constraint": "contact by a constraint"}
+"""Contact laws without a spring, as a pantograph file states them."""
 SHOWN = ("std_force_N", "rms_0_5_N", "rms_5_20_N", CONDITIONED)
 """Quantities of the table; results.json has all."""
 
 
-def find_springs(case: CaseResult) -> list[InputGroup]:
-    """Contact springs of the pantographs that a case states."""
-    groups = [group for group in case.inputs if group.group.split(".")[-1] == "contact"]
-    return [group for group in groups if "stiffness_N_m" in group.values]
+def find_contacts(case: CaseResult) -> list[InputGroup]:
+    """Contacts of the pantographs that a case states."""
+    return [group for group in case.inputs if group.group.split(".")[-1] == "contact"]
 
 
 def describe_condition(case: CaseResult) -> str:
-    """Sentence on the contact spring of the values from 20 to 50 Hz; empty if the case has no such value or spring."""
-    springs = find_springs(case)
-    if not springs or not any(CONDITIONED in values for values in case.quantities.values()):
+    """Sentence on the contact of the values from 20 to 50 Hz; empty if the case has no such value or contact."""
+    contacts = find_contacts(case)
+    if not contacts or not any(CONDITIONED in values for values in case.quantities.values()):
         return ""
-    texts = dict.fromkeys(f"{_stiffness(group)}, {_describe_source(group)}" for group in springs)
-    effects = [_describe_effect(case, name.name) for name in case.conditions if name.name.startswith(CONTACT)]
+    texts = dict.fromkeys(f"{_describe_law(group)}, {_describe_source(group)}" for group in contacts)
+    effects = [_describe_effect(case, condition.name) for condition in case.conditions if condition.is_contact]
     effect = f" They change by {'; '.join(filter(None, effects))}." if any(effects) else ""
-    return (
-        f"{BAND_MARK} Values from 20 to 50 Hz are conditional on a contact spring of {' and of '.join(texts)}.{effect}"
-    )
+    return f"{BAND_MARK} Values from 20 to 50 Hz are conditional on {' and on '.join(texts)}.{effect}"
 
 
-def _stiffness(group: InputGroup) -> str:
-    value = group.values["stiffness_N_m"]
-    return f"{value / 1000:g} kN/m" if isinstance(value, float | int) else "another form"
+def _describe_law(group: InputGroup) -> str:
+    law, value = str(group.values.get("law", "spring")), group.values.get("stiffness_N_m")
+    if law in SPRINGLESS:
+        return SPRINGLESS[law]
+    return f"a contact spring of {value / 1000:g} kN/m" if isinstance(value, float | int) else "another contact"
 
 
 def _describe_source(group: InputGroup) -> str:
-    """Trust of a spring in words."""
+    """Trust of a contact in words."""
     if group.trust == "provisional":
         return "which is not traced"
     meaning = read_words()["trust"][group.trust]["meaning"]
@@ -69,7 +69,8 @@ def _describe_effect(case: CaseResult, name: str) -> str:
 
 def condition_blocks(case: CaseResult) -> tuple[doc.Block, ...]:
     """Condition of the values from 20 to 50 Hz, and sentences on errors of the inputs."""
-    return tuple(doc.SmallPrint(text) for text in (describe_condition(case), *case.input_studies) if text)
+    sentences = tuple(doc.SmallPrint(text) for text in (describe_condition(case), *case.input_studies) if text)
+    return (*frequency_blocks(case), *sentences)
 
 
 def build_condition_section(case: CaseResult) -> tuple[doc.Section, ...]:
@@ -107,18 +108,23 @@ def _join_changes(condition: ConditionFacts, quantity: str, owners: Sequence[str
 
 
 def mark_values(case: CaseResult, blocks: Sequence[doc.Block]) -> tuple[doc.Block, ...]:
-    """Blocks of a case with the mark at every row of a table on the band from 20 to 50 Hz."""
-    if not describe_condition(case):
-        return tuple(blocks)
-    return tuple(_mark_block(block) for block in blocks)
+    """Blocks of a case with the mark at every row on the band from 20 to 50 Hz, and unsupported rows in grey."""
+    return tuple(_mark_block(case, block) for block in blocks)
 
 
-def _mark_block(block: doc.Block) -> doc.Block:
+def _mark_block(case: CaseResult, block: doc.Block) -> doc.Block:
     if isinstance(block, doc.Section):
-        return replace(block, blocks=tuple(_mark_block(part) for part in block.blocks))
+        return replace(block, blocks=mark_values(case, block.blocks))
     if isinstance(block, doc.Table):
-        return replace(block, rows=tuple((mark_cell(row[0]), *row[1:]) for row in block.rows))
+        return replace(block, rows=tuple(_mark_row(case, row) for row in block.rows))
     return block
+
+
+def _mark_row(case: CaseResult, row: tuple[doc.RichText, ...]) -> tuple[doc.RichText, ...]:
+    """Row with the mark of its condition, grey above the supported frequency of the pantograph in its second cell."""
+    marked = (mark_cell(row[0]), *row[1:]) if describe_condition(case) else row
+    owner = row[1] if len(row) > 1 and isinstance(row[1], str) and row[1].isdigit() else "0"
+    return mute_row(case.supported, owner, marked)
 
 
 def mark_cell(cell: doc.RichText) -> doc.RichText:

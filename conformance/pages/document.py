@@ -33,6 +33,13 @@ class Remark:
 
 
 @dataclass(frozen=True)
+class Muted:
+    """A text in grey: a value that the model does not support."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Link:
     """A link to a place of the same page."""
 
@@ -70,7 +77,7 @@ class Drawing:
     alternative: str
 
 
-Inline = str | Code | Remark | Link | PageLink | VerdictMark | TrustMark | Drawing
+Inline = str | Code | Remark | Muted | Link | PageLink | VerdictMark | TrustMark | Drawing
 RichText = Inline | tuple[Inline, ...]
 
 
@@ -164,6 +171,8 @@ class Curves:
     """Index of the case in `cases`."""
     owner: str = "0"
     """Key of the pantograph in `traces`; "0": the line."""
+    supported_Hz: float | None = None
+    """Frequency above which a spectrum is grey [Hz]; None: nowhere."""
 
 
 @dataclass(frozen=True)

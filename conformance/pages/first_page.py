@@ -1,7 +1,7 @@
 """Page 1 of a certificate: object, limits, result, use, issuer and means of checking, in the order of an assessor."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from pantocheck.conformance.core.criterion import Criterion
@@ -17,6 +17,7 @@ from pantocheck.conformance.pages.criteria_table import (
     has_reference,
 )
 from pantocheck.conformance.pages.document_facts import list_check_facts, list_issuer_facts, name_system
+from pantocheck.conformance.pages.frequency_section import mute_row
 from pantocheck.conformance.pages.line_figure import draw_line_sketch, name_pantographs
 from pantocheck.conformance.pages.scope_page import (
     CASES_SHOWN,
@@ -253,7 +254,10 @@ def _build_value_table(cases: Sequence[CaseResult], first_page: FirstPage) -> do
     }
     if not first_page.source:
         cells[doc.Column("Trust")] = lambda pair: doc.TrustMark(_texts(pair).trust)
-    return doc.make_table(rows, cells, layout="values")
+    table = doc.make_table(rows, cells, layout="values")
+    pairs = zip(table.rows, rows, strict=True)
+    muted = (mute_row(case.supported, str(row.pantograph), cells) for cells, (case, row) in pairs)
+    return replace(table, rows=tuple(muted))
 
 
 def _texts(pair: CaseCriterion) -> CriterionTexts:

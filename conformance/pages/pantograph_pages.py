@@ -29,6 +29,7 @@ from pantocheck.conformance.results.comparison_format import (
     ResponseQuantity,
 )
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
+from pantocheck.conformance.results.supported_frequency import UNKNOWN_FREQUENCY
 
 Limits = Sequence[Criterion]
 
@@ -131,7 +132,9 @@ def _describe(comparison: ResponseComparison) -> str:
 
 
 def _build_closing(comparison: ResponseComparison) -> tuple[doc.Block, ...]:
+    highest = comparison.supported_to_Hz
     facts = {
+        "Supported up to": UNKNOWN_FREQUENCY if highest is None else f"{highest:.3g} Hz",
         "Digest of the pantograph": comparison.model.digest,
         "Digest of the suite": comparison.suite.digest,
     }

@@ -20,6 +20,7 @@ from pantocheck.conformance.pages.words import (
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results
+from pantocheck.conformance.results.supported_frequency import describe_supported
 
 LONGEST_PRINTED_LIST = 5
 """Longest list that is printed in full; results.json has the values of a longer one."""
@@ -116,6 +117,8 @@ def build_quantity_table(case: CaseResult) -> Table:
             heading = component.capitalize()
             column = Column(heading, number=True, short=SHORT_COMPONENTS.get(heading, ""))
             columns[column] = partial(_format_width, find_width)
+    if case.supported:
+        columns[Column("Supported", number=True)] = lambda key: describe_supported(case.supported, key[0])
     if any(case.spread.values()):
         columns[Column("Shift", number=True)] = lambda key: format_value(case.spread.get(key[0], {}).get(key[1]), 2)
     return make_table(keys, columns)
@@ -153,7 +156,7 @@ def _find_largest(width: float | list[float] | None) -> float | None:
 COLUMNS = (
     *("case", "pantograph", "quantity", "item", "value", "unit", "uncertainty"),
     *COMPONENT_NAMES,
-    *("lower", "upper", "verdict", "condition", "changes"),
+    *("lower", "upper", "verdict", "condition", "changes", "supported"),
 )
 NOT_KNOWN = "NA"
 """Cell of a value that is not known: it is not zero."""
@@ -186,6 +189,7 @@ def _list_rows(case: CaseResult) -> Iterator[list[Any]]:
                     "" if criterion is None else criterion.verdict,
                     condition if name == CONDITIONED else "",
                     "; ".join(case.changes),
+                    describe_supported(case.supported, key) if case.supported else "",
                 ]
 
 

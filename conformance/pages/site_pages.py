@@ -9,10 +9,12 @@ from pantocheck.conformance.core.results_part import select_single
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED, describe_condition
+from pantocheck.conformance.pages.frequency_section import frequency_blocks
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.two_verdicts import mark_case, mark_results
 from pantocheck.conformance.pages.words import clean_text, format_value, name_pantograph, quantity_label, quantity_unit
 from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.results.supported_frequency import is_supported
 
 LONGEST_FILE_NAME = 60
 """Longest part of a file name that comes from a name in the results."""
@@ -167,6 +169,7 @@ def build_case_page(case_id: str, published: Sequence[PublishedResults]) -> doc.
     blocks: list[doc.Block] = [doc.Paragraph((doc.PageLink("All systems and cases", "../index.html"),))]
     blocks.append(doc.Section("Verdicts", (_build_verdict_table(runs),)))
     blocks += map(doc.SmallPrint, dict.fromkeys(filter(None, (describe_condition(case) for _, case in runs))))
+    blocks += dict.fromkeys(block for _, case in runs for block in frequency_blocks(case))
     # One run per system has no history: the table shows its values.
     repeated = len(runs) > len({run.system for run, _ in runs})
     for owner in sorted({owner for _, case in runs for owner in case.quantities}, key=int):
@@ -206,11 +209,17 @@ def _build_value_table(runs: Sequence[Run], owner: str, names: Sequence[str]) ->
         (
             clean_text(run.system),
             clean_text(run.version),
-            *(format_value(_read(case, owner, name)) for name in names),
+            *(_format_cell(case, owner, name) for name in names),
         )
         for run, case in reversed(runs)
     )
     return doc.Table(columns, rows, "Values, the latest run first")
+
+
+def _format_cell(case: CaseResult, owner: str, name: str) -> doc.RichText:
+    """Value of a quantity, grey if its model does not support it."""
+    text = format_value(_read(case, owner, name))
+    return text if is_supported(case.supported, owner, name) else doc.Muted(text)
 
 
 def _draw_history(runs: Sequence[Run], owner: str, name: str) -> doc.Figure:

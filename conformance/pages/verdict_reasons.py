@@ -83,7 +83,7 @@ def build_headline(results: Results) -> str:
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     if number := sum(row.depends_on_reading for _, row in pairs):
         values = count_noun(number, "value lies", "values lie")
-        sentences.append(f"{values} on the other side of a limit under another documented reading.")
+        sentences.append(f"{values} on the other side of a limit under another documented reading or contact.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
 
 
@@ -146,7 +146,7 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
         ],
         "Inside the limits only with the stated start": [_reason(pair) for pair in passed if pair[1].reason],
         CLOSE_HEADING: _list_close(results),
-        "Another documented reading reverses the verdict": [
+        "Another documented reading or contact reverses the verdict": [
             f"{_subject(*pair)}: {'; '.join(pair[1].readings)}."
             for pair in _criteria(results)
             if pair[1].depends_on_reading

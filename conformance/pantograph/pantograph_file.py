@@ -21,6 +21,7 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
+from pantocheck.conformance.pantograph.validity_range import SupportedRange
 from pantocheck.model.description.contact_law import (
     Force,
     contact_compliance,
@@ -216,6 +217,8 @@ class PantographFile(InputTable):
     """Mean contact force or applied forces as a function of speed, for cases with force_from = 'law'; default: every
     case states a force.
     """
+    validity: Annotated[SupportedRange | None, Field(exclude_if=is_absent), NO_FEATURE] = None
+    """Highest frequency that the model supports; default: not known."""
     note: Annotated[str | None, Field(max_length=4000)] = None
     """Remark for the reader."""
 

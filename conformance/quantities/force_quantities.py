@@ -34,13 +34,13 @@ ALL_SUPPORTS = Need[LineSignals](
     "uplift at every support of the analysis section", lambda signals: signals.check_supports()
 )
 
-_en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE_20, unit="N")
+_en50318 = partial(PantographQuantity, source=EN50318, needs=FORCE_20, unit="N", highest_Hz=20.0)
 _vovan2015 = partial(PantographQuantity, source=VOVAN2015, tables=("damping models",))
-_vovan2015_20 = partial(_vovan2015, needs=FORCE)
-_vovan2015_50 = partial(_vovan2015, needs=FORCE_50)
+_vovan2015_20 = partial(_vovan2015, needs=FORCE, highest_Hz=20.0)
+_vovan2015_50 = partial(_vovan2015, needs=FORCE_50, highest_Hz=50.0)
 
 
-_loss = partial(PantographQuantity, needs=FORCE_50, never_negative=True)
+_loss = partial(PantographQuantity, needs=FORCE_50, never_negative=True, highest_Hz=50.0)
 
 
 def _unfiltered(signals: ForceSignals) -> RealArray:
@@ -79,6 +79,7 @@ def _band_quantity(band: Band) -> PantographQuantity:
     define = _vovan2015_20 if high <= 20 else _vovan2015_50
     return define(
         name=name,
+        highest_Hz=float(high),
         label=f"RMS, {low:g}–{high:g} Hz",
         unit="N",
         definition=f"RMS of the contact force in the band ]{low:g}, {high:g}] Hz, by Parseval on the analysis section "
@@ -95,6 +96,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         label="Mean contact force",
         definition="mean contact force over the analysis section",
         needs=FORCE,
+        highest_Hz=None,
         tables=("damping models",),
         compute=_mean,
     ),
@@ -166,6 +168,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         unit="%",
         definition="share of the samples of the unfiltered force without contact",
         needs=FORCE_50,
+        highest_Hz=50.0,
         never_negative=True,
         tables=("damping models",),
         compute=lambda signals, sampling: contact_loss(signals.delivered, signals.filter_applied_Hz, sampling),
@@ -191,6 +194,7 @@ PANTOGRAPH_QUANTITIES: tuple[PantographQuantity, ...] = (
         unit="mm",
         definition="highest minus lowest contact point over the analysis section",
         needs=HEIGHT,
+        highest_Hz=None,
         never_negative=True,
         extreme="largest",
         compute=lambda signals, sampling: sampling.extent(signals.height, 1e3),

@@ -57,6 +57,8 @@ class Quantity:
     """Whether a negative value is impossible."""
     tables: tuple[QuantityTable, ...] = ()
     """Fixed tables that show the quantity."""
+    highest_Hz: float | None = None
+    """Highest frequency of the force in the value [Hz]; None: the value has no band."""
     other_definition: str = ""
     """Other definition in use, and the largest change of the value by it on the EN 50318:2002 cases; empty: none."""
 

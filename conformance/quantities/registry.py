@@ -1,5 +1,7 @@
 """Registry of all quantities by name. A criterion is one of these names with limits."""
 
+import re
+
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.quantity import Need, Quantity, QuantityTable, Scope
@@ -8,6 +10,8 @@ from pantocheck.conformance.quantities.stated_quantities import OVERLAP_QUANTITI
 # Quantities of the line at rest, of identified modes and of studies after Vo Van, Balmes and Lorang (2015).
 #
 # A static check, an identification or a study delivers these quantities; none of them is computed from a record.
+EDGES = re.compile(r"(?<=_)(?:5|20|50)(?=_|$)")
+"""Edges of the bands in the names of quantities."""
 _NEVER_NEGATIVE = {"elasticity_mm_N", "wave_speed_m_s"}
 
 
@@ -22,6 +26,7 @@ def _define(scope: Scope, needs: str, *rows: tuple[str, str, str, str]) -> list[
             needs=Need(needs),
             scope=scope,
             never_negative=name in _NEVER_NEGATIVE,
+            highest_Hz=max(map(float, EDGES.findall(name)), default=None),
         )
         for name, label, unit, definition in rows
     ]

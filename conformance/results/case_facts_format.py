@@ -44,6 +44,11 @@ class ConditionFacts(ResultsPart):
     changes: dict[Owner, dict[str, FiniteNumber]] = {}
     """Changes by owner and quantity, relative to the value with the inputs of the case [%]."""
 
+    @property
+    def is_contact(self) -> bool:
+        """Whether the other input is the contact of head and wire."""
+        return self.name.startswith(("contact stiffness", "contact by"))
+
 
 class StoredRange(ResultsPart):
     """Number of the values of a long list, and their range."""

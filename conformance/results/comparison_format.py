@@ -190,6 +190,8 @@ class ComparedResponse(ComparedSource):
     model: HeadResponse
     """Response of the model at many frequencies."""
     bands: tuple[BandDeviation, ...]
+    supported_to_Hz: Rounded | None = None
+    """Highest frequency up to which this response supports the model; null: not even the first rows do."""
 
 
 class ResponseComparison(ModelComparison):
@@ -201,6 +203,12 @@ class ResponseComparison(ModelComparison):
     record_state: Literal["unconfirmed"] = "unconfirmed"
     """A frequency response has no second channel that confirms it."""
     responses: tuple[ComparedResponse, ...]
+
+    @property
+    def supported_to_Hz(self) -> float | None:
+        """Highest frequency that every response at the centre of the head supports; None: one supports none."""
+        highest = [response.supported_to_Hz or 0.0 for response in self.responses if response.is_graded]
+        return min(highest, default=0.0) or None
 
 
 class ComparedQuantity(RoundedModel):

@@ -49,6 +49,7 @@ from pantocheck.conformance.results.case_facts_format import (
     StoredValues,
 )
 from pantocheck.conformance.results.procedure_format import Procedure
+from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 STATEMENT = "self-declared conformance report, in the style of EN 50318"
 
@@ -230,6 +231,8 @@ class CaseResult(ResultsPart):
     """Place of each extreme, as in `quantities`."""
     model_uncertainty: list[str] = []
     """Effects that the equations of the system leave out, with sizes; not part of `uncertainty`."""
+    supported: Annotated[list[SupportedFrequency], Field(exclude_if=is_empty)] = []
+    """Highest frequencies that the parts of the model support; missing: a line at rest, or no model."""
     conditions: Annotated[list[ConditionFacts], Field(exclude_if=is_empty)] = []
     """Changes of the values by inputs that are not traced or left open; missing: not computed for this case."""
     input_studies: Annotated[list[str], Field(exclude_if=is_empty)] = []

@@ -19,7 +19,12 @@ from pantocheck.conformance.line.line_parameters import list_tolerance_lines
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
-from pantocheck.conformance.runs.resolution import list_model_uncertainty, resolution_warnings, window_warnings
+from pantocheck.conformance.runs.resolution import (
+    list_mesh_frequencies,
+    list_model_uncertainty,
+    resolution_warnings,
+    window_warnings,
+)
 from pantocheck.conformance.runs.static_quantities import compute_quantities_along_line, compute_static_quantities
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model import Catenary, discretise
@@ -206,6 +211,7 @@ def _deliver(
         passage.run,
         warnings=(*resolution_warnings(case, discretisation), *window_warnings(case, line, discretisation)),
         model_uncertainty=list_model_uncertainty(case),
+        supported=list_mesh_frequencies(case, discretisation),
         start=case.start_table,
         uplift_forces=passage.uplift_forces,
     )

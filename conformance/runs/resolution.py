@@ -25,6 +25,7 @@ from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE
 from pantocheck.conformance.quantities.registry import QUANTITIES
+from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 from pantocheck.model import DiscretisedLine
 from pantocheck.model.discretisation.discretised_line import max_wave_speed
 
@@ -48,6 +49,23 @@ def longest_time_step(frequency: float) -> float:
 def longest_element(speed: float, frequency: float) -> float:
     """Longest element [m] for a band up to 20 or 50 Hz at a speed [m/s]."""
     return speed / LOWEST_PASSING_HZ[frequency]
+
+
+def list_mesh_frequencies(case: Case, discretisation: Discretisation) -> tuple[SupportedFrequency, ...]:
+    """Highest frequencies that elements and time step of a run support, by the rules of `resolution_warnings`."""
+    h, dt, margin = discretisation.element_m, discretisation.time_step_s, LOWEST_PASSING_HZ[50.0] - 50.0
+    return (
+        SupportedFrequency(
+            part="elements",
+            frequency_Hz=float(f"{max(case.speed / h - margin, 0.0):.4g}"),
+            basis=f"elements passed per second, minus the band of the motion of the pantograph, {margin:g} Hz",
+        ),
+        SupportedFrequency(
+            part="time step",
+            frequency_Hz=float(f"{longest_time_step(1.0) / dt:.4g}"),
+            basis=f"change of the period by {100 * LARGEST_PERIOD_ERROR:g} %",
+        ),
+    )
 
 
 def resolution_warnings(case: Case, discretisation: Discretisation) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from pantocheck.conformance.core.figure_data import Chart, LineShape, TextTable
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
+from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 
 # Outcome of a case on a system: a delivery, a skip with its reason, or an error with its reason.
@@ -41,6 +42,8 @@ class Delivered:
     """Caveats for the reader of the report."""
     model_uncertainty: tuple[str, ...] = ()
     """Effects that the equations of the system leave out, with their sizes."""
+    supported: tuple[SupportedFrequency, ...] = ()
+    """Highest frequencies that the discretisation of the system supports."""
     summary: Evaluation | None = None
     """Quantities delivered as numbers in place of a record."""
     study: StudyResult = field(default_factory=StudyResult)

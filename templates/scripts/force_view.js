@@ -47,6 +47,7 @@ class ForceView {
   constructor(figure) {
     this.case = caseOf(figure);
     this.trace = this.case.traces[figure.dataset.owner];
+    this.supported = Number(figure.dataset.supported ?? HIGHEST_HZ);
     const { position_m: x, supports_m: lines } = this.trace;
     const reference = this.case.reference?.force_20_N[figure.dataset.owner] ?? [];
     const name = fill(translate("pantograph {n}"), { n: figure.dataset.owner });
@@ -67,10 +68,11 @@ class ForceView {
   makeSpectrum(name) {
     this.step = traceStep(this.case, this.trace);
     if (this.step === null) return [];
+    const above = this.supported < HIGHEST_HZ ? [{ label: translate("not supported"), values: [0, 0], colour: "faint" }] : [];
     this.spectrum = new Plot({
       ...{ label: fill(translate("Amplitude spectrum of the force of {t}"), { t: name }), xLabel: translate("frequency [Hz]") },
       ...{ xUnit: "Hz", yLabel: translate("amplitude [N]"), yUnit: "N", height: 230, lines: [5, 20], x: [0, HIGHEST_HZ] },
-      curves: [{ label: translate("amplitude"), values: [0, 0], colour: "ink" }],
+      curves: [{ label: translate("amplitude"), values: [0, 0], colour: "ink" }, ...above],
     });
     this.spectrumTitle = element("p", { class: "small" });
     return [element("div", {}, this.spectrumTitle, this.spectrum.element)];
@@ -111,7 +113,9 @@ class ForceView {
     }
     this.spectrumTitle.textContent = fill(translate("Spectrum of the visible stretch, {n} m to {n2} m, unfiltered."), { n, n2 });
     const { frequency, amplitude } = amplitudeSpectrum(visible, this.step);
-    this.spectrum.setCurves(frequency, [amplitude]);
+    const select = (isShown) => amplitude.map((value, i) => (isShown(frequency[i]) ? value : null));
+    const above = this.supported < HIGHEST_HZ ? [select((f) => f > this.supported)] : [];
+    this.spectrum.setCurves(frequency, [select((f) => f <= this.supported || !above.length), ...above]);
   }
 
   /** Show the place of an extreme, one span wide. */

@@ -95,6 +95,7 @@ PROGRAMS = {
         "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
     ),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
+    "contact-findings": Program("tables.contact_findings", ("contact-findings",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),

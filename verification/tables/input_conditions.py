@@ -93,7 +93,7 @@ def write_file(case: Case, conditions: Sequence[ValueCondition]) -> str:
 def main() -> None:
     """Compute and store."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("cases", nargs="*", default=CASES, metavar="CASE")
+    options.add_argument("cases", nargs="*", default=(*CASES, "force-law/300"), metavar="CASE")
     options.add_argument("--out", type=Path, default=OUT, help="folder to write to")
     chosen = options.parse_args()
     known = {case.id: case for case in select_cases(chosen.cases)}

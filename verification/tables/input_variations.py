@@ -26,6 +26,7 @@ from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.case_verification import verify_evaluation
 from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.pantograph.pantograph_file import ContactTable
 from pantocheck.conformance.runs.case_run import PassageRun, run_passage
 from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model.description.failures import SimulationError
@@ -67,6 +68,8 @@ class Choice(InputTable):
     name: str
     settings: Annotated[dict[str, str | float], Field(default_factory=dict)]
     """Values by key."""
+    contact: ContactTable | None = None
+    """Other contact of all pantographs."""
     treatment: Literal["keep_viscous_part"] | None = None
     """Treatment of the discretised line."""
 
@@ -252,4 +255,17 @@ def apply_choice(case: Case, choice: Choice) -> PassageRun:
         raise NotApplicable(str(problem)) from problem
     if changes and replace(varied, changes=()).digest == case.digest:
         raise NotApplicable("the case has this setting")
+    if choice.contact is not None:
+        varied = change_contact(varied, choice.contact)
     return simulate_varied(varied, choice.treatment)
+
+
+def change_contact(case: Case, contact: ContactTable) -> Case:
+    """Case with another contact of all pantographs."""
+    files = tuple(file.model_copy(update={"contact": contact}) for file in case.pantographs)
+    return replace(case, pantographs=files)
+
+
+def list_contacts() -> dict[str, ContactTable]:
+    """Contacts beside the spring of a case: Hertz's law and the constraint of the list, by law."""
+    return {choice.contact.law: choice.contact for choice in read_variations().choice if choice.contact is not None}

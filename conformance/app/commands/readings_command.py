@@ -77,7 +77,9 @@ def readings_command(
     names = [DEFAULT_READING, *(reading.id for reading in result.readings)]
     count = "changes" if turned == 1 else "change"
     known = count_noun(len(names), "documented reading")
-    conclusion = f"{case.id}: {turned} of {len(result.criteria)} criteria {count} side between {known}"
+    conclusion = (
+        f"{case.id}: {turned} of {len(result.criteria)} criteria {count} side between {known}, or with another contact"
+    )
     return CommandOutput(
         escape_text(conclusion),
         {"case": case.id, "readings": result.readings, "criteria": result.criteria},
@@ -152,6 +154,10 @@ def _sum_bands(values: Mapping[str, Number]) -> tuple[float | None, float | None
 
 def _describe_readings(case: Case, result: CaseResult) -> Iterator[RenderableType]:
     """Source and trust of each reading, and the reason where a record does not support it."""
+    for row in result.criteria:
+        for remark in row.readings:
+            if remark.startswith("with "):
+                yield indent_text(f"{row.quantity} of pantograph {row.pantograph}: {remark}")
     if not result.readings:
         yield escape_text("The case documents no further reading: its file has no [[reading]] table.")
     for reading, facts in zip(case.file.reading, result.readings, strict=False):

@@ -149,4 +149,6 @@ def build_fitted_pantograph(
     tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)
     pantograph = validate_model(tables, PantographFile, "fitted pantograph")
     comparison = compare_responses(records, pantograph)
+    if (highest := comparison.supported_to_Hz) is not None:
+        tables["validity"] = {"supported_to_Hz": highest, "basis": "measured_response", "source": texts.source}
     return FittedPantograph(tables, build_pantograph_fit(selection, masses, title, comparison), records)

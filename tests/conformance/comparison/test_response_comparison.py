@@ -220,3 +220,24 @@ def test_evident_error_of_unit_and_repeated_record_are_refused(tmp_path: Path) -
     measured = record(tmp_path, rig.chain_stiffness(REFERENCE))
     with pytest.raises(InputError, match=r"'measured\.csv': is given 2 times"):
         compare_responses([measured, measured], REFERENCE)
+
+
+def test_model_is_supported_up_to_the_third_of_an_octave_before_a_missing_mode(tmp_path: Path) -> None:
+    """A mode of the strip at 60 Hz lowers the stiffness by 1 - (f / 60)^2: 20 % at 26 Hz, in the third from 25.4 Hz."""
+    stiffness = rig.chain_stiffness(REFERENCE)
+    flexible = record(tmp_path, stiffness * (1 - (rig.FREQUENCY / 60) ** 2), "flexible")
+    exact = record(tmp_path, stiffness, "exact")
+    other = record(tmp_path, 2 * stiffness, "other", measured_at="other")
+    heavy = record(tmp_path, 1.3 * stiffness, "heavy")
+    assert compare_responses([flexible], REFERENCE).supported_to_Hz == pytest.approx(0.5 * 2 ** (17 / 3), rel=1e-3)
+    assert compare_responses([exact], REFERENCE).supported_to_Hz == pytest.approx(50.0)
+    assert compare_responses([exact, flexible], REFERENCE).supported_to_Hz == pytest.approx(25.4, abs=0.1)
+    assert compare_responses([exact, other], REFERENCE).supported_to_Hz == pytest.approx(50.0)
+    assert compare_responses([exact, heavy], REFERENCE).supported_to_Hz is None
+
+
+def test_missing_rows_end_the_supported_range(tmp_path: Path) -> None:
+    frequency = rig.FREQUENCY[(rig.FREQUENCY < 10) | (rig.FREQUENCY > 15)]
+    columns = rig.apparent_mass_columns(rig.chain_stiffness(REFERENCE, frequency), frequency)
+    response = read_response(rig.write_response(tmp_path, columns, "gap"))
+    assert compare_responses([response], REFERENCE).supported_to_Hz == pytest.approx(0.5 * 2 ** (13 / 3), rel=1e-3)

@@ -115,8 +115,10 @@ def test_page_one_and_summary_name_the_reading(results: Results) -> None:
     texts = [render_html(build_certificate(results)), render_markdown(build_summary(results))]
     number = sum(row.depends_on_reading for row in results.cases[0].criteria)
     for text in texts:
-        assert re.search(rf"{number} values? lies? on the other side of a limit under another documented reading", text)
-        assert "Another documented reading reverses the verdict" in text
+        assert re.search(
+            rf"{number} values? lies? on the other side of a limit under another documented reading or contact", text
+        )
+        assert "Another documented reading or contact reverses the verdict" in text
         assert "under the reading" in text
 
 

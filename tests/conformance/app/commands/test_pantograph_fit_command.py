@@ -38,6 +38,7 @@ def test_fitted_file_is_valid_and_names_its_record(folder: Path) -> None:
     assert tables["chain"]["source"] == "pantocheck pantograph fit, from measured.csv (rig test 12)"
     assert "trust" not in tables["chain"]
     assert tables["contact"]["stiffness_N_m"] == 50e3
+    assert tables["validity"]["supported_to_Hz"] == pytest.approx(50.0)
     checked = pantocheck("check", "fitted.toml")
     assert (checked.exit_code, "valid pantograph file" in checked.output) == (0, True), checked.output
     report = json.loads((folder / "fitted-fit.json").read_text())
