@@ -30,7 +30,7 @@ from pantocheck.conformance.grading.record_uncertainty import (
     widen_changes,
 )
 from pantocheck.conformance.grading.start_agreement import StartAgreement, compare_starts
-from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, SectionedSignals, Value
+from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, Evaluation, Value
 from pantocheck.conformance.quantities.joint_sample import SampleParts, draw_sample
 from pantocheck.conformance.quantities.pantograph_signals import edge_warnings
 from pantocheck.conformance.quantities.registry import QUANTITIES
@@ -308,7 +308,7 @@ def line_component(changes: Sequence[Mapping[int, Mapping[str, float]]], is_stat
     return Component(basis, widths)
 
 
-def start_component(case: Case, signals: SectionedSignals, others: Sequence[Evaluation]) -> Component:
+def start_component(case: Case, signals: ChannelSignals, others: Sequence[Evaluation]) -> Component:
     """Uncertainty from the start and the run-in.
 
     Args:

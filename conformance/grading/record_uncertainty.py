@@ -7,7 +7,7 @@ import numpy as np
 from pantocheck.conformance.cases.start_and_section import shift_section
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import ComponentName
-from pantocheck.conformance.quantities.evaluation import LINE, SectionedSignals, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, ValuesByOwner
 from pantocheck.conformance.quantities.joint_sample import DRAWS, SampleParts, draw_sample
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -76,7 +76,7 @@ def add_bounds(components: Mapping[ComponentName, Component]) -> dict[int, dict[
     return bounds
 
 
-def shift_component(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> Component:
+def shift_component(signals: ChannelSignals, sections: Sequence[tuple[float, float]]) -> Component:
     """Uncertainty from the position of the analysis section: the largest change when it is shifted, widened.
 
     Args:
@@ -152,7 +152,7 @@ def _describe_length(found: Sequence[tuple[str, LengthUncertainty]], span_m: flo
     return f"{interval}; {of_halves}, for {', '.join(dict.fromkeys(ranges))}" if ranges else interval
 
 
-def section_spread(signals: SectionedSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
+def section_spread(signals: ChannelSignals, sections: Sequence[tuple[float, float]]) -> dict[int, dict[str, float]]:
     """Largest difference of each quantity from its value in other sections [m, m]; at least `MIN_SECTIONS` have it."""
     shifted = [signals.evaluate_section(section).values for section in sections]
     return largest_changes(signals.evaluation.values, shifted, MIN_SECTIONS)

@@ -1,12 +1,13 @@
 """Evaluation of signals: available quantities, and the reasons why other quantities are not available."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol
 
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
 from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import ForceSignals
+from pantocheck.conformance.quantities.pantograph_signals import ForceSignals, PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import list_stated
 from pantocheck.conformance.quantities.statistics import WHOLE_RECORD
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
@@ -31,15 +32,45 @@ class Evaluation:
     """Reasons why the other quantities are not available."""
 
 
-class SectionedSignals(Protocol):
-    """Signals of a record, whose quantities can be computed over any section."""
+class ChannelSignals(Protocol):
+    """Signals of a record, whose quantities can be computed over any section, and from changed channels."""
+
+    @property
+    def pantographs(self) -> Mapping[int, PantographSignals]:
+        """Signals by number from 1."""
+
+    @property
+    def line(self) -> LineSignals:
+        """Uplift at the supports."""
 
     @property
     def evaluation(self) -> Evaluation:
         """Quantities over the analysis section."""
 
+    @property
+    def _sections(self) -> dict[tuple[float, float], Evaluation]:
+        """Evaluations of other sections, which several components of the uncertainty share."""
+
+    def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
+        """Evaluate the quantities of other channels over the analysis section."""
+
     def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Evaluate the quantities over another section [m, m]; the force is not filtered again."""
+        """Evaluate the quantities over another section [m, m], once; the force is not filtered again."""
+
+
+class SectionEvaluations:
+    """Evaluations over other sections, for a class with the other parts of `ChannelSignals`."""
+
+    @cached_property
+    def _sections(self) -> dict[tuple[float, float], Evaluation]:
+        return {}
+
+    def evaluate_section(self: ChannelSignals, section: tuple[float, float]) -> Evaluation:
+        """Evaluate the quantities over another section [m, m], once; the force is not filtered again."""
+        if section not in self._sections:
+            moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
+            self._sections[section] = self.evaluate_channels(moved, replace(self.line, section=section))
+        return self._sections[section]
 
 
 def build_empty_evaluation(reason: str, pantographs: Iterable[int]) -> Evaluation:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import Evaluation, SectionEvaluations, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals, has_gaps
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
@@ -36,7 +36,7 @@ MOST_NAMES = 20
 
 
 @dataclass(frozen=True)
-class PreparedRecord:
+class PreparedRecord(SectionEvaluations):
     """Signals of a measured record."""
 
     pantographs: dict[int, PantographSignals]
@@ -75,18 +75,6 @@ class PreparedRecord:
     def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
         """Evaluate the quantities of other channels over the analysis section."""
         return replace(self, pantographs=dict(pantographs), line=line).evaluation
-
-    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Evaluate the quantities over another section [m, m], once; the force is not filtered again."""
-        if section not in self._sections:
-            moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-            self._sections[section] = self.evaluate_channels(moved, replace(self.line, section=section))
-        return self._sections[section]
-
-    @cached_property
-    def _sections(self) -> dict[tuple[float, float], Evaluation]:
-        """Evaluations of other sections, which several components of the uncertainty share."""
-        return {}
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,15 @@ Both are bounds of an error, not scatter. A value inside a limit counts only if 
 fewer samples or digits therefore does not pass where the whole record fails.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import Protocol
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.evaluation import Evaluation, SectionedSignals, Value, ValuesByOwner
+from pantocheck.conformance.quantities.evaluation import ChannelSignals, Evaluation, Value, ValuesByOwner
 from pantocheck.conformance.quantities.force_quantities import LINE_QUANTITIES, PANTOGRAPH_QUANTITIES
-from pantocheck.conformance.quantities.line_signals import LineSignals
-from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.uncertainty import Component
 
 SAME_NUMBER = 1e-7
@@ -40,21 +37,6 @@ SINGLE_EXTREMES = frozenset(quantity.name for quantity in PANTOGRAPH_QUANTITIES 
 
 SAME_RATE = 0.999
 """Share of a rate from which a record has the same rate."""
-
-
-class ChannelSignals(SectionedSignals, Protocol):
-    """Signals whose quantities can be computed from changed channels."""
-
-    @property
-    def pantographs(self) -> Mapping[int, PantographSignals]:
-        """Signals by number from 1."""
-
-    @property
-    def line(self) -> LineSignals:
-        """Uplift at the supports."""
-
-    def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
-        """Quantities of other channels in the same section."""
 
 
 def sampling_component(signals: ChannelSignals, full_rate_Hz: float | None) -> Component:

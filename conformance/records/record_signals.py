@@ -1,10 +1,10 @@
 """Signals of a record, filtered once and shared by quantities, traces, section spread and consistency checks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
+from pantocheck.conformance.quantities.evaluation import Evaluation, SectionEvaluations, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
@@ -13,7 +13,7 @@ from pantocheck.conformance.records.record import Record
 
 
 @dataclass(frozen=True)
-class RecordSignals:
+class RecordSignals(SectionEvaluations):
     """Signals of a record over its analysis section."""
 
     record: Record
@@ -59,18 +59,6 @@ class RecordSignals:
     def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
         """Evaluate the quantities of other channels over the analysis section."""
         return self._add_stretches(evaluate_signals(pantographs, line), pantographs)
-
-    def evaluate_section(self, section: tuple[float, float]) -> Evaluation:
-        """Evaluate the quantities over another analysis section [m, m], once; the force is not filtered again."""
-        if section not in self._sections:
-            moved = {number: replace(signals, section=section) for number, signals in self.pantographs.items()}
-            self._sections[section] = self.evaluate_channels(moved, replace(self.line, section=section))
-        return self._sections[section]
-
-    @cached_property
-    def _sections(self) -> dict[tuple[float, float], Evaluation]:
-        """Evaluations of other sections, which several components of the uncertainty share."""
-        return {}
 
     def _add_stretches(self, evaluation: Evaluation, pantographs: Mapping[int, PantographSignals]) -> Evaluation:
         """Add the quantities outside of the overlaps."""
