@@ -171,7 +171,8 @@ class PantographSignals:
         """Samples inside the analysis section.
 
         Raises:
-            SectionNotCovered: The record begins after the start or ends before the end of the section.
+            SectionNotCovered: The record begins after the start or ends before the end of the section, or the section
+                lies between two samples.
         """
         start, end = self.section
         # One sample of tolerance: a section that ends with the record ends between two samples.
@@ -182,6 +183,8 @@ class PantographSignals:
                 f"but the analysis section extends from {start:g} m to {end:g} m"
             )
         first, last = np.searchsorted(self.position, [start - 1e-9, end - 1e-9])
+        if first >= last:
+            raise SectionNotCovered(f"no sample lies in the analysis section from {start:g} m to {end:g} m")
         return slice(int(first), int(last))
 
     @property
