@@ -118,7 +118,7 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
     """
     if formats is not None:
         options["formats"] = split_names(formats)
-    texts = {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
+    texts = {key: _state_option(value) for key, value in options.items()}
     base = {} if plan is None else read_plan(plan).model_dump(exclude_none=True)
     given = {key: value for key, value in texts.items() if value is not None}
     if isinstance(stated := given.pop("administration", None), dict) and stated:
@@ -128,6 +128,13 @@ def build_options(plan: Path | None = None, formats: str | None = None, **option
     except ValidationError as error:
         problems = build_input_error(error, Plan, "command line").problems
         raise join_errors([InputError(_name_option(each.where), each.found, each.hint) for each in problems]) from None
+
+
+def _state_option(value: object) -> object:
+    """Value as in a plan: a path is a text, and a repeated option a tuple of texts; None if it is not repeated."""
+    if isinstance(value, list):
+        return tuple(map(str, value)) or None
+    return str(value) if isinstance(value, Path) else value
 
 
 def _name_option(where: str) -> str:

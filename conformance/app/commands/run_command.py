@@ -48,23 +48,44 @@ from pantocheck.conformance.results.report_files import FILES, check_formats
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.system_choice import use_threads
 
+CasesArgument = Annotated[
+    list[str] | None,
+    typer.Argument(
+        help="Ids, globs or paths of cases; default: those that count for the verdicts.", autocompletion=complete_case
+    ),
+]
+PlanOption = Annotated[
+    Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
+]
+SystemOption = Annotated[
+    str | None, typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin")
+]
+LimitsOption = Annotated[
+    Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
+]
+JobsOption = Annotated[
+    int | None, typer.Option(help="Number of processors, for cases and for the meshes of a case.", show_default="1")
+]
+DampingStudyOption = Annotated[
+    bool, typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping.")
+]
+WithReferenceOption = Annotated[
+    bool,
+    typer.Option(
+        "--with-reference",
+        help="Show the values and forces of the reference simulator beside those of the system, for information.",
+    ),
+]
+TimeoutOption = Annotated[
+    float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
+]
+
 
 def run_command(
-    case: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help="Ids, globs or paths of cases; default: those that count for the verdicts.",
-            autocompletion=complete_case,
-        ),
-    ] = None,
-    plan: Annotated[
-        Path | None, typer.Option(help="TOML file with the options of a run; see `pantocheck schema plan`.")
-    ] = None,
+    case: CasesArgument = None,
+    plan: PlanOption = None,
     folders: CasesOption = None,
-    system: Annotated[
-        str | None,
-        typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin"),
-    ] = None,
+    system: SystemOption = None,
     changed: SetOption = None,
     out: OutOption = None,
     formats: FormatsOption = None,
@@ -72,31 +93,16 @@ def run_command(
     trust: TrustOption = None,
     decision: DecisionOption = None,
     verdicts: VerdictsOption = None,
-    limits: Annotated[
-        Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
-    ] = None,
+    limits: LimitsOption = None,
     accept_unconfirmed: AcceptUnconfirmedOption = None,
     baseline: BaselineOption = None,
     drift: DriftOption = None,
     administration: AdministrationOption = None,
     report_number: ReportNumberOption = None,
-    jobs: Annotated[
-        int | None, typer.Option(help="Number of processors, for cases and for the meshes of a case.", show_default="1")
-    ] = None,
-    damping_study: Annotated[
-        bool,
-        typer.Option("--damping-study", help="Run every case also with benchmark, initial and updated damping."),
-    ] = False,
-    with_reference: Annotated[
-        bool,
-        typer.Option(
-            "--with-reference",
-            help="Show the values and forces of the reference simulator beside those of the system, for information.",
-        ),
-    ] = False,
-    timeout: Annotated[
-        float | None, typer.Option(help="Time limit of an external program per case [s].", show_default="600")
-    ] = None,
+    jobs: JobsOption = None,
+    damping_study: DampingStudyOption = False,
+    with_reference: WithReferenceOption = False,
+    timeout: TimeoutOption = None,
 ) -> CommandOutput:
     """Run and grade cases on a system; write a certificate.
 
@@ -118,26 +124,21 @@ def run_command(
 
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
     """
+    settings = {"trust": trust, "decision": decision, "verdicts": verdicts, "limits": limits, "baseline": baseline}
+    run = {"system": system, "jobs": jobs, "damping_study": damping_study or None, "timeout_s": timeout}
     options = build_options(
         plan,
-        cases=tuple(case) if case else None,
-        case_folders=tuple(map(str, folders)) if folders else None,
-        set=tuple(changed) if changed else None,
-        system=system,
+        formats,
+        cases=case,
+        case_folders=folders,
+        set=changed,
         out=out,
-        formats=formats,
         language=language,
-        trust=trust,
-        decision=decision,
-        verdicts=verdicts,
-        limits=limits,
-        accept_unconfirmed=tuple(accept_unconfirmed) if accept_unconfirmed else None,
-        baseline=baseline,
+        accept_unconfirmed=accept_unconfirmed,
         drift_pct=drift,
         administration=read_stated_administration(administration, report_number),
-        jobs=jobs,
-        damping_study=damping_study or None,
-        timeout_s=timeout,
+        **settings,
+        **run,
     )
     if with_reference and options.system == "builtin":
         found = "the system under test is the reference simulator"
