@@ -7,16 +7,9 @@ import pytest
 
 pytest.importorskip("cosmic_ray", reason="cosmic-ray is optional: pip install 'pantocheck[mutation]'")
 
-from verification.attacks.mutation import (
-    CoveringTests,
-    Mutant,
-    Worker,
-    draw_sample,
-    list_folders,
-    list_mutants,
-    list_statement_lines,
-    name_definitions,
-)
+from verification.attacks.covering_tests import CoveringTests, list_statement_lines, name_definitions
+from verification.attacks.mutants import Mutant, draw_sample, list_folders, list_mutants
+from verification.attacks.mutation import Worker
 
 SOURCE = '''"""A docstring with 1 number."""
 

@@ -6,11 +6,8 @@ OUT is a folder outside the checkout; the same command continues an ended run. M
 """
 
 import argparse
-import ast
 import contextlib
-import difflib
 import filecmp
-import hashlib
 import json
 import os
 import queue
@@ -21,24 +18,20 @@ import subprocess
 import sys
 import threading
 import tomllib
-from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from cosmic_ray.ast import ast_nodes, get_ast
-from cosmic_ray.mutating import mutate_code
-from cosmic_ray.plugins import get_operator
 from scipy.stats import binomtest
 
+from verification.attacks.covering_tests import CoveringTests
+from verification.attacks.mutants import Mutant, draw_sample, list_changes, list_folders
+
 CHECKOUT = Path(__file__).parents[2]
-ROOTS = ("model", "conformance")
 TESTED = ("tests/model", "tests/conformance")
 COPIED = ("conformance", "model", "pantocheck", "reference_cases", "templates", "tests", "verification", "docs")
 COPIED += ("examples", "pyproject.toml", "pytest_pantocheck.py", "README.md", "CHANGELOG.md")
-SEED = 20261122
 SERVER = Path(__file__).with_name("fork_server.py")
 SUFFICIENT = 0.9
 """Share of killed mutants that every folder needs."""
@@ -48,43 +41,6 @@ SLOWER, EXTRA_S = 3.0, 30.0
 """A mutant whose tests need more than this multiple of their processor time, and this time [s], counts as killed."""
 IDLE = 20.0
 """A mutant whose tests take this multiple of their largest processor time waits for ever, and counts as killed."""
-NOT_FOR_TESTS, ASSERTION = re.compile(r"\s*@dataclass\(|if TYPE_CHECKING:"), re.compile(r"\bzip\(.*\bstrict=$")
-"""Lines for the type checker, which finds assignments to frozen fields; text before an assertion of equal lengths."""
-BOUND_TESTS = ("test_bounds_of_keys.py", "test_schemas.py")
-"""Tests of the bounds of all keys of files, which name no model."""
-OPERATORS = tuple(
-    f"core/{name}"
-    for name in (
-        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Lt_LtE", "LtE_Lt", "Gt_GtE", "GtE_Gt", "Lt_Gt", "Gt_Lt")),
-        *(f"ReplaceComparisonOperator_{pair}" for pair in ("Eq_NotEq", "NotEq_Eq", "Is_IsNot", "IsNot_Is")),
-        *(f"ReplaceBinaryOperator_{pair}" for pair in ("Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul")),
-        *("ReplaceUnaryOperator_Delete_USub", "ReplaceUnaryOperator_Delete_Not", "AddNot", "NumberReplacer"),
-        *("ReplaceTrueWithFalse", "ReplaceFalseWithTrue", "ReplaceAndWithOr", "ReplaceOrWithAnd"),
-        *("ReplaceBreakWithContinue", "ReplaceContinueWithBreak", "ZeroIterationForLoop"),
-    )
-)
-
-
-@dataclass(frozen=True)
-class Mutant:
-    """One change of one file."""
-
-    file: str
-    operator: str
-    occurrence: int
-    """Number of the place among those of the operator in the file, from 0."""
-
-    @property
-    def order(self) -> str:
-        """Place in the sample: a digest, so that a change of one file leaves the sample of the others as it is."""
-        return hashlib.sha256(f"{SEED} {self.file} {self.operator} {self.occurrence}".encode()).hexdigest()
-
-    def mutate(self, source: str) -> str:
-        """Source of the file with the change."""
-        changed = mutate_code(source, get_operator(self.operator)(), self.occurrence)
-        if changed is None:
-            raise ValueError(f"{self.file} has no place {self.occurrence} of {self.operator}")
-        return str(changed)
 
 
 @dataclass
@@ -152,119 +108,6 @@ class Worker:
         path.write_text(source, "utf-8")
         for compiled in (path.parent / "__pycache__").glob(f"{path.stem}.*"):
             compiled.unlink()
-
-
-class CoveringTests:
-    """Test files that execute each line of the product, from the coverage of one run of all tests."""
-
-    def __init__(self, root: Path, records: Iterable[dict[str, Any]]) -> None:
-        self.root = root
-        self.lines: dict[str, dict[int, set[str]]] = {}
-        self.seconds: dict[str, float] = {}
-        for record in records:
-            self.seconds |= record["seconds"]
-            for file, lines in record["lines"].items():
-                known = self.lines.setdefault(file, {})
-                for line, tests in lines.items():
-                    known.setdefault(int(line), set()).update(tests)
-
-    def select(self, file: str, line: int) -> list[str]:
-        """Test files that execute a line: the one of its name, those of the same folder, then the fastest.
-
-        A line that runs at import belongs to every test of its file; those that mention its definition come first. The
-        tests of all bounds precede them where the statement has the bounds of a key.
-        """
-        source = (self.root / file).read_text("utf-8")
-        lines, names = self.lines.get(file, {}), name_definitions(source, line)
-        statement = list_statement_lines(source, line)
-        found = set().union(*(lines.get(number, set()) for number in statement)) or set().union(*lines.values())
-        has_bounds = any("Field(" in source.splitlines()[number - 1] for number in statement)
-        bounds = {test for test in self.seconds if has_bounds and Path(test).name in BOUND_TESTS}
-        mention = re.compile(rf"\b({'|'.join(names)})\b")
-
-        def rank(test: str) -> tuple[bool, bool, bool, bool, float]:
-            text, path = (self.root / test).read_text("utf-8"), Path(test)
-            near = path.parent == "tests" / Path(file).parent
-            is_named = path.name == f"test_{Path(file).name}"
-            return test not in bounds, not is_named, not mention.search(text), not near, self.seconds[test]
-
-        return sorted(found | bounds, key=rank)
-
-
-def list_statement_lines(source: str, line: int) -> range:
-    """Lines of the innermost statement at a line; of a compound statement, those before its first inner one."""
-    inside = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.stmt)]
-    inside = [node for node in inside if node.lineno <= line <= (node.end_lineno or 0)]
-    if not inside:
-        return range(line, line + 1)
-    node = max(inside, key=lambda item: item.lineno)
-    body = getattr(node, "body", None)
-    return range(node.lineno, body[0].lineno if body else (node.end_lineno or line) + 1)
-
-
-def _list_imports(path: Path) -> Iterator[str]:
-    """Names of imported modules anywhere in a file."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
-
-
-def name_definitions(source: str, line: int) -> list[str]:
-    """Name of the public function, class or constant at a line; elsewhere those of all public ones of the file."""
-    public = [n for n in ast.parse(source).body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
-    changed = [node.name for node in public if node.lineno <= line <= (node.end_lineno or 0)]
-    constant = re.match(r"[A-Z][A-Z0-9_a-z]+", source.splitlines()[line - 1])
-    return changed or ([constant[0]] if constant else []) or [node.name for node in public]
-
-
-def list_folders(root: Path) -> dict[str, list[str]]:
-    """Files with code of every folder below `model` and `conformance`, subfolders included; no use of numba."""
-    folders: dict[str, list[str]] = {}
-    for top in ROOTS:
-        for path in sorted((root / top).rglob("*.py")):
-            parts = path.relative_to(root).parts
-            imports = set(_list_imports(path))
-            if "numba" not in imports and "llvmlite" not in imports:
-                folders.setdefault("/".join(parts[:2]) if len(parts) > 2 else top, []).append("/".join(parts))
-    return folders
-
-
-def list_mutants(root: Path, file: str) -> Iterator[Mutant]:
-    """All mutants of a file but those of kernels; annotations hold none of these operators but numbers of a literal."""
-    source = (root / file).read_text("utf-8")
-    lines, nodes = source.splitlines(), list(ast_nodes(get_ast(source)))
-    functions = [node for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
-    kernels = [n for n in functions if any(ast.unparse(d).endswith("kernel") for d in n.decorator_list)]
-    compiled = {line for node in kernels for line in range(node.lineno, (node.end_lineno or 0) + 1)}
-    for name in OPERATORS:
-        operator = get_operator(name)()
-        places = [begin for node in nodes for begin, _ in operator.mutation_positions(node)]
-        for occurrence, (line, column) in enumerate(places):
-            text = lines[line - 1]
-            if line not in compiled and not NOT_FOR_TESTS.match(text) and not ASSERTION.search(text[:column]):
-                yield Mutant(file, name, occurrence)
-
-
-def draw_sample(root: Path, files: list[str], size: int, known: list[dict[str, str]]) -> list[Mutant]:
-    """First mutants of a folder in the order of their digests, without those that are listed as equivalent."""
-
-    def is_equivalent(mutant: Mutant) -> bool:
-        listed = [[f"-{item['line']}", f"+{item['mutant']}"] for item in known if item["file"] == mutant.file]
-        changes = list_changes(root, mutant)[1:] if listed else []
-        return [line[0] + line[1:].strip() for line in changes] in listed
-
-    mutants = sorted((m for file in files for m in list_mutants(root, file)), key=lambda mutant: mutant.order)
-    return list(islice((mutant for mutant in mutants if not is_equivalent(mutant)), size))
-
-
-def list_changes(root: Path, mutant: Mutant) -> list[str]:
-    """Number of the changed line, the line, and the changed one."""
-    source = (root / mutant.file).read_text("utf-8")
-    changed = mutant.mutate(source)
-    lines = difflib.unified_diff(source.splitlines(), changed.splitlines(), "", "", "", "", 0, "")
-    return [line for line in lines if not line.startswith(("---", "+++"))]
 
 
 @dataclass

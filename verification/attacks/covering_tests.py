@@ -1,0 +1,66 @@
+"""Choice of the test files for a mutant: those that execute its line, the nearest first."""
+
+import ast
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+BOUND_TESTS = ("test_bounds_of_keys.py", "test_schemas.py")
+"""Tests of the bounds of all keys of files, which name no model."""
+
+
+class CoveringTests:
+    """Test files that execute each line of the product, from the coverage of one run of all tests."""
+
+    def __init__(self, root: Path, records: Iterable[dict[str, Any]]) -> None:
+        self.root = root
+        self.lines: dict[str, dict[int, set[str]]] = {}
+        self.seconds: dict[str, float] = {}
+        for record in records:
+            self.seconds |= record["seconds"]
+            for file, lines in record["lines"].items():
+                known = self.lines.setdefault(file, {})
+                for line, tests in lines.items():
+                    known.setdefault(int(line), set()).update(tests)
+
+    def select(self, file: str, line: int) -> list[str]:
+        """Test files that execute a line: the one of its name, those of the same folder, then the fastest.
+
+        A line that runs at import belongs to every test of its file; those that mention its definition come first. The
+        tests of all bounds precede them where the statement has the bounds of a key.
+        """
+        source = (self.root / file).read_text("utf-8")
+        lines, names = self.lines.get(file, {}), name_definitions(source, line)
+        statement = list_statement_lines(source, line)
+        found = set().union(*(lines.get(number, set()) for number in statement)) or set().union(*lines.values())
+        has_bounds = any("Field(" in source.splitlines()[number - 1] for number in statement)
+        bounds = {test for test in self.seconds if has_bounds and Path(test).name in BOUND_TESTS}
+        mention = re.compile(rf"\b({'|'.join(names)})\b")
+
+        def rank(test: str) -> tuple[bool, bool, bool, bool, float]:
+            text, path = (self.root / test).read_text("utf-8"), Path(test)
+            near = path.parent == "tests" / Path(file).parent
+            is_named = path.name == f"test_{Path(file).name}"
+            return test not in bounds, not is_named, not mention.search(text), not near, self.seconds[test]
+
+        return sorted(found | bounds, key=rank)
+
+
+def list_statement_lines(source: str, line: int) -> range:
+    """Lines of the innermost statement at a line; of a compound statement, those before its first inner one."""
+    inside = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.stmt)]
+    inside = [node for node in inside if node.lineno <= line <= (node.end_lineno or 0)]
+    if not inside:
+        return range(line, line + 1)
+    node = max(inside, key=lambda item: item.lineno)
+    body = getattr(node, "body", None)
+    return range(node.lineno, body[0].lineno if body else (node.end_lineno or line) + 1)
+
+
+def name_definitions(source: str, line: int) -> list[str]:
+    """Name of the public function, class or constant at a line; elsewhere those of all public ones of the file."""
+    public = [n for n in ast.parse(source).body if isinstance(n, ast.FunctionDef | ast.ClassDef) and n.name[0] != "_"]
+    changed = [node.name for node in public if node.lineno <= line <= (node.end_lineno or 0)]
+    constant = re.match(r"[A-Z][A-Z0-9_a-z]+", source.splitlines()[line - 1])
+    return changed or ([constant[0]] if constant else []) or [node.name for node in public]
