@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.cases.profile_file import Profile, load_profile, own_rules
-from pantocheck.conformance.comparison.force_likeness import compare_likeness
+from pantocheck.conformance.comparison.force_likeness import REPEATED_CORRELATION, compare_likeness
 from pantocheck.conformance.comparison.measured_run import compare_measured_run
 from pantocheck.conformance.comparison.profile_grading import grade_record
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
@@ -210,7 +210,7 @@ class LineTests:
 def _repeats(side: RunSide, other: RunSide) -> bool:
     """Whether a run is another one, in any format of file, or that with small changes."""
     likeness = compare_likeness(side.record, other.record)
-    return _identify(side) == _identify(other) or (likeness is not None and likeness.is_copy)
+    return _identify(side) == _identify(other) or (likeness is not None and likeness.exceeds(REPEATED_CORRELATION))
 
 
 def _identify(side: RunSide) -> str:

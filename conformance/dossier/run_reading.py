@@ -10,7 +10,7 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.cases.start_and_section import span_length
-from pantocheck.conformance.comparison.force_likeness import compare_likeness
+from pantocheck.conformance.comparison.force_likeness import COPY_CORRELATION, compare_likeness
 from pantocheck.conformance.comparison.measured_run import list_run_supports
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
@@ -73,7 +73,7 @@ def find_dependence(simulated: RunSide, measured: RunSide) -> str | None:
     if first.pantographs == second.pantographs and (number := find_equal_pantograph(first, second)) is not None:
         return f"the contact force of pantograph {number} is the same in both records: one is a copy of the other"
     likeness = compare_likeness(first, second)
-    if likeness is not None and likeness.is_copy:
+    if likeness is not None and likeness.exceeds(COPY_CORRELATION):
         return f"{likeness.describe()}: one record is a copy of the other, with small changes"
     return None
 

@@ -203,7 +203,7 @@ def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
         force: Other force, (m,) [N].
 
     Returns:
-        The best part, between samples by a parabola; None if the force is shorter than the part, or constant.
+        The best part, between samples by a parabola; None if the force is shorter than the part, or the part constant.
     """
     n = part.size
     deviation, whole = part - part.mean(), force - force.mean()
@@ -225,7 +225,7 @@ def find_likeness(part: RealArray, force: RealArray) -> Likeness | None:
         if curvature < 0:
             shift = float((before - after) / (2 * curvature))
             peak -= float((before - after) ** 2 / (8 * curvature))
-    return Likeness(float(np.sqrt(max(1 - min(peak, 1.0) ** 2, SMALLEST_SQUARE))), best + shift)
+    return Likeness(float(np.sqrt(max(1 - np.clip(peak, 0.0, 1.0) ** 2, SMALLEST_SQUARE))), best + shift)
 
 
 def _compare_uplifts(case: Case, signals: RecordSignals, pair: tuple[int, int], delay: float) -> RealArray:
