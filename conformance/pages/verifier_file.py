@@ -9,6 +9,7 @@ from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.pages.page_code import PageCode, join_scripts
 from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.report_files import LANGUAGES
 
 VERIFIER_NAME = "pantocheck-verifier.html"
@@ -30,7 +31,9 @@ READ_WORDS = ("Case", "Digest of the results", "Pantograph", "Value", "Verdict")
 def build_verifier(version: str) -> bytes:
     """The verifier of a version of the suite; equal versions give equal bytes."""
     script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
-    script = script.replace('"@languages@"', json.dumps(_list_read_words(), sort_keys=True))
+    labels = {name: quantity.label for name, quantity in QUANTITIES.items()}
+    for name, table in (("languages", _list_read_words()), ("labels", labels)):
+        script = script.replace(f'"@{name}@"', json.dumps(table, sort_keys=True))
     style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
     page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
     library = (SIGNATURE_LIBRARY / "pkijs.min.js").read_text("utf-8")

@@ -2,6 +2,9 @@
 const HEADINGS = { contradicted: "Contradictions", incomplete: "Not compared in full", proved: "Proved", open: "Not proved" };
 const output = document.getElementById("report");
 
+// Printed names of the quantities.
+const LABELS = "@labels@";
+
 function element(name, text = "", attributes = {}) {
   const space = name === "svg" || attributes.svg ? "2000/svg" : "1999/xhtml";
   const made = document.createElementNS(`http://www.w3.org/${space}`, name);
@@ -60,7 +63,7 @@ const names = (line, { id }, row) => [`${id}:`, `${id},`].some((start) => line.s
 function tabulate(result, contradictions) {
   const table = element("table"), add = (cells, name, attributes) => {
     const row = element("tr", "", attributes);
-    row.append(...cells.map((cell) => element(name, cell)));
+    row.append(...cells.map((cell) => (cell instanceof Node ? cell : element(name, cell))));
     table.append(row);
   };
   add(["Quantity", "Pantograph", "Value", "Uncertainty", "Limits", "Margin", "Verdict"], "th");
@@ -70,7 +73,9 @@ function tabulate(result, contradictions) {
     const [value, margin] = [text(row.value, 6, row.unit), text(row.margin, 2)];
     const wrong = contradictions.some((line) => names(line, result, row)), mark = markRows(row.verdict, [row]);
     const verdict = wrong ? `${mark} (contradicted)` : mark;
-    add([row.quantity, row.pantograph || "line", value, describeWidth(row, result), limits, margin, verdict], "td", wrong && { class: "contradicted" });
+    const first = element("td", LABELS[row.quantity] ? `${LABELS[row.quantity]} ` : "");
+    first.append(element("code", row.quantity));
+    add([first, row.pantograph || "line", value, describeWidth(row, result), limits, margin, verdict], "td", wrong && { class: "contradicted" });
   }
   return table;
 }
