@@ -26,6 +26,7 @@ from pantocheck.conformance.documents.authenticity_check import (
 )
 from pantocheck.conformance.documents.document_reading import list_suite_differences
 from pantocheck.conformance.documents.recomputation import ROUNDING_OF_DRAWS
+from pantocheck.conformance.documents.row_check import compare_row
 from pantocheck.conformance.execution.runner import run_case
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_grading import grade_case
@@ -101,8 +102,7 @@ def _compare(results: Results, result: CaseResult, computed: RecomputedRecord, n
     differences = [*numbers.differences, *(f"uncertainty, {text}" for text in widths.differences)]
     if (graded := computed.graded) is not None and results.system.kind == "record":
         differences += compare_numbers(_select_samples(result), _select_samples(graded), ROUNDING_OF_DRAWS).differences
-    if graded and graded.record and result.record and result.record.state != graded.record.state:
-        differences.append(f"state of the record '{result.record.state}' stated, '{graded.record.state}' computed")
+    differences += [] if graded is None else _compare_record(result, graded, RECORD_TOLERANCE)
     largest = max(numbers.largest, widths.largest)
     yield judge_details(
         f"{result.id}: {numbers.count} quantities follow from the samples of {name} (largest relative difference "
@@ -110,6 +110,21 @@ def _compare(results: Results, result: CaseResult, computed: RecomputedRecord, n
         f"{result.id}: the results do not follow from the samples of {name}.",
         differences,
     )
+
+
+def _compare_record(stated: CaseResult, computed: CaseResult, tolerance: float) -> Iterator[str]:
+    """Differences of the rows of the consistency checks, and of the state of the record."""
+    if stated.record is None or computed.record is None:
+        return
+    rows, others = ({row.check: row for row in result.record.checks} for result in (stated, computed) if result.record)
+    if list(rows) != list(others):
+        yield f"the checks {', '.join(rows)} stated, {', '.join(others)} computed"
+    for row, other in ((row, others[name]) for name, row in rows.items() if name in others):
+        yield from compare_row(row, other.basis, tolerance)
+        if row.outcome != other.outcome:
+            yield f"check '{row.check}': outcome '{row.outcome}' stated, '{other.outcome}' computed"
+    if stated.record.state != computed.record.state:
+        yield f"state of the record '{stated.record.state}' stated, '{computed.record.state}' computed"
 
 
 def _name_others(result: CaseResult, computed: RecomputedRecord) -> Iterator[DocumentCheck]:
@@ -276,7 +291,7 @@ def _rerun(
     return NumberComparison(
         numbers.count + samples.count,
         max(numbers.largest, samples.largest),
-        (*samples.differences, *numbers.differences),
+        (*samples.differences, *_compare_record(stated, result, tolerance), *numbers.differences),
     )
 
 

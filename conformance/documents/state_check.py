@@ -75,8 +75,9 @@ def _check_cause(case: CaseResult, row: CheckRow) -> Iterator[str]:
     others = {} if case.record is None else {other.check: other for other in case.record.checks}
     applied = [] if samples is None else [part.filter_applied_Hz for part in samples.pantographs.values()]
     if isinstance(basis, Measured):
-        if "causal filter" in basis.measure and samples is not None and None in applied:
-            yield "a causal filter is named, but the force was delivered without a filter"
+        for_filtered = {measure.name for check in RECORD_CHECKS for measure in check.measures if measure.for_filtered}
+        if basis.measure in for_filtered and samples is not None and None in applied:
+            yield f"'{basis.measure}' needs a filtered force, but the force was delivered without a filter"
         return
     if basis.cause == "named by another check" and all(other.outcome != "unchecked" for other in others.values()):
         yield "no other check names a missing channel"

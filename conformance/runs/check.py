@@ -66,6 +66,8 @@ class Measure:
     """Thresholds by the outcome beyond them."""
     side: Literal["above", "below"] = "above"
     """Side of the thresholds on which the condition does not hold."""
+    for_filtered: bool = False
+    """Whether the number can decide only where the force was delivered filtered."""
 
     def compare(self, number: float, part: str = "", text: str = "") -> Finding:
         """Finding on a number of a part of the record; a number that is not known lies beyond every threshold.

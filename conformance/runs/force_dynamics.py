@@ -38,6 +38,7 @@ LATE_MISFIT, LATE_GAIN_ERROR = (
         measure,
         name=f"{measure.name} behind a causal filter",
         thresholds={"doubt": measure.thresholds["contradiction"]},
+        for_filtered=True,
     )
     for measure in (MISFIT, GAIN_ERROR)
 )

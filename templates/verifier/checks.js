@@ -2,7 +2,8 @@
 const STATEMENT = "self-declared conformance report, in the style of EN 50318";
 const STEPS = ["pantograph_model", "static_check", "reference_models", "line_test", "limits_of_validity"];
 
-// Consistency checks: causes of an outcome without a number, and measures with unit, side and thresholds.
+// Consistency checks: causes of an outcome without a number, and measures with unit,
+// side, thresholds, and whether they need a filtered force.
 const RECORD_CHECKS = {
   "coverage": [["holds", "does not hold"], {}],
   "motion": [[], {
@@ -24,8 +25,8 @@ const RECORD_CHECKS = {
   "dynamics": [["not possible"], {
     "misfit of the motion": ["", "above", {"contradiction": 0.1}],
     "error of the gain of the force": ["", "above", {"contradiction": 0.03}],
-    "misfit of the motion behind a causal filter": ["", "above", {"doubt": 0.1}],
-    "error of the gain of the force behind a causal filter": ["", "above", {"doubt": 0.03}]
+    "misfit of the motion behind a causal filter": ["", "above", {"doubt": 0.1}, true],
+    "error of the gain of the force behind a causal filter": ["", "above", {"doubt": 0.03}, true]
   }],
   "implied force": [["not possible", "does not apply", "named by another check"], {
     "largest error of the force up to the cut-off": ["", "above", {"doubt": 0.15}],
@@ -193,7 +194,7 @@ function checkBasis({ check, outcome, basis }) {
     const known = [...causes, "not reached"].includes(basis.cause);
     return known ? found : [...found, `'${basis.cause}' stated; this check has a number`];
   }
-  const stated = [basis.unit, basis.side, basis.thresholds], installed = measures[basis.measure];
+  const stated = [basis.unit, basis.side, basis.thresholds], installed = measures[basis.measure]?.slice(0, 3);
   if (!installed || compareTrees(stated, installed, 0).length) {
     found.push(`the number or the thresholds of '${basis.measure}' are not those of the installed suite`);
   }
@@ -204,8 +205,8 @@ function checkBasis({ check, outcome, basis }) {
 function checkCause({ record, signals, quantities, run }, { check, basis }) {
   const applied = Object.values(signals?.pantographs ?? {}).map((part) => part.filter_applied_Hz ?? null);
   if (basis.kind === "measured") {
-    const causal = basis.measure.includes("causal filter") && applied.includes(null);
-    return causal ? ["a causal filter is named, but the force was delivered without a filter"] : [];
+    const forFiltered = RECORD_CHECKS[check]?.[1][basis.measure]?.[3] && applied.includes(null);
+    return forFiltered ? [`'${basis.measure}' needs a filtered force, but the force was delivered without a filter`] : [];
   }
   if (basis.cause === "named by another check" && !record.checks.some((row) => row.outcome === "unchecked")) {
     return ["no other check names a missing channel"];

@@ -26,6 +26,7 @@ from pantocheck.conformance.pages.translation import translate
 from pantocheck.conformance.pages.two_verdicts import mark_rows
 from pantocheck.conformance.pages.verifier_file import SIGNATURE_LIBRARY, VERIFIER_FOLDER, build_verifier
 from pantocheck.conformance.pages.words import read_words
+from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.runs.record_checks import RECORD_CHECKS
@@ -177,7 +178,7 @@ def test_headings_and_rows_of_the_shown_report(genuine: Genuine, verifier_page: 
     assert "sha256:" in verifier_page.inner_text(".small")
     marked = verifier_page.locator("tr.contradicted")
     assert marked.count() == 1
-    assert marked.locator("td").first.inner_text() == row["quantity"]
+    assert marked.locator("td").first.inner_text() == f"{QUANTITIES[row['quantity']].label} {row['quantity']}"
     assert marked.locator("td").last.inner_text().endswith("(contradicted)")
     texts = [mark_rows(entry["verdict"], [Criterion.model_validate(entry)]) for entry in case["criteria"]]
     shown = verifier_page.locator("td:last-child").all_inner_texts()
@@ -287,7 +288,10 @@ def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
     assert table == {
         check.name: [
             [*check.causes],
-            {part.name: [part.unit, part.side, {**part.thresholds}] for part in check.measures},
+            {
+                part.name: [part.unit, part.side, {**part.thresholds}, *([True] if part.for_filtered else [])]
+                for part in check.measures
+            },
         ]
         for check in RECORD_CHECKS
     }

@@ -45,6 +45,15 @@ def change_quantity(results: Results, name: str, factor: float) -> Results:
     return Results.model_validate(content)
 
 
+ROW_CHANGES = (
+    ("coincidence", lambda row: row["basis"].update(number=row["basis"]["number"] + 1e-5), "stated"),
+    ("support passing", lambda row: row["basis"]["thresholds"].update(contradiction=9.0), "contradiction beyond 9"),
+    ("motion", lambda row: row.update(outcome="doubt"), "outcome 'doubt' stated, 'confirmed' computed"),
+    ("copy", lambda row: row["basis"].update(cause="holds"), "'holds' stated, 'does not apply' follows"),
+)
+"""Changes of a row, none of which another number of the results shows; 1e-5 is ten times the tolerance."""
+
+
 def test_quantities_follow_from_the_graded_record_and_no_other(case_250: Case, record_file: Path) -> None:
     results = run_cases([case_250], open_record_folder(record_file.parent))
     quantities, digest = check_record_quantities(results, record_file)
@@ -55,6 +64,14 @@ def test_quantities_follow_from_the_graded_record_and_no_other(case_250: Case, r
     content["cases"][0]["record"]["state"] = "contradicted"
     changed, _ = check_record_quantities(Results.model_validate(content), record_file)
     assert "state of the record 'contradicted' stated" in changed.details[0]
+    for name, change, text in ROW_CHANGES:
+        content = results.to_dict()
+        row = next(row for row in content["cases"][0]["record"]["checks"] if row["check"] == name)
+        change(row)
+        changed, _ = check_record_quantities(Results.model_validate(content), record_file)
+        assert len(changed.details) == 1
+        assert changed.details[0].startswith(f"check '{name}': ")
+        assert text in changed.details[0]
     other = Wave(mean=118.0).record(case_250)
     write_record(record_file, other, case=case_250.id, system={"name": "wave", "version": "1"}, run={})
     quantities, digest = check_record_quantities(results, record_file)

@@ -65,9 +65,21 @@ def test_outcome_is_the_worst_one_beyond_its_threshold() -> None:
 def test_rows_of_a_record_hold_and_those_that_need_more_are_named(graded: Tree) -> None:
     found = list_found(CaseResult.model_validate(graded))
     assert (found["state"], found["signals"]) == ([], [])
-    repeated = {check.name for check in REPEATED}
-    others = [check.name for check in RECORD_CHECKS if check.name not in repeated]
-    assert found["open"] == [f"{graded['id']}: {', '.join(others)}; they need the whole record"]
+    others = "motion, support passing, coincidence, roll-off" + (", copy" if graded["id"] == CASES[1] else "")
+    assert found["open"] == [f"{graded['id']}: {others}; they need the whole record"]
+
+
+def test_copy_among_the_embedded_signals_is_found(graded: Tree) -> None:
+    """The second pantograph has the signals of the first at the same places; its row still states another force."""
+    if graded["id"] != CASES[1]:
+        return
+    changed = CaseResult.model_validate(graded).model_dump(mode="json")
+    changed["signals"]["pantographs"]["2"] = changed["signals"]["pantographs"]["1"]
+    [row] = [row for row in changed["record"]["checks"] if row["check"] == "copy"]
+    stated = Measured.model_validate(row["basis"])
+    assert (row["outcome"], stated.measure) == ("confirmed", "difference from the force of another pantograph")
+    found = list_found(CaseResult.model_validate(changed))["signals"]
+    assert any("the force of pantograph 1 is a copy of that of pantograph 2: at most 1e-06 follows" in x for x in found)
 
 
 @pytest.mark.parametrize("check", [check.name for check in RECORD_CHECKS if check.measures])
