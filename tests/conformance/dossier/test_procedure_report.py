@@ -1,22 +1,30 @@
 """Certificate of a dossier: order of the procedure, statement, JUnit, badge, summary, and detection of changes."""
 
 import copy
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
+from helpers.command_line import pantocheck
 from helpers.shown_page import certify, summarise
 from helpers.toml_edit import change_keys
 from pantocheck.conformance.core.figure_data import Chart
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import step_sections
+from pantocheck.conformance.pages.certificate_page import build_certificate
 from pantocheck.conformance.pages.ci_reports import render_junit
+from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, list_step_reasons
 from pantocheck.conformance.pages.two_verdicts import render_badge
 from pantocheck.conformance.results.procedure_format import Procedure
+from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
 
 STEPS = [
@@ -160,3 +168,25 @@ def test_runs_on_another_line_are_no_evidence_for_the_claimed_speeds(
     points = {series.label: series.y for series in charts[-1].series}
     assert points.pop("another line") == [999.0]
     assert sorted(speed for speeds in points.values() for speed in speeds) == sorted(item["speed_km_h"] for item in own)
+
+
+@pytest.mark.parametrize(
+    ("language", "suffix"),
+    [
+        ("en", "json"),
+        *(pytest.param(*pair, marks=pytest.mark.thorough) for pair in product(LANGUAGES, ("html", "pdf"))),
+    ],
+)
+def test_unsigned_dossier_is_not_accepted(results: Results, tmp_path: Path, language: Language, suffix: str) -> None:
+    """Exit code 1 whatever the verdict: anyone can have written it."""
+    document, path = replace(build_certificate(results), language=language), tmp_path / f"dossier.{suffix}"
+    match suffix:
+        case "json":
+            path.write_bytes(results.to_json())
+        case "html":
+            path.write_text(render_html(document), "utf-8")
+        case _:
+            path.write_bytes(render_pdf(document))
+    done = pantocheck("verify", path, "--any-verdict")
+    assert (done.exit_code, done.stdout.split(":")[0]) == (1, "UNSIGNED")
+    assert pantocheck("verify", path, "--any-verdict", "--numbers-only").exit_code == 0
