@@ -5,7 +5,7 @@ section give their numbers again. Checks of the motion, of the supports, of the 
 record. The embedded signals show a copy at the same place of the line all the same.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from itertools import permutations
 
@@ -50,28 +50,42 @@ class _EmbeddedSignals(RecordSignals):
 
 def check_rows(results: Results) -> list[DocumentCheck]:
     """Compute the numbers of the consistency checks again, as far as the embedded signals of library cases allow."""
-    proved, differences, others = [], [], []
-    for case in results.cases:
-        if case.record is None or not case.record.checks:
-            continue
-        made = _find_case(case)
-        rows = [row for row in case.record.checks if row.outcome != "not reached"]
-        repeated = set() if made is None else {check.name for check in list_repeated(made)}
-        differences += [f"{case.id}, {text}" for text in _compare_rows(case, made, rows)] if made else []
-        names = {verb: [row.check for row in rows if (row.check in repeated) == verb] for verb in (True, False)}
-        proved += [f"{case.id} ({', '.join(names[True])})"] if names[True] else []
+    proved, differences = [], []
+    for case, made, rows in _list_rows(results):
+        if made is not None:
+            names = ", ".join(row.check for row in rows if _is_repeated(row, made))
+            proved += [f"{case.id} ({names})"] if names else []
+            differences += [f"{case.id}, {text}" for text in _compare_rows(case, made, rows)]
+    text = f"Numbers of consistency checks follow from the embedded signals: {'; '.join(proved)}."
+    wrong = "Numbers of consistency checks do not follow from the embedded signals."
+    return [judge_details(text, wrong, differences)] if proved else []
+
+
+def name_other_rows(results: Results, repeated: Collection[str]) -> list[DocumentCheck]:
+    """Consistency checks whose numbers were not computed again.
+
+    Args:
+        results: Results of a document.
+        repeated: Cases that a record or a new run repeats.
+    """
+    others = []
+    for case, made, rows in _list_rows(results):
+        names = ", ".join(row.check for row in rows if not _is_repeated(row, made))
         reason = "they need the whole record" if made else "they need a library case with embedded signals"
-        others += [f"{case.id}: {', '.join(names[False])}; {reason}"] if names[False] else []
-    checks = []
-    if proved:
-        text = f"Numbers of consistency checks follow from the embedded signals: {'; '.join(proved)}."
-        wrong = "Numbers of consistency checks do not follow from the embedded signals."
-        checks.append(judge_details(text, wrong, differences))
-    if others:
-        checks.append(
-            DocumentCheck("open", "The numbers of these consistency checks (option --record).", tuple(others))
-        )
-    return checks
+        others += [f"{case.id}: {names}; {reason}"] if names and case.id not in repeated else []
+    text = "The numbers of these consistency checks (option --record)."
+    return [DocumentCheck("open", text, tuple(others))] if others else []
+
+
+def _list_rows(results: Results) -> Iterator[tuple[CaseResult, Case | None, list[CheckRow]]]:
+    """Cases with their library case and the rows of the checks that were made."""
+    for case in results.cases:
+        if case.record is not None and case.record.checks:
+            yield case, _find_case(case), [row for row in case.record.checks if row.outcome != "not reached"]
+
+
+def _is_repeated(row: CheckRow, case: Case | None) -> bool:
+    return case is not None and row.check in {check.name for check in list_repeated(case)}
 
 
 def _find_case(result: CaseResult) -> Case | None:

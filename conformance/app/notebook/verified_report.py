@@ -12,6 +12,7 @@ from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.documents.authenticity_check import DocumentCheck
 from pantocheck.conformance.documents.cms_check import SignatureReport
 from pantocheck.conformance.documents.library_check import check_outside_cases
+from pantocheck.conformance.documents.row_check import name_other_rows
 from pantocheck.conformance.documents.signature_check import check_signatures
 from pantocheck.conformance.documents.verification import DocumentState, Verification, check_origin, verify_document
 from pantocheck.conformance.results.results_format import Results
@@ -102,6 +103,7 @@ def verify_report(
     if rerun:
         checks += repetition.check_rerun(results, catalogue)
         repeated |= repetition.list_known_cases(results, catalogue)
+    checks += name_other_rows(results, repeated)
     verification = verification.add_checks([*checks, *check_origin(signatures)])
     origin = _find_origin(signatures, _is_repeated(results, repeated))
     return VerifiedReport(verification, origin, tuple(facts.signer for facts in signatures.signatures))

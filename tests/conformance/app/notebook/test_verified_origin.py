@@ -26,9 +26,12 @@ def recorded(case_250: Case, tmp_path: Path) -> Results:
 def test_record_shows_the_origin_of_its_case(recorded: Results, tmp_path: Path) -> None:
     path = tmp_path / "results.json"
     path.write_bytes(recorded.to_json())
-    assert verify_report(path).origin == "unsigned"
+    unsigned = verify_report(path)
+    assert unsigned.origin == "unsigned"
     found = verify_report(path, [tmp_path / "records" / "wave.h5"])
     assert (found.origin, found.state, found.authentic, found.signers) == ("repeated", "consistent", False, ())
+    named = [[check for check in report.checks if "option --record" in check.statement] for report in (unsigned, found)]
+    assert [len(checks) for checks in named] == [1, 0]
 
 
 def test_every_case_and_a_step_need_their_own_evidence(recorded: Results) -> None:
