@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -31,6 +31,21 @@ KINDS = [
     *("one byte of the file", "last kilobyte removed", "written again"),
 ]
 """Kinds of forged PDFs; the others write the whole file again, and lose the signature in the same way."""
+
+
+class Bench(NamedTuple):
+    """Documents, signers, trusted authorities, the verifier, and a folder."""
+
+    genuine: Genuine
+    signers: Signers
+    roots_file: Path
+    verify: Verify
+    tmp_path: Path
+
+
+@pytest.fixture
+def bench(genuine: Genuine, signers: Signers, roots_file: Path, verify: Verify, tmp_path: Path) -> Bench:
+    return Bench(genuine, signers, roots_file, verify, tmp_path)
 
 
 @pytest.fixture
@@ -111,8 +126,9 @@ def list_holders(signers: Signers) -> Iterator[tuple[str, Sign]]:
 
 
 @pytest.mark.usefixtures("any_key")
-def test_signature_files(genuine: Genuine, signers: Signers, roots_file: Path, verify: Verify, tmp_path: Path) -> None:
+def test_signature_files(bench: Bench) -> None:
     """Trusted and distrusted signers, with and without a trust root: the words of both verifiers are equal."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     html = genuine.html.encode()
     for number, (reason, sign_file) in enumerate(list_holders(signers)):
         document = write(tmp_path / f"{number}", "certificate.html", html)
@@ -126,15 +142,9 @@ def test_signature_files(genuine: Genuine, signers: Signers, roots_file: Path, v
 
 
 @pytest.mark.usefixtures("any_key")
-def test_keys_and_chains_at_their_bounds(
-    genuine: Genuine,
-    signers: Signers,
-    roots_file: Path,
-    verify: Verify,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_keys_and_chains_at_their_bounds(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """Strength of keys and digests, length of a path, an authority that is none, and a root that signs itself."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     from asn1crypto import cms, x509
     from cryptography.hazmat.primitives.asymmetric import ec, ed25519, rsa
     from cryptography.hazmat.primitives.serialization import Encoding
@@ -184,10 +194,9 @@ def test_keys_and_chains_at_their_bounds(
 
 
 @pytest.mark.usefixtures("any_key")
-def test_signatures_of_other_content(
-    genuine: Genuine, signers: Signers, roots_file: Path, verify: Verify, tmp_path: Path
-) -> None:
+def test_signatures_of_other_content(bench: Bench) -> None:
     """A changed document, and signed data that bring their own content, which the library would check instead."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     from asn1crypto import cms
 
     document = write(tmp_path / "a", "certificate.html", genuine.html.encode())
@@ -215,15 +224,9 @@ def test_signatures_of_other_content(
         assert refused["conclusion"] == f"trust roots 'roots.pem': holds {found}"
 
 
-def test_signatures_inside_a_pdf(
-    genuine: Genuine,
-    signers: Signers,
-    roots_file: Path,
-    verify: Verify,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_signatures_inside_a_pdf(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """Signatures in sequence, and every update beside or inside of one: the same changes in the same words."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     document = write(tmp_path / "s", "certificate.pdf", genuine.pdf)
     signed = sign(document, signers.author, place="top-left")
     once = signed.read_bytes()
@@ -253,10 +256,9 @@ def compare_state(verify: Verify, document: Path, roots: Path) -> tuple[list[str
     return found, bool(found)
 
 
-def test_forged_signed_pdfs(
-    genuine: Genuine, signers: Signers, roots_file: Path, verify: Verify, tmp_path: Path
-) -> None:
+def test_forged_signed_pdfs(bench: Bench) -> None:
     """Forged files that are made from a signed document, and bytes changed inside and outside of its range."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     signed = sign(write(tmp_path, "certificate.pdf", genuine.pdf), signers.author)
     content = signed.read_bytes()
     start, end = content.rindex(b"/Contents <") + 11, content.rindex(b">\n/")
@@ -273,10 +275,9 @@ def test_forged_signed_pdfs(
         compare_state(verify, signed, roots_file)
 
 
-def test_browser_without_cryptography(
-    genuine: Genuine, signers: Signers, roots_file: Path, verifier_page: Any, verify: Verify, tmp_path: Path
-) -> None:
+def test_browser_without_cryptography(bench: Bench, verifier_page: Any) -> None:
     """Some browsers offer no cryptography to a local file: a signature is then not checked, and never trusted."""
+    genuine, signers, roots_file, verify, tmp_path = bench
     signed = sign(write(tmp_path, "certificate.pdf", genuine.pdf), signers.author)
     assert verifier_page.evaluate("[location.protocol, isSecureContext]") == ["file:", True]
     reason = "signatures were not checked: this browser offers no cryptography to a local file."
