@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from pantocheck.conformance.app.commands.results_output import EXIT_CODES
+from pantocheck.conformance.app.commands.command_output import EXIT_CODES
 from pantocheck.conformance.cases.library import overlay_limits, read_limits, select_cases
 from pantocheck.conformance.cases.profile_file import load_profile
 from pantocheck.conformance.comparison.profile_grading import assess_record
