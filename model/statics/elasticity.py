@@ -5,11 +5,16 @@ import numpy as np
 from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.irregularity_spline import NO_IRREGULARITY, irregularity_height
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
+from pantocheck.model.fem import beam
 from pantocheck.model.fem.mesh import find_element
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.assembly import point_load
 from pantocheck.model.statics.contact_wires import touched_rows, touched_wires
-from pantocheck.model.statics.static_solver import PointResponse, point_product, static_solver
+from pantocheck.model.statics.static_solver import point_product, static_solver
+from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses
+
+POINTS_AT_ONCE = 240
+"""Positions whose responses are computed together: ten spans, whose responses reach few other ones."""
 
 
 def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array:
@@ -23,17 +28,28 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
     Returns:
         Uplift at the force, mean over these contact wires, (n,) [m].
     """
-    statics = static_solver(line)
-    points = [_point_response(line, float(x)) for x in position]
-    return np.array([statics.deflection_at(point, force) + force * residual for point, residual in points])
+    order = np.argsort(position, kind="stable")
+    uplift = np.empty(position.size)
+    for first in range(0, position.size, POINTS_AT_ONCE):
+        part = order[first : first + POINTS_AT_ONCE]
+        points, residual = _point_responses(line, tuple(position[part].tolist()))
+        uplift[part] = static_solver(line).deflections_at(points, force) + force * residual
+    return uplift
 
 
 @keep_with_line
-def _point_response(line: DiscretisedLine, position: float) -> tuple[PointResponse, float]:
-    """Response to a unit force that the touched contact wires share, and their residual flexibility [m/N]."""
-    rows = touched_rows(line, position)
-    shape = np.mean([point_load(line, row, position) for row in rows], axis=0)
-    return static_solver(line).point_response(shape), _mean_residual(line, rows, position) / len(rows)
+def _point_responses(line: DiscretisedLine, positions: tuple[float, ...]) -> tuple[UnitResponses, Array]:
+    """Responses to a unit force that the touched contact wires share, and their residual flexibility, (n,) [m/N]."""
+    element, share = np.zeros(len(positions), dtype=np.int64), np.zeros((len(positions), 2, line.mesh.rows, 2))
+    residual = np.zeros(len(positions))
+    for n, x in enumerate(positions):
+        rows = touched_rows(line, x)
+        element[n], length, s = find_element(line.mesh.position, x)
+        share[n][:, rows] = beam.shape(s, length).reshape(2, 1, 2) / len(rows)
+        residual[n] = np.mean([residual_flexibility(line.beams.flexibility[row, element[n]], s) for row in rows]) / len(
+            rows
+        )
+    return compute_unit_responses(line, element, share.reshape(len(positions), 2, -1)), residual
 
 
 def rest_height(line: DiscretisedLine, position: Array) -> Array:

@@ -31,16 +31,21 @@ class LineStiffness:
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
-        self._movable = np.zeros(line.beams.free.size)
-        self._movable[free_unknowns(line)] = 1.0
+        self.movable = np.zeros(line.beams.free.size)
+        """One for every movable unknown, zero for the others."""
+        self.movable[free_unknowns(line)] = 1.0
+        self.band = _stiffness_band(line, self.movable)
+        """Lower half of K without held stretches: entry (d, u) couples the unknowns u and u + d."""
         try:
-            factor = cholesky_banded(_stiffness_band(line, self._movable), lower=True, check_finite=False)
+            self.factor = cholesky_banded(self.band, lower=True, check_finite=False)
+            """Its Cholesky factor in the same form."""
         except LinAlgError:
             raise NoEquilibrium("the line at rest is not stable: its stiffness is not positive definite") from None
-        self._factor = factor
         self._stretches = stretch_directions(line)
-        columns = self._stretches.T @ self._solve_band(self._stretches.toarray())
-        self._stretch_flexibility = np.diag(1 / line.stretches.stiffness) + columns
+        self.stretch_columns = self._solve_band(self._stretches.toarray())
+        """Displacements under a unit tension of each held stretch, (n, stretches)."""
+        self.stretch_flexibility = np.diag(1 / line.stretches.stiffness) + self._stretches.T @ self.stretch_columns
+        """Flexibility of the stretches, with that of the line between their ends, (stretches, stretches) [m/N]."""
 
     def solve(self, force: Array) -> Array:
         """Solve K x = f.
@@ -53,15 +58,15 @@ class LineStiffness:
             Deflections and slopes, (n,) or (n, m) [m, -], zero at fixed unknowns.
         """
         displacement = self._solve_band(force)
-        if self._stretch_flexibility.size == 0:
+        if self.stretch_flexibility.size == 0:
             return displacement
-        tension = np.linalg.solve(self._stretch_flexibility, self._stretches.T @ displacement)
-        return displacement - self._solve_band(self._stretches @ tension)
+        tension = np.linalg.solve(self.stretch_flexibility, self._stretches.T @ displacement)
+        return displacement - self.stretch_columns @ tension
 
     def _solve_band(self, force: Array) -> Array:
         """Solution without held stretches."""
-        movable = (force.T * self._movable).T
-        return np.asarray(cho_solve_banded((self._factor, True), movable, check_finite=False))
+        movable = (force.T * self.movable).T
+        return np.asarray(cho_solve_banded((self.factor, True), movable, check_finite=False))
 
 
 @keep_with_line
@@ -71,7 +76,7 @@ def factored_stiffness(line: DiscretisedLine) -> LineStiffness:
 
 
 def _stiffness_band(line: DiscretisedLine, movable: Array) -> Array:
-    """Lower half of the stiffness: entry (d, u) couples the unknowns u and u + d; fixed unknowns have the identity."""
+    """Lower half of the stiffness; fixed unknowns have the identity."""
     beams, connectors, rows = line.beams, line.connectors, line.mesh.rows
     stations = line.mesh.position.size
     band = np.zeros((2 * rows + 2, stations, rows, 2))
