@@ -1,5 +1,6 @@
 """Figures of a case with their captions and alternative texts."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -26,6 +27,7 @@ from pantocheck.conformance.core.figure_style import (
 from pantocheck.conformance.core.results_part import Number, select_single
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.criteria_table import name_figure
+from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panels
 from pantocheck.conformance.pages.study_chart import draw_chart, find_common_range
 from pantocheck.conformance.pages.words import format_plain, format_value
 from pantocheck.conformance.quantities.bands import BANDS, EXTENDED_BAND
@@ -138,8 +140,7 @@ REFERENCE_STYLE: PlotStyle = {
 @render_svg
 def draw_force(trace: Traces, reference: list[float]) -> Figure:
     """Contact force of one pantograph over its reference, if any."""
-    figure = Figure(figsize=(FULL, 2.25))
-    axes = figure.subplots()
+    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.55, right=0.18, top=0.44 if reference else 0.28))
     position = trace.position_m
     if trace.force_N:
         axes.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
@@ -185,8 +186,7 @@ def draw_limited_forces(cases: Sequence[CaseResult]) -> tuple[doc.Figure, ...]:
 @render_svg
 def draw_limited_force(trace: Traces, rows: Sequence[Criterion], width: float) -> Figure:
     """Force up to 20 Hz with the limits of its mean and extremes as grey bands, or as dashed lines of single limits."""
-    figure = Figure(figsize=(width, 0.95))
-    axes = figure.subplots()
+    figure, [[axes]] = add_panels(PanelGrid(width, 0.7, right=0.6, bottom=0.2, top=0.05))
     position, force = trace.position_m, trace.force_20_N or []
     for row in rows:
         if row.lower is not None and row.upper is not None:
@@ -216,8 +216,7 @@ def draw_spectrum(trace: Traces, quantities: Mapping[str, Number], supported_Hz:
     Above the supported frequency [Hz], bands and spectrum are grey.
     """
     frequency, amplitude = trace.spectrum.frequency_Hz, trace.spectrum.amplitude_N
-    figure = Figure(figsize=(HALF, 2.0))
-    axes = figure.subplots()
+    figure, [[axes]] = add_panels(PanelGrid(HALF, 1.3))
     axes.plot(frequency, amplitude, color=INK, linewidth=0.9)
     above: PlotStyle = {"va": "bottom", "fontsize": 7}
     for number, (low, high, quantity) in enumerate(BANDS):
@@ -240,8 +239,7 @@ def draw_spectrum(trace: Traces, quantities: Mapping[str, Number], supported_Hz:
 def draw_histogram(trace: Traces, histogram: Histogram) -> Figure:
     """Histogram of the 20 Hz force with its mean and mean plus and minus three standard deviations."""
     edges, share = histogram.edges_N, histogram.share_pct
-    figure = Figure(figsize=(HALF, 2.0))
-    axes = figure.subplots()
+    figure, [[axes]] = add_panels(PanelGrid(HALF, 1.3))
     axes.set_ylim(0, 1.08 * max(share))
     axes.stairs(share, edges, fill=True, facecolor=SHADES[3], edgecolor=INK, linewidth=0.6)
     if trace.std_N is not None:
@@ -262,6 +260,9 @@ def _draw_levels(draw_line: Callable[..., object], trace: Traces) -> None:
 
 
 # Uplift of the contact wire at the supports.
+UPLIFT_COLUMNS = 4
+"""Columns of the legend."""
+
 MOST_NAMED = 8
 """Largest number of supports with a line style each; of more, only the largest uplift stands out."""
 
@@ -269,8 +270,8 @@ MOST_NAMED = 8
 @render_svg
 def draw_uplift(supports: Sequence[UpliftTrace], criteria: Sequence[Criterion]) -> Figure:
     """Uplift over time at the supports of a case, with the limits of the maximum where its criteria grade it."""
-    figure = Figure(figsize=(FULL, 2.1))
-    axes = figure.subplots()
+    names = len(supports) + 1 if len(supports) <= MOST_NAMED else 3
+    figure, [[axes]] = add_panels(PanelGrid(FULL, 1.4, top=0.12 + 0.16 * math.ceil(names / UPLIFT_COLUMNS)))
     if len(supports) <= MOST_NAMED:
         for number, support in enumerate(supports):
             # Two shades times four dashes: neighbours differ in the shade, and no two of eight curves are equal.
@@ -287,7 +288,7 @@ def draw_uplift(supports: Sequence[UpliftTrace], criteria: Sequence[Criterion]) 
         elif levels:
             axes.axhline(levels[0], color=INK, linewidth=1.2, linestyle=LIMIT_LINE, label="limit of the maximum")
     axes.set(xlabel="time [s]", ylabel="uplift [mm]")
-    add_legend(axes, columns=4)
+    add_legend(axes, UPLIFT_COLUMNS)
     return figure
 
 
