@@ -98,15 +98,14 @@ def near_limit_remarks(
 
     Args:
         value: Graded value; None if there is none.
-        limits: Lower and upper limit. Equal limits have no remark: any error would exceed the distance.
+        limits: Lower and upper limit.
         unit: Unit of the value.
         errors: Errors of the value.
 
     Returns:
         One remark, or none.
     """
-    lower, upper = limits
-    if value is None or lower == upper:
+    if value is None or limits == (None, None):
         return []
     distance, expanded = min(abs(value - limit) for limit in limits if limit is not None), errors.find_expanded(value)
     if not distance < expanded:

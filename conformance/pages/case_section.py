@@ -36,6 +36,8 @@ from pantocheck.conformance.pages.words import format_plain, format_value, name_
 from pantocheck.conformance.results.case_facts_format import ContactLossFacts, EventFacts, StoredRange, StoredValue
 from pantocheck.conformance.results.results_format import CaseResult, InputGroup
 
+AUTHOR = "The notes and the title are the words of the author of this case and are not translated."
+
 
 @dataclass(frozen=True)
 class ShownCase:
@@ -133,7 +135,8 @@ def _list_notes(shown: ShownCase) -> tuple[str, ...]:
     ]
     counted = {source: sum(other == source for _, other in repeated) for _, source in repeated if source is not None}
     references = [f"{count_noun(n, 'note')} as in {source}." for source, n in counted.items()]
-    return (*(note for note, source in repeated if source is None), *references)
+    author = [AUTHOR] if repeated and shown.case.library in ("own", "modified") else []
+    return (*(note for note, source in repeated if source is None), *references, *author)
 
 
 def _select_tables(case: CaseResult) -> list[TextTable]:

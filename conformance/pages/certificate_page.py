@@ -14,7 +14,9 @@ from pantocheck.conformance.pages.criteria_table import (
     build_findings_section,
     describe_criterion,
     error_name,
-    state_common_causes,
+    mark_criterion,
+    mark_rows,
+    state_causes,
 )
 from pantocheck.conformance.pages.document import digest_results, find_date
 from pantocheck.conformance.pages.document_facts import (
@@ -34,9 +36,11 @@ from pantocheck.conformance.pages.first_page import (
 from pantocheck.conformance.pages.quantity_tables import UNCERTAINTY_KEY, list_definitions
 from pantocheck.conformance.pages.scope_page import (
     PROCEDURE_KEY,
-    build_procedure_section,
-    build_scope_section,
+    build_step_table,
+    explain_states,
+    list_dossier_facts,
     list_identity_warnings,
+    list_scope,
     list_sources,
     list_step_reasons,
     name_step,
@@ -48,6 +52,7 @@ from pantocheck.conformance.pages.two_verdicts import (
     build_verdict_section,
     describe_comparison,
     list_criteria,
+    mark_case,
     mark_results,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
@@ -83,7 +88,6 @@ def build_dated_certificate(results: Results, date: int) -> doc.Document:
         blocks=(
             *doc.warn(list_identity_warnings(prepared)),
             answers,
-            *(() if prepared.procedure is not None else build_scope_section(prepared, anchors)),
             *build_findings_section(prepared),
             *((doc.Section("Reasons", reasons, anchor="reasons"),) if reasons else ()),
             *_build_index(prepared, anchors),
@@ -150,6 +154,7 @@ def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
     return (
         doc.SmallPrint(f"Decision rule: {describe_rule(results)}."),
         *(block for section in verdicts for block in section.blocks[1:]),
+        *((doc.SmallPrint(states),) if (states := explain_states(results)) else ()),
         *((doc.SmallPrint(PROCEDURE_KEY),) if results.procedure is not None else ()),
         *((doc.SmallPrint(MARGIN_KEY),) if graded else ()),
         *((doc.SmallPrint(UNCERTAINTY_KEY),) if uncertain else ()),
@@ -178,13 +183,15 @@ def _link_certificates(names: Sequence[str]) -> tuple[doc.Paragraph, ...]:
     return (doc.Paragraph(("Certificate: ", links[0], *separated)),) if links else ()
 
 
-def _build_summary_scope(results: Results) -> tuple[doc.Section, ...]:
+def _build_summary_scope(results: Results) -> tuple[doc.Block, ...]:
     """Steps of the procedure of a dossier with their own criteria, or the verdicts and the scope of a run."""
     if (procedure := results.procedure) is None:
-        return (*build_verdict_section(results), *build_scope_section(results, {}))
+        scope = (doc.Facts(tuple(list_scope(results).items())),) if results.scope else ()
+        return (*scope, *build_verdict_section(results))
     graded = (step for step in procedure.steps if step.criteria)
     sections = (doc.Section(name_step(step), (_build_summary_table(step.criteria),)) for step in graded)
-    return (build_procedure_section(procedure, results.cases), *list_step_reasons(procedure), *sections)
+    facts, table = doc.Facts(list_dossier_facts(procedure)), build_step_table(procedure, results.cases)
+    return (facts, table, doc.SmallPrint(PROCEDURE_KEY), *list_step_reasons(procedure), *sections)
 
 
 def _build_case_summary(case: CaseResult) -> doc.Section:
@@ -194,12 +201,10 @@ def _build_case_summary(case: CaseResult) -> doc.Section:
     blocks += doc.warn(case.warnings)
     blocks += condition_blocks(case)
     if criteria := list_criteria(case, "criteria"):
-        blocks += [
-            *state_common_causes(criteria, case.uncertainty_basis),
-            _build_summary_table(criteria, case.uncertainty_basis),
-        ]
+        blocks += [*state_causes(criteria), _build_summary_table(criteria, case.uncertainty_basis)]
     if (verification := case.verification) is not None:
-        blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", doc.VerdictMark(verification.verdict))))
+        mark = doc.VerdictMark(mark_rows(verification.verdict, verification.criteria))
+        blocks.append(doc.Paragraph((f"{NAMES['verification']}: ", mark)))
         if verification.criteria:
             blocks.append(_build_summary_table(verification.criteria, case.uncertainty_basis))
     if (comparison := case.baseline) is not None:
@@ -207,7 +212,7 @@ def _build_case_summary(case: CaseResult) -> doc.Section:
         blocks.append(doc.Paragraph((f"{NAMES['baseline']}: ", mark, f". {text}")))
         if drifts := list_criteria(case, "baseline"):
             blocks.append(_build_summary_table(drifts, case.uncertainty_basis))
-    return doc.Section(f"{name_verdict(case.verdict)}: {case.title}", mark_values(case, blocks))
+    return doc.Section(f"{name_verdict(mark_case(case))}: {case.title}", mark_values(case, blocks))
 
 
 def _build_summary_table(criteria: Sequence[Criterion], basis: Basis = NO_BASIS) -> doc.Table:
@@ -215,7 +220,7 @@ def _build_summary_table(criteria: Sequence[Criterion], basis: Basis = NO_BASIS)
     for criterion in criteria:
         texts = describe_criterion(criterion, basis)
         numbers = (texts.value, texts.error, texts.limits, texts.margin)
-        rows.append((texts.label, texts.pantograph, *numbers, doc.VerdictMark(criterion.verdict), texts.trust or "–"))
+        rows.append((texts.label, texts.pantograph, *numbers, mark_criterion(criterion), texts.trust or "–"))
     numbers = ("Value", error_name(criteria), "Limits", "Margin")
     columns = (
         *map(doc.Column, ("Quantity", "Pantograph")),

@@ -1,7 +1,8 @@
 """Table of the criteria of a case."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -26,23 +27,24 @@ from pantocheck.conformance.quantities.uncertainty import UNKNOWN_BASIS
 from pantocheck.conformance.results.incomplete_uncertainty import (
     EXACT_WIDTH,
     describe_half_width,
-    explain_missing,
     list_missing,
-    list_unknown,
 )
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MARGIN_KEY = (
     "Margin: distance to the nearer limit, divided by half the distance between the limits. It is 1 in the middle, "
     "0 on a limit and negative outside. With one limit, the distance is divided by this limit; if it is 0, the margin "
-    "is the distance itself with its unit. Bars: the grey band shows the range between the limits. A disc is a value "
-    "inside, a cross a value outside, an open ring a value that does not count, an arrow a value beyond the drawing. "
-    "The whisker is the uncertainty of the value, or its discretisation error where no uncertainty is known. The strip "
-    "below is the joint sample of all components of the uncertainty: the darker, the likelier."
+    "is the distance itself with its unit. A dash: the limit is a single value, and the value lies on it. Bars: the "
+    "grey band shows the range between the limits. A disc is a value inside, a cross a value outside, an open ring a "
+    "value that does not count, an arrow a value beyond the drawing. The whisker is the uncertainty of the value, "
+    "or its discretisation error where no uncertainty is known. The strip below is the joint sample of all components "
+    "of the uncertainty: the darker, the likelier."
 )
 """Meaning of the margins and bars of all tables of criteria."""
-SHORT_NAMES = {"Discretisation error": "Discr.\nerror", "Uncertainty (95 %)": "Uncer-\ntainty"}
-"""Headings of the errors on paper."""
+DECIDES = "decides the verdict"
+"""Role of a verdict or of a step."""
+CLOSE = "close"
+"""Mark of a pass with values closer to a limit than their uncertainty."""
 Basis = Mapping[ComponentName, str]
 """How each component of an uncertainty was determined, or why it is not known: `uncertainty_basis` of a case."""
 
@@ -76,16 +78,14 @@ def describe_criterion(criterion: Criterion, basis: Basis = NO_BASIS) -> Criteri
         limits = f"± {limits.rpartition(' ')[2]}"
     ascii_margin = format_criterion_margin(margin, lower, upper, criterion.unit)
     readings = criterion.readings if criterion.depends_on_reading else []
-    chance = criterion.conformity if criterion.is_close else None
-    close = "" if chance is None else f"close: {describe_conformity(chance)}"
-    remarks = (criterion.reason, close, *readings, _remark_limit(criterion))
+    remarks = (criterion.reason, *readings, _remark_limit(criterion))
     return CriterionTexts(
         label=criterion_title(criterion),
         pantograph=name_owner(criterion).removeprefix("pantograph "),
         value=f"{shown} {unit}".rstrip(),
         error="–" if error is None else _format_error(criterion, error, missing),
         limits=limits,
-        margin="–" if margin is None else replace_minus(ascii_margin),
+        margin="–" if ascii_margin == "-" else replace_minus(ascii_margin),
         trust="" if lower is None and upper is None else criterion.trust or "",
         remarks=tuple(filter(None, remarks)),
     )
@@ -129,7 +129,7 @@ def criteria_blocks(
         doc.Column("Quantity", share=1),
         doc.Column("Pantograph", short="Pant."),
         doc.Column(value, number=True),
-        doc.Column(error, number=True, short=SHORT_NAMES[error]),
+        doc.Column(error, number=True),
         doc.Column(limits, number=True),
         *map(doc.Column, ("Margin", "Verdict", "Trust", "Source")),
     )
@@ -145,11 +145,11 @@ def criteria_blocks(
     table = doc.Table(columns, rows, layout="cards")
     if case is not None and headings == VALUE_HEADINGS:
         table = insert_reference(case, table, criteria)
-    return (*state_common_causes(criteria, basis), table, *(common if sources else ()))
+    return (*state_causes(criteria), table, *(common if sources else ()))
 
 
 def list_value_remarks(case: CaseResult, criteria: Sequence[Criterion], anchor: str) -> tuple[doc.Block, ...]:
-    """Common causes, places and remarks of the graded values of a case that page 1 shows; `anchor` is its section."""
+    """Causes, places and remarks of the graded values of a case that page 1 shows; `anchor` is its section."""
     items: list[doc.RichText] = []
     for row in criteria:
         texts, place = describe_criterion(row, case.uncertainty_basis), _link_place(case, row, anchor)
@@ -157,7 +157,7 @@ def list_value_remarks(case: CaseResult, criteria: Sequence[Criterion], anchor: 
             remarks = f": {'; '.join(texts.remarks)}" if texts.remarks else ""
             items.append((f"{texts.label}, {name_owner(row)}", *place, remarks))
     listed = (doc.BulletList(tuple(items)),) if items else ()
-    return (*state_common_causes(criteria, case.uncertainty_basis), *listed)
+    return (*state_causes(criteria), *listed)
 
 
 def list_limit_sources(criteria: Sequence[Criterion], anchor: str) -> tuple[doc.Block, ...]:
@@ -169,11 +169,9 @@ def list_limit_sources(criteria: Sequence[Criterion], anchor: str) -> tuple[doc.
     return (doc.NumberedList("Sources of the limits", items, anchor),) if items else ()
 
 
-def state_common_causes(criteria: Sequence[Criterion], basis: Basis) -> tuple[doc.Block, ...]:
-    """Sentences on the components that the half-widths lack, and on the causes of close values."""
-    missing = any(list_missing(basis, row.uncertainty, row.trust) for row in criteria)
-    incomplete = explain_missing(list_unknown(basis)) if missing else ""
-    texts = (*filter(None, [incomplete]), *describe_close(criteria, criterion_title))
+def state_causes(criteria: Sequence[Criterion]) -> tuple[doc.Block, ...]:
+    """Sentences on the causes of close values."""
+    texts = describe_close(criteria, criterion_title)
     return (doc.SmallPrint(" ".join(texts)),) if texts else ()
 
 
@@ -188,7 +186,8 @@ def describe_close(criteria: Sequence[Criterion], name: Callable[[Criterion], st
     for row in criteria:
         if row.is_close:
             cause = find_largest_component(row.components, row.limit_uncertainty)
-            groups.setdefault(cause, []).append(name(row))
+            chance = "" if row.conformity is None else f" ({format_probability(row.conformity)} inside the limits)"
+            groups.setdefault(cause, []).append(f"{name(row)}{chance}")
     return [
         f"Closer to a limit than the uncertainty (mostly {cause}): {'; '.join(dict.fromkeys(names))}. "
         f"{REMEDIES[cause].capitalize()} could reverse the verdict."
@@ -225,10 +224,27 @@ def _row(
         texts.error,
         texts.limits,
         draw_margin(criterion, texts),
-        doc.VerdictMark(criterion.verdict),
+        mark_criterion(criterion),
         doc.TrustMark(texts.trust),
         "–" if number is None else doc.Link(f"[{number}]", f"{source_anchor}-{number}"),
     )
+
+
+def mark_rows(verdict: str, rows: Iterable[Criterion]) -> str:
+    """Mark of a verdict on criteria: `close` for a pass with close values."""
+    return CLOSE if verdict == "pass" and any(row.verdict == "pass" and row.is_close for row in rows) else verdict
+
+
+def count_inside(rows: Iterable[Criterion]) -> str:
+    """Sentence on the numbers of values with a limit that counts, and of those inside; empty without such a value."""
+    counts = Counter(row.verdict for row in rows)
+    counted = sum(counts[verdict] for verdict in ("pass", "undecided", "fail", "skip"))
+    return f"{counts['pass']} of {counted} values with a limit that counts lie inside it." if counted else ""
+
+
+def mark_criterion(row: Criterion) -> doc.VerdictMark:
+    """Verdict of one criterion as a mark."""
+    return doc.VerdictMark(mark_rows(row.verdict, [row]))
 
 
 def draw_margin(criterion: Criterion, texts: CriterionTexts) -> doc.RichText:
@@ -242,32 +258,24 @@ def _bar(criterion: Criterion, value: float) -> doc.Drawing:
     lower, upper, verdict = criterion.lower, criterion.upper, criterion.verdict
     meaning = read_words()["verdict"][verdict]["meaning"]
     text = "{}, limits {}".format(*format_beside_limits(value, lower, upper))
-    chance = "" if criterion.conformity is None else f", {describe_conformity(criterion.conformity)}"
+    chance = criterion.conformity
+    inside = "" if chance is None else f", inside the limits with a probability of {format_probability(chance)}"
     drawing = draw_margin_bar(value, lower, upper, criterion.error, verdict, criterion.draws)
-    return doc.Drawing(drawing, f"{meaning}: {text}{chance}")
-
-
-def describe_conformity(probability: float) -> str:
-    """Probability of conformity in words."""
-    return f"inside the limits with a probability of {format_probability(probability)}"
+    return doc.Drawing(drawing, f"{meaning}: {text}{inside}")
 
 
 def format_probability(probability: float) -> str:
     """Share of a joint sample; one of 0 or 1 is stated as the bound that its size allows."""
     bound = 1 / DRAWS
-    return (
-        f"below {bound:g}"
-        if probability < bound
-        else f"above {1 - bound:g}"
-        if probability > 1 - bound
-        else (f"{probability:.2g}")
-    )
+    if probability < bound:
+        return f"below {bound:g}"
+    return f"above {1 - bound:g}" if probability > 1 - bound else f"{probability:.2g}"
 
 
 def error_name(criteria: Sequence[Criterion]) -> str:
     """Heading of the errors of criteria: their uncertainty, or their discretisation error."""
     uncertain = any(criterion.uncertainty is not None for criterion in criteria)
-    return "Uncertainty (95 %)" if uncertain else "Discretisation error"
+    return "Uncertainty" if uncertain else "Discretisation error"
 
 
 def criterion_title(criterion: Criterion) -> str:

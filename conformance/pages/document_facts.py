@@ -1,4 +1,4 @@
-"""Identity of a report on its page 1: administrative data, date, digest, verification and signature."""
+"""Identity of a report on its page 1: administrative data, date, digest, means of checking and signature."""
 
 from pantocheck.conformance.core.reproducibility import format_date
 from pantocheck.conformance.pages.document import Facts
@@ -20,7 +20,7 @@ ADMINISTRATION = {
 
 NO_ISSUER = "not stated"
 SIGNATURE = "added after writing, if any; pantocheck verify shows its state"
-VERIFICATION = "pantocheck verify FILE, with the name of this file"
+COMMAND = "pantocheck verify FILE, with the name of this file"
 
 
 def list_issuer_facts(results: Results, date: int) -> tuple[tuple[str, str], ...]:
@@ -37,7 +37,7 @@ def list_check_facts(results: Results, digest: str) -> tuple[tuple[str, str], ..
     """Means of checking a report, and the digest of its results with the administrative data, without the page."""
     return (
         ("Verifier", describe_verifier(results.suite)),
-        ("Verification", VERIFICATION),
+        ("Command", COMMAND),
         ("Digest of the results", digest),
     )
 

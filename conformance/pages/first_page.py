@@ -10,38 +10,45 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.case_figures import draw_limited_forces
 from pantocheck.conformance.pages.condition_sections import describe_condition, mark_cell
 from pantocheck.conformance.pages.criteria_table import (
+    NO_BASIS,
     CriterionTexts,
     describe_criterion,
     draw_margin,
     error_name,
     has_reference,
+    mark_criterion,
+    mark_rows,
 )
 from pantocheck.conformance.pages.document_facts import list_check_facts, list_issuer_facts, name_system
 from pantocheck.conformance.pages.frequency_section import mute_row
 from pantocheck.conformance.pages.line_figure import draw_line_sketch, name_pantographs
 from pantocheck.conformance.pages.scope_page import (
-    CASES_SHOWN,
-    build_procedure_section,
+    build_step_table,
+    describe_claim,
     describe_origin,
+    find_closest,
+    list_dossier_facts,
+    list_scope,
     list_step_reasons,
+    name_step,
+    shorten_names,
 )
 from pantocheck.conformance.pages.two_verdicts import (
     build_verdict_section,
     case_verdict,
     count_close,
     list_criteria,
-    mark_rows,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
     CLOSE_HEADING,
-    CaseCriterion,
     describe_chance,
     describe_rule,
+    explain_uncertainty,
     list_reasons,
-    state_incomplete,
     summarise_case,
 )
 from pantocheck.conformance.pages.words import format_plain, read_words
+from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.results_format import CaseResult, Results
 
 MOST_CASES = 4
@@ -72,7 +79,7 @@ class FirstPage:
 def plan_first_page(results: Results) -> FirstPage:
     """Cases in their order as far as there is room, and what all cases have in common."""
     room, graded = MOST_GRADED, []
-    for case in () if results.procedure is not None else results.cases:
+    for case in results.cases if results.procedure is None else ():
         rows = len(list_criteria(case, "criteria"))
         if 0 < rows <= room and not has_reference(case):
             graded.append(case.id)
@@ -139,20 +146,17 @@ def _join_names(names: Iterable[str]) -> str:
 
 def _describe_basis(results: Results, anchors: dict[str, str], first_page: FirstPage) -> Iterator[doc.Block]:
     """Cases with their edition, and the trust and source of their limits; the dossier of a procedure."""
-    facts = []
+    facts: list[tuple[str, str]] = []
     if results.procedure is not None:
-        facts.append(("Dossier", results.procedure.title))
-        *_, dossier = build_procedure_section(results.procedure, results.cases).blocks
-        facts += dossier.pairs if isinstance(dossier, doc.Facts) else ()
-    elif len(results.cases) <= MOST_CASES:
+        facts += list_dossier_facts(results.procedure)
+    if results.procedure is None and len(results.cases) <= MOST_CASES:
         yield build_case_index(results.cases, anchors, first_page.graded)
     else:
         cases: dict[str, list[str]] = {}
         for case in results.cases:
             cases.setdefault(describe_origin(case), []).append(case.id)
         for origin, names in cases.items():
-            more = f", and {len(names) - CASES_SHOWN} more" if len(names) > CASES_SHOWN else ""
-            facts.append((count_noun(len(names), "case"), f"{origin}: {', '.join(names[:CASES_SHOWN])}{more}"))
+            facts.append((count_noun(len(names), "case"), f"{origin}: {shorten_names(names)}"))
     if first_page.source:
         facts.append(("Limits", f"{results.trust}: {first_page.source}"))
     elif level := read_words()["trust"].get(results.trust):
@@ -186,22 +190,27 @@ def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Bl
     """Verdicts, rule, probability, reasons, forces and graded values; the steps of a procedure."""
     first = [case for case in results.cases if case.id in first_page.graded]
     others = [case for case in results.cases if case.id not in first_page.graded]
-    if results.procedure is not None:
-        yield build_procedure_section(results.procedure, results.cases).blocks[0]
-    for section in build_verdict_section(results) if results.procedure is None else ():
+    if (procedure := results.procedure) is not None:
+        yield build_step_table(procedure, results.cases)
+    for section in build_verdict_section(results) if procedure is None else ():
         yield section.blocks[0]
     rule, risk = describe_rule(results).partition(": ")[0], results.decision.partition(":")[2]
     rule = f"{rule}, probability of a wrong acceptance at most {risk}" if risk else rule
     facts = [
         ("Decision rule", rule),
         ("Probability", describe_chance(results)),
-        ("Uncertainty", state_incomplete(results)),
+        ("Uncertainty", explain_uncertainty(results)),
     ]
     yield doc.Facts(tuple((name, text) for name, text in (*facts, *_list_reasons(results, first)) if text))
-    if figures := draw_limited_forces(first if results.procedure is not None else [*first, *others]):
+    if figures := draw_limited_forces([*first, *others]):
         yield doc.Figures(figures)
-    if first:
-        yield _build_value_table(first, first_page)
+    rows: list[GradedValue] = [(case.id, case, row) for case in first for row in list_criteria(case, "criteria")]
+    for step in () if procedure is None else procedure.steps:
+        if (closest := find_closest(step, results.cases)) is not None:
+            case, row = closest
+            rows.append((name_step(step) if case is None else case.id, case, row))
+    if rows:
+        yield _build_value_table(rows, first_page)
 
 
 def group_reasons(results: Results) -> tuple[doc.Section, ...]:
@@ -235,48 +244,58 @@ def _list_reasons(results: Results, first: Sequence[CaseResult]) -> Iterator[tup
 
 def _read_sentences(section: doc.Section) -> list[str]:
     [items] = section.blocks
-    return [str(item) for item in items.items] if isinstance(items, doc.BulletList) else []
+    return [f"{str(item).removesuffix('.')}." for item in items.items] if isinstance(items, doc.BulletList) else []
 
 
-def _build_value_table(cases: Sequence[CaseResult], first_page: FirstPage) -> doc.Table:
-    """Graded values of cases, one line each on paper; their trust where it is not that of all limits."""
-    rows = [(case, row) for case in cases for row in list_criteria(case, "criteria")]
-    error = error_name([row for _, row in rows])
-    cells: dict[doc.Column, Callable[[CaseCriterion], doc.RichText]] = {
-        doc.Column("Quantity", share=1): lambda pair: _name_value(*pair),
-        doc.Column("Case"): lambda pair: pair[0].id,
-        doc.Column("Pantograph", short="Pant."): lambda pair: _texts(pair).pantograph,
-        doc.Column("Value", number=True): lambda pair: _texts(pair).value,
-        doc.Column(error, number=True, short=error.partition(" ")[0]): lambda pair: _texts(pair).error,
-        doc.Column("Limits", number=True): lambda pair: _texts(pair).limits,
-        doc.Column("Margin"): lambda pair: draw_margin(pair[1], _texts(pair)),
-        doc.Column("Verdict"): lambda pair: doc.VerdictMark(mark_rows(pair[1].verdict, [pair[1]])),
+GradedValue = tuple[str, CaseResult | None, Criterion]
+"""Graded value with its case, and the name of the case or of its step."""
+
+
+def _build_value_table(rows: Sequence[GradedValue], first_page: FirstPage) -> doc.Table:
+    """Graded values, one line each on paper; their trust where it is not that of all limits."""
+    cells: dict[doc.Column, Callable[[GradedValue], doc.RichText]] = {
+        doc.Column("Quantity", share=1): _name_value,
+        doc.Column("Case"): lambda value: value[0],
+        doc.Column("Pantograph", short="Pant."): lambda value: _texts(value).pantograph,
+        doc.Column("Value", number=True): lambda value: _texts(value).value,
+        doc.Column(error_name([row for *_, row in rows]), number=True): lambda value: _texts(value).error,
+        doc.Column("Limits", number=True): lambda value: _texts(value).limits,
+        doc.Column("Margin"): lambda value: draw_margin(value[2], _texts(value)),
+        doc.Column("Verdict"): lambda value: mark_criterion(value[2]),
     }
     if not first_page.source:
-        cells[doc.Column("Trust")] = lambda pair: doc.TrustMark(_texts(pair).trust)
+        cells[doc.Column("Trust")] = lambda value: doc.TrustMark(_texts(value).trust)
     table = doc.make_table(rows, cells, layout="values")
     pairs = zip(table.rows, rows, strict=True)
-    muted = (mute_row(case.supported, str(row.pantograph), cells) for cells, (case, row) in pairs)
+    muted = (
+        shown if case is None else mute_row(case.supported, str(row.pantograph), shown)
+        for shown, (_, case, row) in pairs
+    )
     return replace(table, rows=tuple(muted))
 
 
-def _texts(pair: CaseCriterion) -> CriterionTexts:
-    case, row = pair
-    return describe_criterion(row, case.uncertainty_basis)
+def _texts(value: GradedValue) -> CriterionTexts:
+    _, case, row = value
+    return describe_criterion(row, NO_BASIS if case is None else case.uncertainty_basis)
 
 
-def _name_value(case: CaseResult, row: Criterion) -> doc.RichText:
+def _name_value(value: GradedValue) -> doc.RichText:
     """Label and name of a value, with the mark of its condition."""
-    name = (f"{_texts((case, row)).label} ", doc.Code(row.quantity))
-    return mark_cell(name) if describe_condition(case) else name
+    _, case, row = value
+    name = (f"{_texts(value).label} ", doc.Code(row.quantity))
+    return mark_cell(name) if case is not None and describe_condition(case) else name
 
 
 def _describe_use(results: Results, first_page: FirstPage) -> Iterator[doc.Block]:
-    """Covered steps of the procedure, common warnings, and the nature of the report."""
-    states: dict[str, list[str]] = {}
-    for step in results.scope if results.procedure is None else ():
-        states.setdefault(step.state, []).append(read_words()["step"][step.step])
-    facts = {f"Steps {state}": ", ".join(states[state]) for state in read_words()["state"] if state in states}
-    yield doc.select_facts(facts)
+    """Covered steps of the procedure or claimed range of validity, common warnings, and the nature of the report."""
+    yield doc.select_facts(list_scope(results) if results.procedure is None else _list_claims(results.procedure))
     nature = f"This is a {results.statement}. It is not a certification by a third party."
     yield doc.BulletList((nature, *first_page.warnings))
+
+
+def _list_claims(procedure: Procedure) -> dict[str, str]:
+    """Claimed range of validity: as far as runs show it, and the rest."""
+    shown = {"Shown by runs": [claim for claim in procedure.claims if claim.verdict == "pass"]}
+    shown["Not shown by runs"] = [claim for claim in procedure.claims if claim.verdict != "pass"]
+    facts = {name: "; ".join(map(describe_claim, claims)) for name, claims in shown.items()}
+    return facts if procedure.claims else {"Range of validity": "none is claimed"}

@@ -63,8 +63,9 @@ ABOVE = "above"
 """Cell of a value that the table of criteria has."""
 
 UNCERTAINTY_KEY = (
-    "Uncertainties are half-widths of the intervals that hold 95 % of the joint sample of all components. The columns "
-    "behind show each component alone; one that is zero or not known for all quantities has no column. A dash: it does "
+    "The columns behind the uncertainty show each component alone; one that is zero or not known for all quantities "
+    "has no column. Start and section are largest changes with a factor, and the joint sample takes them as "
+    "alternatives, not as a sum: a component can exceed the uncertainty. A dash: it does "
     "not apply to the quantity, or is not known. A quantity with several values has the largest of its half-widths. "
     f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step. Shift: largest change "
     "when the analysis section is shifted span by span, no part of the uncertainty."
@@ -108,9 +109,7 @@ def build_quantity_table(case: CaseResult) -> Table:
     if case.reference is not None and has_reference(case):
         columns[Column("Reference", number=True)] = partial(_format_quantity, case.reference.quantities)
     if case.uncertainty_basis:
-        columns[Column("Uncertainty", number=True, short="Uncer-\ntainty")] = lambda key: (
-            ABOVE if key in graded else format_uncertainty(key)
-        )
+        columns[Column("Uncertainty", number=True)] = lambda key: ABOVE if key in graded else format_uncertainty(key)
     for component in case.uncertainty_basis:
         find_width = partial(_find_component, case, component)
         if any(map(find_width, keys)):

@@ -1,24 +1,23 @@
 """Identity and scope of a run on page 1: origin of the cases, weakened limits, steps of the procedure."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
+from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.criteria_table import criterion_title
-from pantocheck.conformance.pages.two_verdicts import mark_rows
-from pantocheck.conformance.pages.words import clean_tree, format_value, name_verdict, read_words, replace_minus
-from pantocheck.conformance.quantities.limit_text import format_margin, raises_trust_only
+from pantocheck.conformance.pages.criteria_table import DECIDES, count_inside, criterion_title, mark_rows
+from pantocheck.conformance.pages.two_verdicts import count_close
+from pantocheck.conformance.pages.words import clean_tree, format_plain, name_verdict, read_words
+from pantocheck.conformance.quantities.limit_text import raises_trust_only
 from pantocheck.conformance.results.incomplete_uncertainty import explain_missing, list_unknown
-from pantocheck.conformance.results.procedure_format import Procedure, ProcedureStep
+from pantocheck.conformance.results.procedure_format import Procedure, ProcedureStep, ValidityClaim
 from pantocheck.conformance.results.results_format import CaseResult, Results, ScopeStep, name_case
 
 AnyStep = TypeVar("AnyStep", ScopeStep, ProcedureStep)
 
-SCOPE_HEADING = "Scope: steps of the EN 50318 procedure"
-
 CASES_SHOWN = 10
-"""Number of cases outside the steps that page 1 names; the table of cases has all."""
+"""Number of cases of a step or source that page 1 names; the table of cases has all."""
 
 SOURCE_LABEL = "Cases from outside the library"
 
@@ -118,59 +117,42 @@ def list_sources(results: Results) -> list[tuple[str, str]]:
 
 
 def _describe_source(name: str, digest: str, cases: list[str]) -> str:
-    shown, more = cases[:CASES_SHOWN], len(cases) - CASES_SHOWN
-    listed = f"{', '.join(shown)}{f' and {more} more' if more > 0 else ''}"
-    return f"{name}, {digest}: {listed}. Inputs, limits and their trust are stated by the author of this source."
+    author = "Inputs, limits and their trust are stated by the author of this source."
+    return f"{name}, {digest}: {shorten_names(cases)}. {author}"
 
 
 def _kind(case: CaseResult) -> str:
     return "profile" if case.profile else "case"
 
 
-def build_scope_section(results: Results, anchors: dict[str, str]) -> tuple[doc.Section, ...]:
-    """Table of the steps of the procedure with the verdicts of their cases, linked by the anchors of their sections."""
-    if not results.scope:
-        return ()
-    verdicts = {case.id: mark_rows(case.criteria_verdict or case.verdict, case.criteria) for case in results.cases}
-    steps = [step for step in results.scope if step.state != "not done"]
-    rows = tuple(_step_row(step, verdicts, anchors) for step in steps)
-    columns = (doc.Column("Step", share=2), doc.Column("State"), doc.Column("Cases", share=3))
-    table = (doc.Table(columns, rows),) if rows else ()
-    sentences = _describe_rest(results, list(verdicts), {step.state for step in steps})
-    return (doc.Section(SCOPE_HEADING, (*table, doc.SmallPrint(" ".join(sentences))), anchor="scope"),)
-
-
-def _step_row(step: ScopeStep, verdicts: Mapping[str, str], anchors: dict[str, str]) -> tuple[doc.RichText, ...]:
-    """Step of the procedure, its state, and its cases with their verdicts."""
-    cases: list[doc.Inline] = []
-    for name in step.cases:
-        label = doc.Link(name, anchors[name]) if name in anchors else name
-        cases += [", " if cases else "", label]
-        if step.state != "informative":  # a verdict belongs to other steps of the case, or to a modified copy
-            cases += [" ", doc.VerdictMark(verdicts[name])]
-    return read_words()["step"][step.step], step.state, tuple(cases) or "–"
-
-
-def _describe_rest(results: Results, cases: list[str], states: set[str]) -> Iterator[str]:
-    """Sentences on the steps that were not done, on cases outside the steps, and on the states in the table."""
-    words = read_words()
-    missing = [words["step"][step.step].lower() for step in results.scope if step.state == "not done"]
-    if missing:
-        yield f"Not done ({words['state']['not done']}): {', '.join(missing)}."
+def list_scope(results: Results) -> dict[str, str]:
+    """Steps of the procedure with their cases by state, and cases outside the steps, as facts; empty without steps."""
+    states: dict[str, list[str]] = {}
+    for step in results.scope:
+        name = read_words()["step"][step.step]
+        states.setdefault(step.state, []).append(f"{name}: {shorten_names(step.cases)}" if step.cases else name)
+    facts = {f"Steps {state}": "; ".join(states[state]) for state in read_words()["state"] if state in states}
     listed = {name for step in results.scope for name in step.cases}
-    if outside := [name for name in cases if name not in listed]:
-        shown, more = outside[:CASES_SHOWN], len(outside) - CASES_SHOWN
-        yield f"Cases outside these steps: {', '.join(shown)}{f' and {more} more' if more > 0 else ''}."
-    yield from (f"{name.capitalize()}: {meaning}." for name, meaning in words["state"].items() if name in states)
+    outside = [case.id for case in results.cases if case.id not in listed] if results.scope else []
+    return facts | ({"Cases outside these steps": shorten_names(outside)} if outside else {})
+
+
+def shorten_names(cases: list[str]) -> str:
+    """Names of cases; of many, the first with the number of the others."""
+    more = len(cases) - CASES_SHOWN
+    return f"{', '.join(cases[:CASES_SHOWN])}{f' and {more} more' if more > 0 else ''}"
+
+
+def explain_states(results: Results) -> str:
+    """Meaning of the states of the steps."""
+    states = {step.state for step in results.scope}
+    return " ".join(f"Steps {name}: {text}." for name, text in read_words()["state"].items() if name in states)
 
 
 # Procedure on page 1 of a certificate: its steps with verdict, margin and uncertainty, and the headline.
 PROCEDURE_KEY = (
-    "Margin and uncertainty belong to the criterion of the step with the smallest margin. The margin is the distance "
-    "to the nearer limit, divided by half the distance between the limits, or by the limit. The uncertainty is the "
-    "half-width of the 95 % interval of value and limit together, divided in the same way. With a limit of 0 alone, "
-    "both are in the unit of the value. Steps that are not required are for information and have no part in the "
-    "verdict. The steps follow the style of EN 50318; the text of the standard is not reproduced."
+    "Page 1 has the value with the smallest margin of each step. Steps that are not required are for information and "
+    "have no part in the verdict. The steps follow the style of EN 50318; the text of the standard is not reproduced."
 )
 
 
@@ -184,6 +166,12 @@ def name_state(step: ProcedureStep) -> str:
     return f"{step.state}{'' if step.required else ', for information'}"
 
 
+def mark_step(step: ProcedureStep, cases: Sequence[CaseResult]) -> str:
+    """Mark of a step: of its own criteria and of those of its cases."""
+    rows = [row for case in cases if case.id in step.cases for row in case.criteria]
+    return mark_rows(step.verdict, [*step.criteria, *rows])
+
+
 def step_anchor(step: ProcedureStep) -> str:
     """Anchor of the section of a step."""
     return f"step-{step.step.replace('_', '-')}"
@@ -194,35 +182,62 @@ def build_procedure_headline(results: Results, procedure: Procedure) -> str:
     required = [step for step in procedure.steps if step.required]
     others = [step for step in procedure.steps if not step.required]
     passed = sum(step.verdict == "pass" for step in required)
-    sentences = [f"{passed} of {len(required)} required steps pass."]
+    close = count_close(results)
+    near = f", {count_noun(close, 'value')} close to a limit" if close else ""
+    sentences = [f"{passed} of {len(required)} required steps pass{near}."]
     for step in required:
         if step.verdict != "pass":
             state = "not done" if step.state == "not done" else name_verdict(step.verdict)
             sentences.append(f"{name_step(step)}: {state}.")
     if others:
-        names = ", ".join(f"{name_step(step)} ({name_verdict(step.verdict)})" for step in others)
+        names = ", ".join(f"{name_step(step)} ({name_verdict(mark_step(step, results.cases))})" for step in others)
         sentences.append(f"Not required, for information: {names}.")
     if results.system.name in results.accepted_unconfirmed:
         sentences.append(f"Accepted by the user: unconfirmed records of {results.system.name}.")
     return " ".join(sentences)
 
 
-def build_procedure_section(procedure: Procedure, cases: Sequence[CaseResult]) -> doc.Section:
+def list_dossier_facts(procedure: Procedure) -> tuple[tuple[str, str], ...]:
+    """Title, digest and note of a dossier."""
+    facts = {"Dossier": procedure.title, "Digest of the dossier": procedure.digest, "Note": procedure.note}
+    return tuple((name, text) for name, text in facts.items() if text)
+
+
+def build_step_table(procedure: Procedure, cases: Sequence[CaseResult]) -> doc.Table:
     """Table of the steps in the order of the procedure."""
-    columns = (
-        doc.Column("Step", share=2),
-        doc.Column("State", share=1),
-        doc.Column("Verdict"),
-        doc.Column("Margin", number=True),
-        doc.Column("±", number=True),
-        doc.Column("Smallest margin of, or reason", share=4),
+    cells: dict[doc.Column, Callable[[tuple[int, ProcedureStep]], doc.RichText]] = {
+        doc.Column("Step"): lambda row: doc.Link(f"{row[0]} {name_step(row[1])}", step_anchor(row[1])),
+        doc.Column("Verdict"): lambda row: doc.VerdictMark(mark_step(row[1], cases)),
+        doc.Column("Role"): lambda row: DECIDES if row[1].required else "for information",
+        doc.Column("Cases and basis", 3): lambda row: _describe_step_basis(row[1]),
+    }
+    return doc.make_table(enumerate(procedure.steps, 1), cells)
+
+
+def find_closest(step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[CaseResult | None, Criterion] | None:
+    """Criterion of a step with its smallest margin, and its case; None if the step has none."""
+    pairs: list[tuple[CaseResult | None, Criterion]] = [(None, row) for row in step.criteria]
+    pairs += [(case, row) for case in cases if case.id in step.cases for row in case.criteria]
+    return next((pair for pair in pairs if step.margin is not None and pair[1].margin == step.margin), None)
+
+
+def name_claim(claim: ValidityClaim) -> str:
+    """Subject of a claim on the range of validity."""
+    return f"{read_words()['claim'][claim.kind]} {claim.name}".strip()
+
+
+def format_claimed(limits: tuple[float, float] | None, unit: str) -> str:
+    """Range of a claim with its unit; a dash without one."""
+    return "–" if limits is None else f"{' to '.join(dict.fromkeys(map(format_plain, limits)))} {unit}".rstrip()
+
+
+def describe_claim(claim: ValidityClaim) -> str:
+    """Subject of a claim with its range."""
+    return (
+        name_claim(claim)
+        if claim.claimed is None
+        else f"{name_claim(claim)} {format_claimed(claim.claimed, claim.unit)}"
     )
-    rows = tuple(_build_procedure_row(number, step, cases) for number, step in enumerate(procedure.steps, 1))
-    facts = [("Digest of the dossier", procedure.digest)]
-    if note := procedure.note:
-        facts.append(("Note", note))
-    blocks = (doc.Table(columns, rows), doc.SmallPrint(PROCEDURE_KEY), doc.Facts(tuple(facts)))
-    return doc.Section("Steps of the procedure", blocks, anchor="procedure")
 
 
 def list_step_reasons(procedure: Procedure) -> tuple[doc.Section, ...]:
@@ -232,13 +247,12 @@ def list_step_reasons(procedure: Procedure) -> tuple[doc.Section, ...]:
 
 
 def describe_steps(procedure: Procedure) -> Iterator[str]:
-    """Steps and their own criteria that do not pass or are close to a limit, and claims that are not verified."""
+    """Steps and their own criteria that do not pass or are close to a limit, and claims that no run shows."""
     for step in procedure.steps:
         yield from _describe_step(step)
     for claim in procedure.claims:
         if claim.reason:
-            subject = f"{read_words()['claim'][claim.kind]} {claim.name}".strip()
-            yield f"Claim not verified: {subject}: {claim.reason}"
+            yield f"Claim not shown by a run: {name_claim(claim)}: {claim.reason}"
 
 
 def _describe_step(step: ProcedureStep) -> Iterator[str]:
@@ -256,16 +270,8 @@ def explain_step_missing(step: ProcedureStep, cases: Sequence[CaseResult]) -> st
     return "" if step.uncertainty is None else explain_missing(missing)
 
 
-def _build_procedure_row(number: int, step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[doc.RichText, ...]:
-    margin = "–" if step.margin is None else replace_minus(format_margin(step.margin))
-    width = step.uncertainty
-    lacking = explain_step_missing(step, cases).removesuffix(".")
-    texts = [text for text in (step.closest, lacking, step.unconfirmed, step.reason) if text]
-    return (
-        doc.Link(f"{number} {name_step(step)}", step_anchor(step)),
-        name_state(step),
-        doc.VerdictMark(step.verdict),
-        margin,
-        "–" if width is None else format_value(width, 2),
-        "; ".join(texts) or "–",
-    )
+def _describe_step_basis(step: ProcedureStep) -> str:
+    """Cases or values of a step, its state if it was not done, and remarks on its verdict."""
+    state = "" if step.state == "done" else step.state
+    cases = shorten_names(step.cases) or count_inside(step.criteria).removesuffix(".")
+    return "; ".join(filter(None, (cases, state, step.reason, step.unconfirmed))) or "–"

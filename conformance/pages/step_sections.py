@@ -8,7 +8,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import list_remarks
 from pantocheck.conformance.pages.criteria_table import criteria_blocks
 from pantocheck.conformance.pages.pantograph_pages import build_response_sections
-from pantocheck.conformance.pages.scope_page import name_step, step_anchor
+from pantocheck.conformance.pages.scope_page import format_claimed, mark_step, name_claim, name_step, step_anchor
 from pantocheck.conformance.pages.static_sections import build_static_sections
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
@@ -18,7 +18,6 @@ from pantocheck.conformance.pages.words import (
     name_pantograph,
     quantity_label,
     quantity_unit,
-    read_words,
 )
 from pantocheck.conformance.quantities.limit_text import is_relative_margin
 from pantocheck.conformance.results.case_facts_format import MeasuredRun
@@ -58,7 +57,7 @@ def build_step_section(
         index: List of the cases of the step; empty if it has none.
     """
     word = f"\N{EN SPACE}{step.reason or step.unconfirmed or ''}"
-    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(step.verdict), word))]
+    blocks: list[doc.Block] = [doc.Paragraph((doc.VerdictMark(mark_step(step, cases)), word))]
     if step.criteria:
         anchor = step_anchor(step)
         blocks.append(doc.Section("Criteria", criteria_blocks(step.criteria, anchor, f"{anchor}-source")))
@@ -95,7 +94,7 @@ def _parameter_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tupl
 
 
 def _reference_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple[doc.Block, ...]:
-    """Margins of all counted criteria, case by case."""
+    """Margins by limits that count, case by case."""
     listed = _find_step(procedure, "reference_models").cases
     shown = [case for case in cases if case.id in listed]
     points = [
@@ -107,7 +106,7 @@ def _reference_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tupl
     ]
     if not points:
         return ()
-    caption = "Margins of the counted criteria by case, in the order of the list: 1 in the middle, 0 on a limit."
+    caption = "Margins by limits that count, case by case in the order of the list: 1 in the middle, 0 on a limit."
     series = Series(label="criterion", style="points", x=[x for x, _ in points], y=[margin for _, margin in points])
     limit = Mark(label="limit", axis="y", low=0.0)
     chart = _chart(caption, ("case", "margin [-]"), len(shown), [series], [limit])
@@ -193,9 +192,9 @@ def _validity_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple
     table = doc.make_table(
         claims,
         {
-            doc.Column("Claim", 2): lambda claim: (read_words()["claim"][claim.kind], f" {claim.name}".rstrip()),
-            doc.Column("Claimed", 2): lambda claim: _format_range(claim.claimed, claim.unit),
-            doc.Column("Verified", 2): lambda claim: _format_range(claim.verified, claim.unit),
+            doc.Column("Claim", 2): name_claim,
+            doc.Column("Claimed", 2): lambda claim: format_claimed(claim.claimed, claim.unit),
+            doc.Column("Shown by runs", 2): lambda claim: format_claimed(claim.verified, claim.unit),
             doc.Column("Verdict"): lambda claim: doc.VerdictMark(claim.verdict),
             doc.Column("Runs or reason", 4): lambda claim: claim.reason or ", ".join(claim.evidence),
         },
@@ -204,10 +203,6 @@ def _validity_blocks(procedure: Procedure, cases: Sequence[CaseResult]) -> tuple
     if evidence:
         blocks += [doc.Figures((_draw_evidence(claims, evidence),)), _build_evidence_table(evidence)]
     return tuple(blocks)
-
-
-def _format_range(limits: tuple[float, float] | None, unit: str) -> str:
-    return "–" if limits is None else f"{format_plain(limits[0])} to {format_plain(limits[1])} {unit}".rstrip()
 
 
 def _draw_evidence(claims: Sequence[ValidityClaim], evidence: Sequence[Evidence]) -> doc.Figure:

@@ -1,14 +1,21 @@
 """Verdicts side by side: EN 50318 criteria, verification and drift from a baseline; and the verdict as a badge."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
 from pantocheck.conformance.core.criterion import Criterion
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pages import document as doc
-from pantocheck.conformance.pages.criteria_table import DEVIATION_HEADINGS, criteria_blocks
+from pantocheck.conformance.pages.criteria_table import (
+    CLOSE,
+    DECIDES,
+    DEVIATION_HEADINGS,
+    count_inside,
+    criteria_blocks,
+    mark_rows,
+)
 from pantocheck.conformance.pages.words import name_verdict
 from pantocheck.conformance.results.case_facts_format import BaselineComparison
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -60,25 +67,18 @@ def select_criteria(results: Results, case: CaseResult) -> Iterator[Criterion]:
         yield from (row for row in list_criteria(case, name) if decides or row.is_drift)
 
 
-CLOSE = "close"
-"""Mark of a pass with values closer to a limit than their uncertainty."""
-
-
 def count_close(results: Results) -> int:
-    """Number of counted criteria inside their limits that are closer to a limit than their uncertainty."""
+    """Number of values inside limits that count, closer to a limit than their uncertainty; of required steps, too."""
     cases = [case for case in results.cases if case.id not in results.information]
     rows = [row for case in cases for row in select_criteria(results, case)]
+    steps = () if results.procedure is None else results.procedure.steps
+    rows += [row for step in steps if step.required for row in step.criteria]
     return sum(row.verdict == "pass" and row.is_close for row in rows)
 
 
 def mark_results(results: Results) -> str:
     """Mark of a run: its verdict, or `close` for a pass with close values."""
     return CLOSE if results.verdict == "pass" and count_close(results) else results.verdict
-
-
-def mark_rows(verdict: str, rows: Iterable[Criterion]) -> str:
-    """Mark of a verdict on criteria: `close` for a pass with close values."""
-    return CLOSE if verdict == "pass" and any(row.verdict == "pass" and row.is_close for row in rows) else verdict
 
 
 def mark_case(case: CaseResult) -> str:
@@ -94,7 +94,7 @@ def build_verdict_section(results: Results) -> tuple[doc.Section, ...]:
     rows = tuple(_verdict_row(results, name) for name in names)
     confirmed = dict.fromkeys(case.verification.confirmed_by for case in results.cases if case.verification is not None)
     meanings = [text for name, text in (("verification", MEANING), ("baseline", BASELINE_MEANING)) if name in names]
-    columns = (doc.Column("Verdict on"), doc.Column("Verdict"), doc.Column("Part"), doc.Column("Cases and basis", 3))
+    columns = (doc.Column("Verdict on"), doc.Column("Verdict"), doc.Column("Role"), doc.Column("Cases and basis", 3))
     meanings += [f"Confirmed by {text}." for text in confirmed]
     blocks = (doc.Table(columns, rows), doc.SmallPrint(" ".join(meanings)))
     return (doc.Section(f"{NUMBERS[len(names)]} verdicts", blocks, anchor="verdicts"),)
@@ -107,21 +107,19 @@ def _list_names(results: Results) -> list[str]:
     return ["criteria", *(["verification"] if verified else []), *(["baseline"] if compared else [])]
 
 
-def _run_verdict(results: Results, name: str) -> Verdict:
-    """One of the verdicts of a run; `info` if it has none."""
+def _mark_run(results: Results, name: str) -> str:
+    """Mark of one of the verdicts of a run; `info` if it has none."""
     verdicts = {
         "criteria": results.criteria_verdict,
         "verification": results.verification_verdict,
         "baseline": results.baseline_verdict,
     }
-    return verdicts[name] or "info"
+    return mark_rows(verdicts[name] or "info", (row for case in results.cases for row in list_criteria(case, name)))
 
 
 def _verdict_row(results: Results, name: str) -> tuple[doc.RichText, ...]:
-    verdict = _run_verdict(results, name)
-    part = "decides" if name == "baseline" or name in results.requested else "for information"
-    mark = mark_rows(verdict, (row for case in results.cases for row in list_criteria(case, name)))
-    return SHORT_TITLES[name], doc.VerdictMark(mark), part, " ".join(_describe_basis(results, name))
+    role = DECIDES if name == "baseline" or name in results.requested else "for information"
+    return SHORT_TITLES[name], doc.VerdictMark(_mark_run(results, name)), role, " ".join(_describe_basis(results, name))
 
 
 def _describe_basis(results: Results, name: str) -> Iterator[str]:
@@ -141,10 +139,8 @@ def _describe_basis(results: Results, name: str) -> Iterator[str]:
         if others:
             yield f"{count_noun(len(others), 'case was', 'cases were')} not compared."
         return
-    rows = Counter(row.verdict for case in cases for row in list_criteria(case, name))
-    counted = sum(rows[verdict] for verdict in ("pass", "undecided", "fail", "skip"))
-    if counted:
-        yield f"{rows['pass']} of {counted} counted criteria are inside their limits."
+    if text := count_inside(row for case in cases for row in list_criteria(case, name)):
+        yield text
 
 
 def verdict_sentences(results: Results) -> list[str]:
@@ -159,7 +155,7 @@ def verdict_sentences(results: Results) -> list[str]:
     for name in names:
         note = "" if name == "baseline" or name in results.requested else " (for information)"
         absent = name == "verification" and results.verification_verdict is None
-        verdict = "not available" if absent else name_verdict(_run_verdict(results, name))
+        verdict = "not available" if absent else name_verdict(_mark_run(results, name))
         parts.append(f"{SHORT_TITLES[name]}: {verdict}{note}")
     return [f"{'; '.join(parts)}."]
 

@@ -61,11 +61,13 @@ def build_headline(results: Results) -> str:
         sentences = [f"{count_noun(unjudged, 'case')} computed, no limit to judge {'it' if unjudged == 1 else 'them'}."]
     elif passed == judged and results.verdict in ("pass", "unconfirmed"):
         close = count_close(results)
-        near = f", {close} of {counted} close to a limit" if close else ""
+        near = f", {close} of them close to a limit" if close else ""
         rest = f"; {count_noun(unjudged, 'case')} not judged" if unjudged else ""
         total = count_noun(judged, "case")
         names = name_limits(pairs)
-        sentences = [f"All {counted} counted criteria in {total} lie inside {names}{near}{rest}."]
+        values = "The value" if counted == 1 else f"All {counted} values"
+        lie = "lies" if counted == 1 else "lie"
+        sentences = [f"{values} with a limit that counts in {total} {lie} inside {names}{near}{rest}."]
     else:
         parts = [f"{passed} of {total} {'passes' if 1 in (passed, len(cases)) else 'pass'}"]
         if alone:
@@ -110,7 +112,7 @@ def _lacks_verification(case: CaseResult, accepted: bool) -> bool:
 
 def _list_failures(failed: int, counted: int, drifts: list[CaseCriterion]) -> str:
     """Numbers of criteria outside their limits and of drifted values, with the largest drift; empty without any."""
-    parts = [f"{failed} of {counted} counted criteria outside their limits"] if counted else []
+    parts = [f"{failed} of {counted} values outside limits that count"] if counted else []
     if drifted := [pair for pair in drifts if pair[1].verdict == "fail"]:
         # The margin is the drift in units of the accepted one.
         case, row = min(drifted, key=lambda pair: pair[1].margin or 0.0)
@@ -159,9 +161,9 @@ def list_reasons(results: Results) -> tuple[Section, ...]:
 
 
 def state_decision(results: Results) -> str:
-    """Sentences on the decision rule, and on the probability that all counted values lie inside their limits."""
+    """Sentences on the decision rule, and on the probability that all values lie inside the limits that count."""
     chance = describe_chance(results)
-    shown = f" Probability that all counted values lie inside their limits: {chance}." if chance else ""
+    shown = f" Probability that all values lie inside the limits that count: {chance}." if chance else ""
     return f"Decision rule: {describe_rule(results)}.{shown}"
 
 
@@ -171,7 +173,7 @@ def describe_rule(results: Results) -> str:
 
 
 def describe_chance(results: Results) -> str:
-    """Probability that all counted values lie inside their limits, with that of each case; empty if it is not known."""
+    """Probability that all values lie inside the limits that count, with that of each case; empty: not known."""
     if results.conformity is None:
         return ""
     pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
@@ -181,21 +183,33 @@ def describe_chance(results: Results) -> str:
 
 def _describe_chances(of: CaseConformity) -> str:
     """Probability of a case, its starts that pass, and the probability under its other readings."""
-    starts = [f"{of.passing_starts} of {of.starts} starts pass"] if of.starts else []
+    starts = [f"{of.passing_starts} of {of.starts} runs pass, each with another start"] if of.starts else []
     readings = [f"{format_probability(share)} under the reading '{name}'" for name, share in of.readings.items()]
     return ", ".join([format_probability(of.probability), *starts, *readings])
 
 
+UNCERTAINTY_MEANING = (
+    "±: half-width around the value that holds 95 % of the draws of the joint sample. The sample can be skewed, so "
+    "that the probability does not follow from ± alone. Its coverage of the truth is stated with each component."
+)
+
+
+def explain_uncertainty(results: Results) -> str:
+    """Meaning of the half-widths, and the components that they lack; empty if no value has one."""
+    known = any(row.uncertainty is not None for case in results.cases for row in case.criteria)
+    return " ".join(filter(None, (UNCERTAINTY_MEANING if known else "", state_incomplete(results))))
+
+
 def state_incomplete(results: Results) -> str | None:
-    """Sentence on the counted values whose uncertainty lacks a component; None if there are none."""
+    """Sentence on the values with a limit that counts whose uncertainty lacks a component; None if there are none."""
     counted = [pair for pair in _criteria(results) if pair[1].verdict in ("pass", "undecided", "fail")]
     missing = [list_missing(case.uncertainty_basis, row.uncertainty, row.trust) for case, row in counted]
     if not (number := sum(map(bool, missing))):
         return None
     names = " or ".join(name for name in COMPONENT_NAMES if any(name in lacking for lacking in missing))
     return (
-        f"The uncertainty of {count_noun(number, 'counted value')} is incomplete ({names} not known), so that more of "
-        "them may lie closer to a limit than stated."
+        f"The uncertainty of {count_noun(number, 'value')} with a limit that counts is incomplete ({names} not "
+        "known), so that more of them may lie closer to a limit than stated."
     )
 
 

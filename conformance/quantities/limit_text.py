@@ -71,9 +71,9 @@ def format_criterion_margin(margin: float | None, lower: float | None, upper: fl
         unit: Unit of the value.
 
     Returns:
-        `+0.48`, `+78.49 N`, or `-` without a margin.
+        `+0.48`, `+78.49 N`, or `-` without a margin, also on a limit of a single value.
     """
-    if margin is None:
+    if margin is None or (margin == 0 and lower == upper):
         return "-"
     return format_margin(margin) if is_relative_margin(lower, upper) else f"{format_margin(margin)} {unit}".rstrip()
 

@@ -85,7 +85,7 @@ function judgeByRule(value, row, errors, rule) {
 
 function closeRemarks(row, errors) {
   const { value, lower, upper, unit } = row;
-  if (value === null || lower === upper) return [];
+  if (value === null || (lower === null && upper === null)) return [];
   const distances = [lower, upper].filter((limit) => limit !== null).map((limit) => Math.abs(value - limit));
   const distance = Math.min(...distances), expanded = errors.expanded(value);
   if (!(distance < expanded)) return [];

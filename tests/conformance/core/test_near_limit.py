@@ -25,7 +25,6 @@ def errors(limit_uncertainty: float = 0.0, **components: float) -> ValueErrors:
         (38.0, (None, 40.0), errors(section=2.5), ["2.5 N (mostly section)"]),
         (22.0, (None, 40.0), errors(section=2.5), []),
         (22.0, (20.0, None), errors(section=2.5), ["2.5 N (mostly section)"]),
-        (20.0, (20.0, 20.0), errors(start=5.0), []),  # equal limits
         (30.0, (None, None), errors(start=5.0), []),
         (None, LIMITS, errors(start=5.0), []),
         (38.0, LIMITS, ValueErrors(discretisation=9.0, spread=9.0), []),  # neither is a component
@@ -39,6 +38,13 @@ def test_uncertainty_larger_than_the_distance_is_named(
     assert [remark.split(":")[0] for remark in remarks] == [
         f"lies 2 N from a limit, less than its uncertainty of {name}" for name in names
     ]
+
+
+def test_value_on_a_single_permitted_value_is_close_with_any_uncertainty() -> None:
+    """Contact loss of 0 % that another start raises: the pass could be reversed; without an uncertainty it is none."""
+    (remark,) = near_limit_remarks(0.0, (0.0, 0.0), "%", errors(start=0.3))
+    assert remark.startswith("lies 0 % from a limit, less than its uncertainty of 0.3 % (mostly start)")
+    assert near_limit_remarks(0.0, (0.0, 0.0), "%", errors(start=0.0)) == []
 
 
 def test_further_component_never_removes_a_remark_and_none_is_no_zero() -> None:

@@ -12,7 +12,10 @@ import pytest
 from helpers.command_line import pantocheck
 from helpers.shown_page import certify, summarise
 from helpers.toml_edit import change_keys
+from helpers.untranslated import build_pages, find_untranslated
 from pantocheck.conformance.core.figure_data import Chart
+from pantocheck.conformance.documents.document_reading import parse_html_certificate, parse_pdf_certificate
+from pantocheck.conformance.documents.page_check import check_pages
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import step_sections
@@ -22,7 +25,7 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, list_step_reasons
-from pantocheck.conformance.pages.two_verdicts import render_badge
+from pantocheck.conformance.pages.two_verdicts import count_close, render_badge
 from pantocheck.conformance.results.procedure_format import Procedure
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
 from pantocheck.conformance.results.results_format import Results
@@ -70,19 +73,49 @@ def test_certificate_follows_the_procedure(content: dict[str, Any]) -> None:
     assert "certified" not in render_markdown(document).lower()
 
 
+def test_page_1_answers_in_the_order_of_a_certificate(content: dict[str, Any]) -> None:
+    """Verdicts of the steps, forces, and the value with the smallest margin of each step; the claimed range."""
+    document = certify(content)
+    [answers] = [block for block in document.blocks if isinstance(block, doc.Answers)]
+    assert [section.anchor for section in answers.sections] == ["tested", "basis", "result", "use", "document", "check"]
+    result, use = answers.sections[2], answers.sections[3]
+    steps, values = (block for block in result.blocks if isinstance(block, doc.Table))
+    assert [row[0].text for row in steps.rows] == STEPS
+    assert {row[2] for row in steps.rows} == {"decides the verdict"}
+    assert count_figures(result) >= 1
+    margins = [step["margin"] for step in content["procedure"]["steps"] if step["margin"] is not None]
+    assert len(values.rows) == len(margins) > 2
+    shown = [float(str(row[6][1]).replace("−", "-")) for row in values.rows]
+    assert shown == pytest.approx(margins, abs=0.006)  # two decimals
+    claimed = dict(next(block for block in use.blocks if isinstance(block, doc.Facts)).pairs)
+    assert "Speed" in claimed["Shown by runs"]
+
+
+@pytest.mark.parametrize("language", ["de", "fr", "it", "es"])
+def test_dossier_is_verified_in_its_language_without_english_texts(content: dict[str, Any], language: Language) -> None:
+    assert find_untranslated(content) == []
+    certificate, _ = build_pages(content, language)
+    page = render_html(certificate)
+    assert check_pages(parse_html_certificate(page.encode(), "page")).outcome == "proved"
+    pdf = parse_pdf_certificate(render_pdf(certificate), "pdf")
+    assert check_pages(pdf).outcome == "proved"
+
+
 def headline(content: dict[str, Any]) -> str:
     results = Results.model_validate(content)
     return build_procedure_headline(results, results.procedure)
 
 
 def test_headline_names_steps_that_are_missing_or_for_information(content: dict[str, Any]) -> None:
-    assert headline(content) == "6 of 6 required steps pass."
+    close = count_close(Results.model_validate(content))
+    assert headline(content) == f"6 of 6 required steps pass, {close} values close to a limit."
     changed = copy.deepcopy(content)
     steps = changed["procedure"]["steps"]
     change_keys(steps, {"0.state": "not done", "0.verdict": "skip", "4.verdict": "fail", "5.required": False})
     changed["accepted_unconfirmed"] = [changed["system"]["name"]]
     assert headline(changed) == (
-        "3 of 5 required steps pass. Pantograph model: not done. Line tests: FAIL. Not required, for information: "
+        f"3 of 5 required steps pass, {close} values close to a limit. "
+        "Pantograph model: not done. Line tests: FAIL. Not required, for information: "
         "Limits of validity (PASS). Accepted by the user: unconfirmed records of Pantocheck reference simulator."
     )
 
@@ -106,7 +139,7 @@ def test_reasons_name_criteria_and_claims_that_do_not_pass(content: dict[str, An
         "the upper limit",
         "Simulation parameters: not confirmed by every run: start",
         "Line tests: the run was interrupted",
-        "Claim not verified: Speed: the runs that passed cover 160 to 180 km/h",
+        "Claim not shown by a run: Speed: the runs that passed cover 160 to 180 km/h",
     )
 
 
@@ -129,7 +162,7 @@ def test_badge_and_summary_state_the_steps(content: dict[str, Any]) -> None:
     assert "pass 6/6 steps" in render_badge(Results.model_validate(content))
     text = summarise(content)
     assert text.startswith("# PASS, CLOSE: 6 of 6 required steps pass")
-    assert "| 5 Line tests | done | PASS |" in text.replace("&#8203;", "")
+    assert "| 5 Line tests | PASS | decides the verdict |" in text.replace("&#8203;", "")
 
 
 @pytest.mark.parametrize(

@@ -261,7 +261,7 @@ def test_case_without_values_is_no_pass_of_the_baseline(results: Results) -> Non
     assert compared.baseline_verdict == "skip"
     assert find_discrepancies(compared) == []
     text = render_markdown(build_summary(compared))
-    assert "| Drift from the baseline | SKIP | decides | 1 of 1 case passes. 0 of 8 values drifted" in text
+    assert "| Drift from the baseline | SKIP | decides the verdict | 1 of 1 case passes. 0 of 8 values drifted" in text
     assert "1 case was not compared." in text
 
 
@@ -400,7 +400,7 @@ def test_criteria_pass_and_the_headline_states_the_drift_apart(shown_drift: Resu
     assert find_discrepancies(shown_drift) == []
     text = build_headline(shown_drift)
     drift = f"1 value drifted from the baseline, most {SHOWN} of {shown_drift.cases[0].id} by +100 %"
-    assert f"1 fails (0 of 16 counted criteria outside their limits, {drift})" in text
+    assert f"1 fails (0 of 16 values outside limits that count, {drift})" in text
     rows = [row for row in shown_drift.cases[0].criteria if row.baseline is not None]
     uncounted = shown_drift.model_copy(update={"cases": [shown_drift.cases[0].model_copy(update={"criteria": rows})]})
     assert f"1 fails ({drift})" in build_headline(uncounted)
@@ -410,9 +410,10 @@ def test_criteria_pass_and_the_headline_states_the_drift_apart(shown_drift: Resu
 def test_summary_has_a_row_and_a_table_of_the_drift(shown_drift: Results) -> None:
     text = render_markdown(build_summary(shown_drift))
     assert "## Two verdicts" in text
-    assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes. 16 of 16 counted criteria" in text
+    assert "| EN 50318 criteria | PASS | decides the verdict | 1 of 1 case passes. 16 of 16 values" in text
     assert re.search(
-        r"\| Drift from the baseline \| FAIL \| decides \| 0 of 1 case passes. 1 of \d+ values drifted", text
+        r"\| Drift from the baseline \| FAIL \| decides the verdict \| 0 of 1 case passes. 1 of \d+ values drifted",
+        text,
     )
     assert "## Drift from the baseline" in text
     table = text.split("Drift from the baseline: FAIL")[-1]

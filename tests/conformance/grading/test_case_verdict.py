@@ -119,7 +119,7 @@ def test_headline_names_what_keeps_the_result_from_being_better(passing: dict[st
     assert build_headline(Results.model_validate(results)) == "1 of 5 cases passes, 4 have no limit that counts."
     shown = results | {"verdict": "pass", "information": ["0", "1", "2", "3"]}
     assert build_headline(Results.model_validate(shown)) == (
-        "All 16 counted criteria in 1 case lie inside the limits of the case as printed by Wang et al. "
+        "All 16 values with a limit that counts in 1 case lie inside the limits of the case as printed by Wang et al. "
         "(secondary source). "
         "For information, not part of the verdict: 0, 1, 2, 3."
     )

@@ -3,7 +3,13 @@
 from typing import Any
 
 from helpers.shown_page import certify, find_facts
-from pantocheck.conformance.pages.case_section import ShownCase, build_case_section, input_blocks, list_shown_cases
+from pantocheck.conformance.pages.case_section import (
+    AUTHOR,
+    ShownCase,
+    build_case_section,
+    input_blocks,
+    list_shown_cases,
+)
 from pantocheck.conformance.pages.document import Answers, BulletList, Section, SmallPrint, Table
 from pantocheck.conformance.pages.first_page import plan_first_page
 from pantocheck.conformance.results.results_format import CaseResult, Results
@@ -44,6 +50,10 @@ def test_skipped_cases_have_no_section_and_share_a_sentence(results: dict[str, A
 def test_notes_of_an_earlier_case_are_counted(results: dict[str, Any]) -> None:
     first, second = results["cases"][:2]
     second["notes"] = [*first["notes"], "A note of its own."]
+    section = build_case_section(show_cases(results)[1])
+    [notes] = [block for block in section.blocks if isinstance(block, Section) and block.heading == "Notes"]
+    assert notes.blocks == (BulletList(("A note of its own.", "1 note as in en50318-2002/250.", AUTHOR)),)
+    second["library"] = "identical"
     section = build_case_section(show_cases(results)[1])
     [notes] = [block for block in section.blocks if isinstance(block, Section) and block.heading == "Notes"]
     assert notes.blocks == (BulletList(("A note of its own.", "1 note as in en50318-2002/250.")),)

@@ -61,7 +61,7 @@ def test_summary_tables_keep_their_columns(name: str, request: pytest.FixtureReq
 
 def test_summary_begins_with_the_verdict_and_escapes(results: dict[str, Any], hostile: dict[str, Any]) -> None:
     assert summarise(results).startswith(
-        "# FAIL: 1 of 3 cases passes, 1 fails \\(1 of 21 counted criteria outside their limits\\), "
+        "# FAIL: 1 of 3 cases passes, 1 fails \\(1 of 21 values outside limits that count\\), "
         "1 could not be evaluated completely.\n"
     )
     text = summarise(hostile)

@@ -137,7 +137,7 @@ def test_pdf_prints_every_criterion(results: dict[str, Any], certificate: bytes)
             assert expected.replace(" ", "") in text
     # The explanations of the margins and of the uncertainties begin on lines of their own.
     lines = [line for page in PdfReader(io.BytesIO(certificate)).pages for line in page.extract_text().splitlines()]
-    for beginning in ("Margin: distance", "Uncertainties are half-widths"):
+    for beginning in ("Margin: distance", "The columns behind the uncertainty"):
         assert sum(line.startswith(beginning) for line in lines) == 1
 
 

@@ -31,9 +31,9 @@ def case(passing: dict[str, Any]) -> dict[str, Any]:
 
 def test_criteria_and_quantities_have_a_column_of_the_reference(case: dict[str, Any]) -> None:
     result = CaseResult.model_validate(case)
-    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[1]
+    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[0]
     assert isinstance(table, doc.Table)
-    assert [column.heading for column in table.columns][3:6] == ["Uncertainty (95 %)", "Reference", "Limits"]
+    assert [column.heading for column in table.columns][3:6] == ["Uncertainty", "Reference", "Limits"]
     expected = 1.01 * case["criteria"][0]["value"]
     assert float(str(table.rows[0][4])) == pytest.approx(expected, rel=1e-3)
     assert {len(row) for row in table.rows} == {len(table.columns)}
@@ -73,7 +73,7 @@ def test_certificate_names_the_reference_and_the_reason_without_values(
         doc.Paragraph("Reference 3: no values for comparison, no solution."),
     )
     result = CaseResult.model_validate(case)
-    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[1]
+    table = criteria_blocks(result.criteria, "case-1", "case-1-source", result)[0]
     assert isinstance(table, doc.Table)
     assert "Reference" not in [column.heading for column in table.columns]
 

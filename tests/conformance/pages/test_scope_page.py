@@ -11,12 +11,12 @@ from helpers.shown_page import certify, print_certificate, shown_certificate, su
 from pantocheck.conformance.app.commands.command_output import print_output
 from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.pages.ci_reports import render_junit
-from pantocheck.conformance.pages.document import Section, Table, VerdictMark, WarningBox
+from pantocheck.conformance.pages.document import WarningBox
 from pantocheck.conformance.pages.scope_page import (
     CHANGES_SHOWN,
-    build_scope_section,
     describe_origin,
     list_identity_warnings,
+    list_scope,
     summarise_identity,
 )
 from pantocheck.conformance.pages.verdict_reasons import build_headline
@@ -116,28 +116,20 @@ def test_certificate_states_all_digests_and_the_origin_of_a_profile(results: dic
     assert changed["cases"][0]["input_digest"] in page
 
 
-def test_scope_lists_every_step_with_its_cases(results: dict[str, Any]) -> None:
-    [scope] = [
-        block for block in certify(describe(results)).blocks if isinstance(block, Section) and block.anchor == "scope"
-    ]
-    table = scope.blocks[0]
-    assert isinstance(table, Table)
-    assert [row[:2] for row in table.rows] == [("Reference models", "done")]
-    assert VerdictMark("pass") in table.rows[0][2]
-    assert scope.blocks[1].text.startswith(
-        "Not done (no case, or none with a complete result): pantograph model, static check of the line model, line "
-        "test, limits of validity. Cases outside"
-    )
-    # An own case belongs to no step: five rows would say so on the first half of page 1.
-    [scope] = build_scope_section(Results.model_validate(describe(results, steps=[])), {})
-    [rest] = scope.blocks
-    assert "pantograph model, static check of the line model, reference models, line test" in rest.text
+def test_page_1_lists_every_step_with_its_cases_once(results: dict[str, Any]) -> None:
+    model = Results.model_validate(describe(results))
+    case, *others = [case.id for case in model.cases]
+    missing = "Pantograph model; Static check of the line model; Line test; Limits of validity"
+    outside = {"Cases outside these steps": ", ".join(others)}
+    assert list_scope(model) == {"Steps done": f"Reference models: {case}", "Steps not done": missing} | outside
+    page = shown_certificate(describe(results))
+    assert page.count("Steps not done") == 2  # page 1 and the explanations
+    assert page.count("Limits of validity") == 1
     assert results["scope"] == []
+    assert list_scope(Results.model_validate(results)) == {}
     assert "Limits of validity" not in shown_certificate(results)
     # The static case passes by its dropper lengths; its apparent mass has no limit.
-    static = describe(results, steps=["pantograph_model", "static_check"])
-    [scope] = build_scope_section(Results.model_validate(static), {})
-    table = scope.blocks[0]
-    assert isinstance(table, Table)
-    assert table.rows[0][1:] == ("informative", ("", "en50318-2002/250"))
-    assert VerdictMark("pass") in table.rows[1][2]
+    static = Results.model_validate(describe(results, steps=["pantograph_model", "static_check"]))
+    states = list_scope(static)
+    assert states["Steps informative"] == f"Pantograph model: {case}"
+    assert states["Steps done"] == f"Static check of the line model: {case}"

@@ -1,6 +1,7 @@
 """Certificates and summaries in every language: complete catalogues, the same numbers, verified byte by byte."""
 
 import ast
+import builtins
 import re
 import tomllib
 from collections import Counter
@@ -13,51 +14,23 @@ from typing import Any
 import pytest
 
 from helpers.example_results import example, with_measured_run, with_reference
+from helpers.untranslated import build_pages, find_untranslated
+from pantocheck.conformance.cases.library import find_entries, load_entry, read_bibliography, source_text
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.documents.document_reading import parse_html_certificate, parse_pdf_certificate
 from pantocheck.conformance.documents.page_check import check_pages
+from pantocheck.conformance.grading.input_sensitivity import describe_studies, list_conditions
 from pantocheck.conformance.pages import translation
-from pantocheck.conformance.pages.certificate_page import build_certificate, build_summary
-from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.markdown import render_markdown
 from pantocheck.conformance.pages.pdf import render_pdf
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.results.report_files import LANGUAGES, Language
-from pantocheck.conformance.results.results_format import Results
 
 ROOT = Path(__file__).parents[3]
 OTHERS = LANGUAGES[1:]
 NUMBER = re.compile(r"\d+(?:\.\d+)*")
 EXAMPLES = (example, with_measured_run, with_reference)
-
-DATA_KEYS = frozenset(
-    (
-        *("id", "title", "name", "version", "kind", "notes", "source", "edition", "superseded_by", "origin", "text"),
-        *("sentence", "printed", "tolerance", "sensitivity", "statement", "started", "schema", "digest", "values"),
-        *("system", "label"),
-    )
-)
-"""Keys of results whose texts belong to a case, a user or a record, and stay as they are."""
-
-
-def build_pages(results: dict[str, Any], language: Language) -> tuple[Document, Document]:
-    read = Results.model_validate(results)
-    certificate, summary = build_certificate(read), build_summary(read, ["certificate.html"])
-    return replace(certificate, language=language), replace(summary, language=language)
-
-
-def list_data(value: Any, key: str = "") -> Iterator[str]:
-    """Texts of results that belong to a case, a user or a record."""
-    if isinstance(value, dict):
-        for name, part in value.items():
-            yield from list_data(part, name if key not in DATA_KEYS else key)
-            yield name
-    elif isinstance(value, list):
-        for part in value:
-            yield from list_data(part, key)
-    elif isinstance(value, str) and key in DATA_KEYS:
-        yield value
 
 
 @pytest.mark.parametrize("language", OTHERS)
@@ -77,17 +50,99 @@ def test_catalogues_have_the_same_entries_arguments_and_numbers(language: Langua
 @pytest.mark.parametrize("results", [build() for build in EXAMPLES], ids=[build.__name__ for build in EXAMPLES])
 def test_every_text_of_certificate_and_summary_has_an_entry(results: dict[str, Any]) -> None:
     """What stays English belongs to the data of a case, and is no text of the suite."""
-    data = "\n".join(list_data(results))
-    missing: set[str] = set()
+    assert find_untranslated(results) == []
 
-    def collect(text: str) -> str:
-        missing.update(translation.translate(text, "de").missing)
-        return text
 
-    for page in build_pages(results, "de"):
-        translation._change_parts(page, collect)
-    versions = re.compile(r"Pantocheck ([\d.]+|reference simulator)|python [\d.]+|\d+-\d+-\d+ [\d:]+ UTC")
-    assert [text for text in missing if text not in data and not versions.search(text)] == []
+@pytest.mark.parametrize("language", OTHERS)
+def test_texts_of_the_library_have_entries(language: Language) -> None:
+    """Notes, titles, sources, conditions and resolving power of every library case; citations keep their language."""
+    texts: dict[str, None] = {}
+    for case in map(load_entry, find_entries(["*"])):
+        pantographs = [pantograph.title for pantograph in case.pantograph_files]
+        sources = [source for group in case.inputs for source in source_text(group.source).split("; ")]
+        texts |= dict.fromkeys([case.file.title, case.line.title, *pantographs, *case.notes, *sources])
+        texts |= dict.fromkeys([*(condition.name for condition in list_conditions(case)), *describe_studies(case)])
+    citations = {read_bibliography()[key] for key in ("wang2016", "massat2007", "vovan2015")}
+    assert len(texts) > 120
+    missing = {text: found for text in texts if (found := translation.translate(text, language).missing)}
+    assert missing.keys() <= citations
+
+
+ELSEWHERE = (
+    *("app/", "campaigns/", "documents/", "drops/", "line/", "pantograph/", "studies/"),
+    *("dossier/dossier_file", "dossier/dossier_reading", "core/", "cases/", "comparison/pantograph_fit"),
+    *("comparison/drop_", "comparison/recorded_drop", "comparison/updated_line", "comparison/comparison_limits"),
+    *("comparison/static_record", "comparison/run_comparison", "comparison/compared_run", "pages/campaign"),
+    *("pages/ci_reports", "pages/comparison_page", "pages/damping_page", "pages/identification", "pages/population"),
+    *("pages/pantograph_pages", "pages/record_figures", "pages/run_comparison_page", "pages/site_pages"),
+    *("pages/static_sections", "pages/translation", "pages/report_writers", "quantities/registry"),
+    *("quantities/quantity.py", "records/record.py", "records/record_reading", "records/record_sidecar"),
+    *("records/record_summary", "records/sidecar_tables", "records/channel_facts", "records/track_position"),
+    *("records/column_values", "records/samples", "results/", "runs/program", "runs/command_system"),
+    *("runs/protocol_messages", "runs/reference_simulator", "pages/html", "pages/page_code", "__init__"),
+)
+"""Modules whose texts no certificate shows: messages on input, the terminal, and other reports."""
+SHOWN = (
+    *("core/near_limit", "core/decision", "core/check_row", "core/criterion", "cases/case.py", "cases/input_studies"),
+    *("results/incomplete_uncertainty", "results/supported_frequency"),
+)
+"""Modules of these folders whose texts it shows."""
+MESSAGES = {name for name in dir(builtins) if name.endswith("Error")} | {
+    *("InputError", "RecordInvalid", "Need", "Field", "compile", "refuse_missing_package", "read_model"),
+    *("validation_problem", "PackedDamaged", "TooManyEvents", "parse_decision"),
+}
+"""Calls whose texts are messages on input, descriptions of keys or names of places."""
+UNSHOWN_KEYWORDS = {"must_hold", "why", "needs", "definition", "source"}
+PART = "\0"
+"""Place of a part that is known at run time."""
+
+
+def list_literals(node: ast.AST) -> Iterator[str]:
+    """Texts below a node, with `PART` for each part of a formatted one; neither messages nor docstrings."""
+    if isinstance(node, ast.JoinedStr):
+        yield "".join(str(part.value) if isinstance(part, ast.Constant) else PART for part in node.values)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    called = getattr(node, "func", None)
+    called = called.value if isinstance(called, ast.Subscript) else called
+    if getattr(called, "id", getattr(called, "attr", "")) in MESSAGES or getattr(node, "arg", "") in UNSHOWN_KEYWORDS:
+        return
+    for name, part in ast.iter_fields(node):
+        for child in part if isinstance(part, list) else [part]:
+            docstring = isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant)
+            plain = isinstance(node, ast.JoinedStr) and isinstance(child, ast.Constant)
+            if isinstance(child, ast.AST) and name not in ("annotation", "returns") and not docstring and not plain:
+                yield from list_literals(child)
+
+
+def has_entry(text: str, keys: str) -> bool:
+    """Whether a text with some parts has a translation, or each of its pieces stands in the keys of the catalogue."""
+    fillings = (
+        " ".join(text.replace(PART, part).split()).strip(" ;,") for part in ("7", "x", "", " 7 N", "20-50 Hz: ")
+    )
+    if any(not translation.translate(filled, "de").missing for filled in fillings):
+        return True
+    pieces = (piece.strip(" .,;:()").lower() for piece in re.split(f"{PART}|(?<=[.!?;:]) ", text))
+    return all(piece in keys for piece in pieces if translation.WORD.search(piece))
+
+
+def test_rarely_built_texts_have_entries() -> None:
+    """States, refusals, warnings and reasons, as the sources write them: most of them no example builds."""
+    keys = "\n".join(translation.ARGUMENT.sub(PART, key) for key in translation.read_catalogue("de")).lower()
+    missing: list[str] = []
+    count = 0
+    for path in sorted((ROOT / "conformance").rglob("*.py")):
+        name = path.relative_to(ROOT / "conformance").as_posix()
+        if name.startswith(ELSEWHERE) and not name.startswith(SHOWN):
+            continue
+        for text in list_literals(ast.parse(path.read_text("utf-8"))):
+            words = [word for word in translation.WORD.findall(text) if len(word) > 1]
+            if len(words) > 2 and " " in text.strip() and not re.search(r"[<>{}\\^$|]|et al\. 2", text):
+                count += 1
+                missing += [] if has_entry(text, keys) else [f"{name}: {text.replace(PART, '{}')}"]
+    assert count > 500
+    assert missing == []
+    assert not has_entry("a text of three words without an entry", keys)
 
 
 def list_marked() -> set[str]:
@@ -181,8 +236,10 @@ def test_glossary_names_a_source_for_each_term_or_says_that_it_has_none() -> Non
     glossary = tomllib.loads((TEMPLATES / "languages" / "glossary.toml").read_text("utf-8"))
     sources = glossary["source"]
     assert len(glossary["term"]) >= 25
+    assert sources["none"] == "no printed source found"
     for term, row in glossary["term"].items():
         assert row.keys() == {*OTHERS, "source"}, term
+        assert row["source"].keys() == set(OTHERS), term
         assert set(row["source"].values()) <= sources.keys(), term
         for language in OTHERS:
             entries = translation.read_catalogue(language)

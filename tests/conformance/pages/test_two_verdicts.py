@@ -59,13 +59,13 @@ def failing(passing: dict[str, Any]) -> Results:
 
 def test_headline_states_both_verdicts_and_their_part(failing: Results) -> None:
     shown = build_headline(Results.model_validate(decide(failing, "criteria")))
-    assert "All 16 counted criteria in 1 case lie inside the limits of" in shown
+    assert "All 16 values with a limit that counts in 1 case lie inside the limits of" in shown
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL (for information)." in shown
     decided = build_headline(Results.model_validate(decide(failing, *BOTH)))
-    assert "0 of 1 case passes, 1 fails (1 of 17 counted criteria outside their limits)." in decided
+    assert "0 of 1 case passes, 1 fails (1 of 17 values outside limits that count)." in decided
     assert "EN 50318 criteria: PASS; Verification up to 50 Hz: FAIL." in decided
     alone = build_headline(Results.model_validate(decide(failing, "verification")))
-    assert "(1 of 1 counted criteria outside their limits)" in alone
+    assert "(1 of 1 values outside limits that count)" in alone
     assert "EN 50318 criteria: PASS (for information); Verification up to 50 Hz: FAIL." in alone
     assert summarise_verdict(Results.model_validate(decide(failing, "criteria"))) == "pass 16/16"
     assert summarise_verdict(Results.model_validate(decide(failing, *BOTH))) == "fail 16/17"
@@ -106,7 +106,7 @@ def test_headline_without_converged_values_is_unchanged(passing: dict[str, Any])
 def test_page_has_both_verdicts_and_the_confirmation(failing: Results, build: Any) -> None:
     text = render_markdown(build(Results.model_validate(decide(failing, "criteria"))))
     assert ("## Two verdicts" if build is build_summary else "## Result") in text
-    assert "| EN 50318 criteria | PASS | decides | 1 of 1 case passes." in text
+    assert "| EN 50318 criteria | PASS | decides the verdict | 1 of 1 case passes." in text
     assert "| Verification up to 50 Hz | FAIL | for information |" in text
     assert "Confirmed by finite differences." in text
     assert "computed" in text
@@ -117,7 +117,7 @@ def test_criteria_without_a_limit_that_counts_are_no_failure(failing: Results) -
     results = decide(failing, *BOTH)
     results["criteria_verdict"] = results["cases"][0]["criteria_verdict"] = "info"
     text = summarise(results)
-    assert "| EN 50318 criteria | INFO | decides | No case has a limit that counts." in text
+    assert "| EN 50318 criteria | INFO | decides the verdict | No case has a limit that counts." in text
     assert "0 of 1 case passes." in text  # the verification fails
 
 
