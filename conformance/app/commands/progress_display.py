@@ -4,7 +4,7 @@
 output                 rule
 =====================  ===========================================================
 terminal               one line that is redrawn at most `REDRAWS_PER_S` times a second
-file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter command
+file, pipe or log      one line every `LOG_INTERVAL_S`, none for a shorter command; a warning at once
 `-q`                   nothing
 =====================  ===========================================================
 """
@@ -109,7 +109,10 @@ class TaskProgress(logging.Handler):
         self._reached = [*self._reached[:1], (self._clock(), share)]
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Keep the step of a record."""
+        """Keep the step of a record; print a warning at once where no live line shows its step."""
+        errors, in_log = error_console(), current_settings().detail == "verbose"
+        if record.levelno == logging.WARNING and not (errors.is_terminal or in_log):
+            errors.print(Text(strip_control_characters(record.getMessage())), soft_wrap=True)
         if isinstance(step := getattr(record, "step", None), TaskStep):
             if self._reached:  # a part has cases without an end of their own: only the latest is named
                 self._steps = {}

@@ -73,6 +73,16 @@ def test_remaining_time_follows_the_finished_share() -> None:
     assert progress.describe() == "guide: 2 of 4 finished, library/long, 50 %, 0:02:40 elapsed"
 
 
+def test_compilation_is_announced_at_once_in_a_log(capsys: pytest.CaptureFixture[str]) -> None:
+    """The first line of progress comes after ten seconds: a user would wait for the compiler without a word."""
+    with follow_steps("running cases"):
+        LOGGER.warning(COMPILATION)
+        assert capsys.readouterr().err == f"{COMPILATION}\n"
+    with use_settings(OutputSettings(detail="verbose")), follow_steps("running cases"):
+        LOGGER.warning(COMPILATION)
+        assert capsys.readouterr().err == ""  # the log itself prints it
+
+
 def test_remaining_time_is_not_extrapolated_from_nothing() -> None:
     clock = Clock()
     progress = TaskProgress("identification", 5, clock)
