@@ -100,7 +100,6 @@ PROGRAMS = {
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
-    "set-up": Program("speed.set_up", ("speed-set-up",)),
     "commands": Program("speed.commands", ("speed-commands",)),
     "installation": Program("speed.installation", ("installation",)),
 }
