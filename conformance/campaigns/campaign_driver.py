@@ -2,12 +2,13 @@
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.campaigns.campaign_design import CampaignDesign, PlannedRun
 from pantocheck.conformance.campaigns.campaign_file import Execution
+from pantocheck.conformance.campaigns.campaign_run import RunRow
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.campaigns.run_executors import Execute, RunExecutor
 from pantocheck.conformance.results.campaign_format import CampaignEnding
@@ -69,6 +70,16 @@ class _Session:
         return (len(self.ends) - 1) / duration if duration > 0 else None
 
 
+@dataclass(frozen=True)
+class Pilots:
+    """Runs whose rows the execution of the other runs uses."""
+
+    numbers: Collection[int]
+    """Their numbers."""
+    learn: Callable[[Iterable[RunRow]], Execute]
+    """Function that gives the execution of the other runs from their rows."""
+
+
 def drive_campaign(
     design: CampaignDesign,
     execute: Execute,
@@ -76,6 +87,7 @@ def drive_campaign(
     executor: RunExecutor,
     execution: Execution,
     report: Callable[[CampaignProgress], None],
+    pilots: Pilots | None = None,
 ) -> CampaignEnding:
     """Execute the runs of a design that its store does not hold.
 
@@ -86,24 +98,30 @@ def drive_campaign(
         executor: Executor of the open runs.
         execution: Conditions of an early stop.
         report: Callback that receives the progress after every run.
+        pilots: Runs that are executed before the others; None: none.
 
     Returns:
         Reason of the end.
     """
     total, session = design.count_runs(), _Session(execution, *store.count())
     report(CampaignProgress(total, session.finished, session.failed, None))
-    with closing(executor.execute_all(_list_open_runs(design, store, session), execute)) as rows:
-        for row in rows:
-            store.add(row)
-            session.add(row.is_failed)
-            report(CampaignProgress(total, session.finished, session.failed, session.rate))
+    for part in (None,) if pilots is None else (pilots.numbers, None):
+        if part is None and pilots is not None and session.ending == "complete":
+            execute = pilots.learn(row for row in store.rows() if row.run.number in pilots.numbers)
+        with closing(executor.execute_all(_list_open_runs(design, store, session, part), execute)) as rows:
+            for row in rows:
+                store.add(row)
+                session.add(row.is_failed)
+                report(CampaignProgress(total, session.finished, session.failed, session.rate))
     return session.ending
 
 
-def _list_open_runs(design: CampaignDesign, store: CampaignStore, session: _Session) -> Iterator[PlannedRun]:
-    """Runs that are not finished, until the session must stop."""
+def _list_open_runs(
+    design: CampaignDesign, store: CampaignStore, session: _Session, part: Collection[int] | None
+) -> Iterator[PlannedRun]:
+    """Runs of a part that are not finished, until the session must stop; None: all runs."""
     for run in design.list_runs():
-        if not store.holds(run.number):
+        if (part is None or run.number in part) and not store.holds(run.number):
             if not session.may_start():
                 return
             yield run

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -14,11 +14,12 @@ from pantocheck.conformance.campaigns.campaign_design import (
     parse_condition,
     sample_inputs,
 )
-from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, drive_campaign
+from pantocheck.conformance.campaigns.campaign_driver import CampaignProgress, Pilots, drive_campaign
 from pantocheck.conformance.campaigns.campaign_file import CampaignFile, Execution
 from pantocheck.conformance.campaigns.campaign_run import ProfileLimits, RunExecution, build_input_changes, name_column
 from pantocheck.conformance.campaigns.campaign_store import CampaignStore
 from pantocheck.conformance.campaigns.run_executors import RunExecutor
+from pantocheck.conformance.campaigns.uplift_prediction import choose_pilots, fit_uplift
 from pantocheck.conformance.cases.case import Case, CaseOrigin, drop_keys, json_digest
 from pantocheck.conformance.cases.case_source import build_repeated_id_error
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
@@ -60,12 +61,17 @@ class PreparedCampaign:
     """Source of each case from outside, by its id."""
     contacts: dict[str, str]
     """Contact of each case with pantographs, and its trust, by its id."""
+    pilots: frozenset[int] = frozenset()
+    """Numbers of the runs from which the uplift forces of the others are predicted."""
 
     def drive(
         self, store: CampaignStore, executor: RunExecutor, report: Callable[[CampaignProgress], None] = lambda _: None
     ) -> CampaignEnding:
         """Execute the runs that the store does not hold; parameters as in `drive_campaign`."""
-        return drive_campaign(self.design, self.execute, store, executor, self.file.execution, report)
+        pilots = (
+            Pilots(self.pilots, lambda rows: replace(self.execute, start=fit_uplift(rows))) if self.pilots else None
+        )
+        return drive_campaign(self.design, self.execute, store, executor, self.file.execution, report, pilots)
 
 
 def find_campaign_file(name: str) -> Path | None:
@@ -113,7 +119,9 @@ def prepare_campaign(file: CampaignFile, folder: Path) -> PreparedCampaign:
         for _, case in cases.values()
         for contact in [file.contact for file in case.pantographs[:1]]
     }
-    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases), origins, contacts)
+    tuned = any(lift.target_mean_force is not None for case in first_cases for lift in case.lift_forces)
+    pilots = choose_pilots(design) if tuned and not file.refined else frozenset[int]()
+    return PreparedCampaign(file, design, execute, identity, _list_limits(first_cases), origins, contacts, pilots)
 
 
 def _list_limits(cases: Sequence[Case]) -> dict[str, tuple[float | None, float | None]]:

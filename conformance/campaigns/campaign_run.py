@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import Any, Protocol, cast
 
 from pantocheck.conformance.campaigns.campaign_design import Inputs, PlannedRun
 from pantocheck.conformance.campaigns.run_traces import StoredTraces, pack_traces
@@ -18,9 +19,11 @@ from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.core.verdicts import Verdict, worst_verdict
 from pantocheck.conformance.execution.runner import run_case
+from pantocheck.conformance.grading.derived_facts import find_uplift_forces
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.system import System
 from pantocheck.conformance.runs.system_choice import choose_system
+from pantocheck.conformance.runs.uplift_tuning import START_SLOPE
 
 
 # Limits of a run from the rules of a profile, at the speed of the run.
@@ -59,6 +62,13 @@ class ProfileLimits:
         return repeat_limits(limits, len(case.pantographs)), tuple(missing)
 
 
+class StartForces(Protocol):
+    """Start of the tuning of the uplift forces."""
+
+    def predict(self, case_id: str, inputs: Inputs) -> tuple[float, ...]:
+        """Uplift forces for the inputs of a run [N]; empty: those of its case."""
+
+
 FAILED: Verdict = "error"
 """Verdict of a run without a result."""
 
@@ -84,6 +94,8 @@ class RunRow:
     """Half-widths of the 95 % intervals of the quantities that have one."""
     traces: bytes = b""
     """Compressed curves; empty if they are not stored."""
+    balance_forces: tuple[float, ...] = ()
+    """Uplift force of every pantograph for its required mean contact force [N]; empty: no such run."""
 
     @property
     def is_failed(self) -> bool:
@@ -111,18 +123,29 @@ class RunExecution:
     """Time limit of a program for a case [s]."""
     stored_traces: StoredTraces
     """Runs whose curves are stored, as in `StoredTraces`."""
+    start: StartForces | None = None
+    """Start of the tuning of each run; None: that of its case."""
 
     def __call__(self, run: PlannedRun) -> RunRow:
         """Execute a run."""
         start = time.perf_counter()
         try:
             case = self.read_case(run)
-            result = run_case(case, _choose_system(run.system, self.refined, self.timeout_s), self.trust)
+            result = run_case(case, self._start_system(run), self.trust)
         except InputError as error:
             return build_failed_row(run, str(error), time.perf_counter() - start)
         missing = () if self.profile is None else self.profile.resolve(case)[1]
         row = _build_row(run, result, missing, time.perf_counter() - start)
-        return replace(row, traces=pack_traces(result, row.verdicts["verdict"], self.stored_traces))
+        traces = pack_traces(result, row.verdicts["verdict"], self.stored_traces)
+        return replace(row, traces=traces, balance_forces=_find_balance_forces(case, result))
+
+    def _start_system(self, run: PlannedRun) -> System:
+        """System of a run; the simulator begins the tuning at predicted uplift forces, if there are any."""
+        system = _choose_system(run.system, self.refined, self.timeout_s)
+        if self.start is None or self.refined or run.system != "builtin":
+            return system
+        started: System = replace(cast(Any, system), start_forces=self.start.predict(run.case_id, run.inputs))
+        return started
 
     def read_case(self, run: PlannedRun) -> Case:
         """Case of a run, with its inputs and the limits of the user."""
@@ -163,6 +186,19 @@ def _build_row(run: PlannedRun, result: CaseResult, missing: Sequence[str], wall
     reason = result.reason or ("; ".join(missing) or None)
     quantities, widths = (dict(_name_quantities(values)) for values in (result.quantities, result.uncertainty))
     return RunRow(run, verdicts, reason, quantities, wall_s, widths)
+
+
+def _find_balance_forces(case: Case, result: CaseResult) -> tuple[float, ...]:
+    """Uplift forces of a tuned run, corrected by what is left of the tolerance of its tuning."""
+    forces = find_uplift_forces(result.derived)
+    means = [result.quantities.get(str(number), {}).get("mean_force_N") for number in range(1, len(forces) + 1)]
+    if not forces or not all(isinstance(mean, float) for mean in means):
+        return ()
+    targets = [lift.target_mean_force for lift in case.lift_forces]
+    return tuple(
+        force if target is None else force + (target - mean) / START_SLOPE
+        for force, mean, target in zip(forces, cast(list[float], means), targets, strict=True)
+    )
 
 
 def _name_quantities(quantities: Mapping[str, Mapping[str, Number]]) -> Iterator[tuple[str, float]]:

@@ -30,7 +30,8 @@ CREATE TABLE IF NOT EXISTS run (
   reason TEXT,
   quantities TEXT NOT NULL,
   wall_s REAL NOT NULL,
-  uncertainties TEXT NOT NULL
+  uncertainties TEXT NOT NULL,
+  balance_forces TEXT NOT NULL
 );
 CREATE TABLE IF NOT EXISTS trace (number INTEGER PRIMARY KEY, content BLOB NOT NULL);
 """
@@ -59,6 +60,7 @@ class CampaignStore:
             *(run.number, run.design, run.case_id, run.system, json.dumps(run.inputs, default=str)),
             *(row.verdicts["verdict"], json.dumps(row.verdicts), row.reason, json.dumps(row.quantities), row.wall_s),
             json.dumps(row.uncertainties),
+            json.dumps(row.balance_forces),
         )
         with self._lock:
             if row.traces:  # before the run: a run in the store then has its traces
@@ -104,13 +106,14 @@ class CampaignStore:
     def rows(self) -> Iterator[RunRow]:
         """Finished runs by their numbers, one at a time."""
         query = (
-            "SELECT number, design, case_id, system, inputs, verdicts, reason, quantities, wall_s, uncertainties"
-            " FROM run ORDER BY number"
+            "SELECT number, design, case_id, system, inputs, verdicts, reason, quantities, wall_s, uncertainties,"
+            " balance_forces FROM run ORDER BY number"
         )
         for number, design, case_id, system, *row in self._connection.execute(query):
-            inputs, verdicts, reason, quantities, wall_s, widths = row
+            inputs, verdicts, reason, quantities, wall_s, widths, forces = row
             run = PlannedRun(number, design, case_id, system, json.loads(inputs))
-            yield RunRow(run, json.loads(verdicts), reason, json.loads(quantities), wall_s, json.loads(widths))
+            values = (json.loads(quantities), wall_s, json.loads(widths))
+            yield RunRow(run, json.loads(verdicts), reason, *values, balance_forces=tuple(json.loads(forces)))
 
     def outcomes(self) -> Iterator[tuple[str, str | None]]:
         """Verdict and reason of the finished runs by their numbers, without their values."""

@@ -18,6 +18,9 @@ from pantocheck.conformance.results.case_facts_format import (
 from pantocheck.model.fem.beam import wave_speed
 from pantocheck.model.statics.wave_factors import doppler_factor
 
+UPLIFT_FORCE = "Uplift force of pantograph"
+"""Begin of the name of a fact."""
+
 
 def list_derived_facts(case: Case, uplift_forces: Sequence[float] = ()) -> list[DerivedFact]:
     """Derived values of a case: of its wires, and of its pantographs.
@@ -93,7 +96,12 @@ def _list_pantograph_facts(case: Case, uplift_forces: Sequence[float]) -> Iterat
             basis = f"tuned to a mean contact force of {lift.target_mean_force:g} N"
         else:
             basis = "force law of the pantograph" if number in case.law_forces else "stated in the case"
-        yield DerivedFact(name=f"Uplift force of pantograph {number}", value=force, unit="N", basis=basis)
+        yield DerivedFact(name=f"{UPLIFT_FORCE} {number}", value=force, unit="N", basis=basis)
+
+
+def find_uplift_forces(facts: Sequence[DerivedFact]) -> tuple[float, ...]:
+    """Uplift force of every pantograph among derived facts [N]; empty: not known."""
+    return tuple(fact.value for fact in facts if fact.name.startswith(UPLIFT_FORCE))
 
 
 # Values of the inputs of a case in results.json: every key of a table, lists of tables column by column.

@@ -49,6 +49,7 @@ def run_passage(
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...] | None = None,
     progress: ShareCallback = ignore_progress,
+    start_forces: tuple[float, ...] = (),
 ) -> PassageRun:
     """Simulate the passage of a case on a discretised line.
 
@@ -60,6 +61,7 @@ def run_passage(
             is required.
         progress: Called from time to time with the completed share, 0 to 1. The number of runs of a tuning is not
             known: each is half of the rest.
+        start_forces: Uplift force of every pantograph at the start of its tuning [N]; empty: that of the case.
 
     Returns:
         Record, run facts and uplift forces.
@@ -67,7 +69,11 @@ def run_passage(
     Raises:
         TuningFailed: No uplift force gives the mean contact force that the case requires.
     """
-    start = uplift_forces or estimate_uplift_forces(case, line)
+    predicted = zip(start_forces, case.lift_forces, strict=False)
+    start = uplift_forces or tuple(
+        force if lift.target_mean_force is not None else lift.uplift_force for force, lift in predicted
+    )
+    start = start or estimate_uplift_forces(case, line)
     # The computing time must not include the compilation of the kernels: one time step compiles all of them.
     first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
     integrate_passage(line, first_step)

@@ -54,6 +54,8 @@ class ReferenceSimulator:
     kind: Literal["builtin"] = "builtin"
     threads: int = 1
     """Number of threads on which the other meshes and starts of a case run; the results do not depend on it."""
+    start_forces: tuple[float, ...] = ()
+    """Uplift force of every pantograph at the start of its tuning in a run alone [N]; empty: that of the case."""
 
     def __post_init__(self) -> None:
         """Require the compiler of the time steps at once: later, each case would end as `error`."""
@@ -89,7 +91,8 @@ class ReferenceSimulator:
     def run_unrefined(self, case: Case) -> Delivered:
         """Run a case once, with the discretisation of the case."""
         steps = StepSequence(_LOGGER, case.id, {COMPILATION: 0.0, OWN_MESH: 1.0})
-        return _deliver(case, case.file.discretisation, progress=_begin_run(case, steps))[0]
+        start = self.start_forces
+        return _deliver(case, case.file.discretisation, progress=_begin_run(case, steps), start_forces=start)[0]
 
 
 @dataclass(frozen=True)
@@ -196,6 +199,7 @@ def _deliver(
     discretisation: Discretisation,
     uplift_forces: tuple[float, ...] | None = None,
     progress: ShareCallback = ignore_progress,
+    start_forces: tuple[float, ...] = (),
 ) -> tuple[Delivered, tuple[float, ...] | None]:
     """Simulate a case; result, and uplift forces of its passage [N]."""
     line = discretise_line(case.line, discretisation.element_m)
@@ -205,7 +209,7 @@ def _deliver(
         return Delivered(
             static=static, run=RunTable(dt_s=discretisation.time_step_s, element_m=discretisation.element_m)
         ), None
-    passage = run_passage(case, line, discretisation, uplift_forces, progress)
+    passage = run_passage(case, line, discretisation, uplift_forces, progress, start_forces)
     delivered = Delivered(
         passage.record,
         static,
