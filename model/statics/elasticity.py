@@ -11,7 +11,7 @@ from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.assembly import point_load
 from pantocheck.model.statics.contact_wires import touched_rows, touched_wires
 from pantocheck.model.statics.static_solver import point_product, static_solver
-from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses
+from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 
 POINTS_AT_ONCE = 240
 """Positions whose responses are computed together: ten spans, whose responses reach few other ones."""
@@ -49,7 +49,7 @@ def _point_responses(line: DiscretisedLine, positions: tuple[float, ...]) -> tup
         residual[n] = np.mean([residual_flexibility(line.beams.flexibility[row, element[n]], s) for row in rows]) / len(
             rows
         )
-    return compute_unit_responses(line, element, share.reshape(len(positions), 2, -1)), residual
+    return compute_unit_responses(invert_blocks(line), element, share.reshape(len(positions), 2, -1)), residual
 
 
 def rest_height(line: DiscretisedLine, position: Array) -> Array:

@@ -11,7 +11,7 @@ from pantocheck.model.description.failures import NoEquilibrium
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.statics.assembly import bandwidth_order, connector_directions
 from pantocheck.model.statics.line_stiffness import factored_stiffness
-from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses
+from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 
 MAX_ITERATIONS = 100
 """Largest number of changes of the set of slack droppers."""
@@ -43,7 +43,7 @@ class StaticSolver:
     """
 
     def __init__(self, line: DiscretisedLine) -> None:
-        self._line, self._connectors = line, line.connectors
+        self._inverse, self._connectors = invert_blocks(line), line.connectors
         self._shape, self._order = line.beams.free.shape, bandwidth_order(line)
         self._stiffness = factored_stiffness(line)
         self._direction = sp.csc_array(connector_directions(line))
@@ -133,7 +133,7 @@ class StaticSolver:
         element = np.minimum(station, self._shape[1] - 2)
         share = np.zeros((new.size, 2, 2 * self._shape[0]))
         share[np.arange(new.size), station - element, ::2] = self._connectors.coefficient[new]
-        responses = compute_unit_responses(self._line, element, share)
+        responses = compute_unit_responses(self._inverse, element, share)
         for n, elongation in zip(new.tolist(), responses.elongation, strict=True):
             self._compliance[n] = np.zeros(self._connectors.station.size)
             self._compliance[n][responses.connectors] = elongation

@@ -16,8 +16,9 @@ import numpy as np
 from scipy.linalg import cholesky_banded
 
 from pantocheck.model.description.arrays import Array, Indices
+from pantocheck.model.discretisation.connectors import Connectors
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
-from pantocheck.model.statics.line_stiffness import factored_stiffness
+from pantocheck.model.statics.line_stiffness import LineStiffness, factored_stiffness
 
 NEGLIGIBLE = 1e-16
 """Size of a response over its size at the force, below which it ends."""
@@ -36,17 +37,26 @@ class UnitResponses:
 
 
 @dataclass(frozen=True)
-class _Inverse:
-    """Blocks of the inverse of the stiffness, and transfers of a response to the next station, (stations, b, b)."""
+class BlockInverse:
+    """Blocks of the inverse of a stiffness without held stretches, and transfers of a response to the next station.
 
+    It does not refer to its line, which keeps it: the memory of a line that is no longer used is free at once.
+    """
+
+    stiffness: LineStiffness
+    """Stiffness with its held stretches."""
+    connectors: Connectors
+    """Connectors of the line."""
     diagonal: Array
+    """Inverse between the unknowns of each station, (stations, b, b)."""
     to_right: Array
     to_left: Array
+    """Transfers to the right and to the left neighbour, (stations - 1, b, b)."""
 
 
 @keep_with_line
-def _invert_blocks(line: DiscretisedLine) -> _Inverse:
-    """Blocks of the stiffness without its held stretches."""
+def invert_blocks(line: DiscretisedLine) -> BlockInverse:
+    """Invert the stiffness of a line block by block, once."""
     size, stiffness = 2 * line.mesh.rows, factored_stiffness(line)
     mirrored = np.zeros_like(stiffness.band)
     for distance, entries in enumerate(stiffness.band):
@@ -58,7 +68,9 @@ def _invert_blocks(line: DiscretisedLine) -> _Inverse:
     right = (upper @ upper.transpose(0, 2, 1))[::-1, ::-1, ::-1]
     half, coupling = _cut_blocks(stiffness.band, size, 0), _cut_blocks(stiffness.band, size, size)[:-1]
     own = half + np.tril(half, -1).transpose(0, 2, 1)
-    return _Inverse(
+    return BlockInverse(
+        stiffness=stiffness,
+        connectors=line.connectors,
         diagonal=np.asarray(np.linalg.inv(left + right - own), dtype=float),
         to_right=np.asarray(-np.linalg.solve(right[1:], coupling), dtype=float),
         to_left=np.asarray(-np.linalg.solve(left[:-1], coupling.transpose(0, 2, 1)), dtype=float),
@@ -74,16 +86,16 @@ def _cut_blocks(band: Array, size: int, below: int) -> Array:
     return blocks
 
 
-def compute_unit_responses(line: DiscretisedLine, element: Indices, share: Array) -> UnitResponses:
+def compute_unit_responses(inverse: BlockInverse, element: Indices, share: Array) -> UnitResponses:
     """Compute the responses to unit forces, each inside one element or at one of its stations.
 
     Args:
-        line: Discretised line.
+        inverse: Inverse of the stiffness of the line.
         element: Element of each force, in ascending order, (n,).
         share: Nodal forces at both stations of the element, (n, 2, unknowns of a station).
     """
-    inverse, stiffness, connectors = _invert_blocks(line), factored_stiffness(line), line.connectors
-    stations, rows = line.mesh.position.size, line.mesh.rows
+    stiffness, connectors = inverse.stiffness, inverse.connectors
+    stations, rows = len(inverse.diagonal), inverse.diagonal.shape[1] // 2
     movable = stiffness.movable.reshape(stations, 2 * rows)
     load = share * movable[element[:, None] + np.arange(2)]
     near = np.einsum("nij,nj->ni", inverse.diagonal[element], load[:, 0])

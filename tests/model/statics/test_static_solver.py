@@ -11,7 +11,7 @@ from helpers.lines import Array, simple_line, without_connectors
 from pantocheck.model.discretisation.discretised_line import discretise
 from pantocheck.model.statics.assembly import assemble_matrices, bandwidth_order, connector_directions, point_load
 from pantocheck.model.statics.static_solver import StaticSolver
-from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses
+from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 
 LINE = discretise(simple_line(spans=3), 1.0)
 STATICS = StaticSolver(LINE)
@@ -24,7 +24,7 @@ def respond(direction: Array) -> UnitResponses:
     """Response to nodal forces inside one element."""
     blocks = direction.reshape(LINE.mesh.position.size, -1)
     element = np.flatnonzero(blocks.any(axis=1))[:1]
-    return compute_unit_responses(LINE, element, blocks[None, [*element, *(element + 1)]])
+    return compute_unit_responses(invert_blocks(LINE), element, blocks[None, [*element, *(element + 1)]])
 
 
 def tensions_by_minimisation(load: Array) -> tuple[Array, Array]:
