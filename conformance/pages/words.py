@@ -24,8 +24,10 @@ def clean_text(text: str) -> str:
 
     Each format escapes the text; this function only removes characters that no format can hold.
     """
-    text = UNSHOWABLE.sub("\N{REPLACEMENT CHARACTER}", BIDIRECTIONAL.sub("", text))
-    text = " ".join("".join(" " if is_control(c) else c for c in text).split())
+    if not (text.isascii() and text.isprintable()):  # most texts of results are names and plain sentences
+        text = UNSHOWABLE.sub("\N{REPLACEMENT CHARACTER}", BIDIRECTIONAL.sub("", text))
+        text = "".join(" " if is_control(c) else c for c in text)
+    text = " ".join(text.split())
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
