@@ -13,10 +13,8 @@ from pantocheck.conformance.core.sourced_table import NO_SOURCE
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.grading.validity_warnings import speed_warnings
-from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
-from pantocheck.model import discretise
 from pantocheck.model.description.failures import ImpossibleDropper, SimulationError
 
 LARGEST_REST_ELEMENT_M = 2.0
@@ -59,6 +57,9 @@ def _check_pantograph(path: Path) -> str:
 
 def _check_rest(line: LineFile, where: str) -> None:
     """Refuse a line without a static equilibrium."""
+    from pantocheck.conformance.line.catenary_model import build_catenary  # the linear algebra of a line
+    from pantocheck.model import discretise
+
     try:
         discretise(build_catenary(line), LARGEST_REST_ELEMENT_M)
     except SimulationError as error:
