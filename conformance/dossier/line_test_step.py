@@ -77,7 +77,7 @@ class LineTests:
         if not self.dossier.file.pair:
             return StepResult("line_test", "not done", "the dossier names no pair of runs (table pair)")
         finished: list[tuple[CaseResult, Evidence | None]] = []
-        used: list[tuple[RunSide, RunSide]] = []
+        used: list[RunSide] = []
         try:
             for pair in self.dossier.file.pair:
                 finished.append(self._compare(pair, used))
@@ -88,20 +88,23 @@ class LineTests:
             raise StepInterrupted(_collect(finished, reason), interruption_exit_code(interruption)) from None
         return _collect(finished, None)
 
-    def _compare(self, pair: PairTable, used: list[tuple[RunSide, RunSide]]) -> tuple[CaseResult, Evidence | None]:
+    def _compare(self, pair: PairTable, used: list[RunSide]) -> tuple[CaseResult, Evidence | None]:
         """Result of a pair, and the conditions that it verifies if it passes."""
         profile = build_line_test_profile(self.dossier.file.line_test)
         try:
             simulated, measured = self._simulate(pair, profile), read_run(pair.measured, self.dossier, profile)
         except InputError as error:
             return self._refuse(pair, "error", " ".join(str(error).split())), None
-        repeated = any(_repeats(simulated, one) and _repeats(measured, other) for one, other in used)
-        if (copied := self._find_dependence(simulated, measured)) is not None or repeated:
-            return self._refuse(pair, "error", copied or "both runs are those of another pair"), None
-        used.append((simulated, measured))
+        reason = self._find_dependence(simulated, measured)
+        if reason is None and any(_repeats(measured, other) for other in used):
+            reason = "the measured run is that of another pair"
+        if reason is not None:
+            return self._refuse(pair, "error", reason), None
         if mismatches := list(list_mismatches(simulated, measured, profile)):
             return self._refuse(pair, "skip", f"not compared: {'; '.join(mismatches)}"), None
-        return self._grade(pair, simulated, measured, profile), self._describe(pair, simulated)
+        notes = [_describe_likeness(simulated, measured), *_describe_repetition(measured, used)]
+        used.append(measured)
+        return self._grade(pair, simulated, measured, profile, notes), self._describe(pair, simulated)
 
     def _simulate(self, pair: PairTable, profile: Profile) -> RunSide:
         if isinstance(pair.simulated, CaseRun):
@@ -119,7 +122,9 @@ class LineTests:
             return "the measured record was made by the system under test"
         return find_dependence(simulated, measured)
 
-    def _grade(self, pair: PairTable, simulated: RunSide, measured: RunSide, profile: Profile) -> CaseResult:
+    def _grade(
+        self, pair: PairTable, simulated: RunSide, measured: RunSide, profile: Profile, notes: Sequence[str]
+    ) -> CaseResult:
         trust, rule = self.dossier.file.trust, parse_decision(self.dossier.file.decision)
         case = grade_record(simulated.record, profile, trust, measured.record, rule=rule)
         criteria = [*case.criteria, *self._list_ungraded(simulated, profile)]
@@ -135,7 +140,7 @@ class LineTests:
                 "verdict": judge_case([judge_criteria(criteria)], facts),
                 "criteria": criteria,
                 "record": facts,
-                "notes": [*case.notes, _describe_likeness(simulated, measured)],
+                "notes": [*case.notes, *notes],
                 "comparison": compare_measured_run(simulated.record, measured.record, simulated.supports),
             }
         )
@@ -224,6 +229,13 @@ def _describe_likeness(simulated: RunSide, measured: RunSide) -> str:
     if likeness is None:
         return "Whether the measured run is a copy was not compared: no force of both runs is known up to 50 Hz."
     return f"Of simulated and measured run, {likeness.describe()}."
+
+
+def _describe_repetition(measured: RunSide, used: Sequence[RunSide]) -> list[str]:
+    """Note on the largest likeness with a measured run of an earlier pair; none without one to compare."""
+    found = [likeness for side in used if (likeness := compare_likeness(measured.record, side.record)) is not None]
+    largest = max(found, key=lambda likeness: likeness.correlation, default=None)
+    return [] if largest is None else [f"Of the measured runs of two pairs, {largest.describe()}."]
 
 
 def _name_result(pair: PairTable) -> str:

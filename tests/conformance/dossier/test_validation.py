@@ -3,14 +3,13 @@
 The claims rest on every step: none of them passes then, and all other steps do.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from helpers.example_dossier import CachedSimulator, copy_example, list_verdicts, validate_example
+from helpers.example_dossier import CachedSimulator, Spoil, copy_example, edit_column, list_verdicts, validate_example
 from helpers.toml_edit import edit_toml, write_toml
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.results.procedure_format import STEP_NAMES
@@ -20,23 +19,6 @@ NOT_VERIFIED = {"limits_of_validity": "skip"}
 """Claims of the example without the pair that verifies them."""
 
 ORDER = ["error", "fail", "skip", "info", "unconfirmed", "pass"]
-
-Spoil = Callable[[Path], object]
-
-
-def edit_column(name: str, column: str, change: Callable[[float], float]) -> Spoil:
-    """Change the values of one column of a measured table."""
-
-    def spoil(folder: Path) -> None:
-        path = folder / "measured" / name
-        head, *rows = path.read_text(encoding="utf-8").splitlines()
-        place = head.split(",").index(column)
-        cells = [row.split(",") for row in rows]
-        for row in cells:
-            row[place] = f"{change(float(row[place])):.9g}"
-        path.write_text("\n".join([head, *map(",".join, cells)]) + "\n", encoding="utf-8")
-
-    return spoil
 
 
 def drop_column(name: str, column: str) -> Spoil:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from helpers.example_dossier import EXAMPLE, CachedSimulator, copy_example, list_verdicts, validate_example
+from helpers.example_dossier import EXAMPLE, CachedSimulator, copy_example, edit_column, list_verdicts, validate_example
 from helpers.toml_edit import edit_toml
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
@@ -133,3 +133,22 @@ def test_measurement_that_is_the_simulation_with_noise_is_refused(system: Cached
     results = Validation(read_dossier(dossier), ForeignSystem(), tmp_path / "out").run()
     assert results.verdict == "error"
     assert "with small changes" in results.cases[0].reason
+
+
+def test_measured_run_of_another_pair_is_refused(system: CachedSimulator, tmp_path: Path) -> None:
+    """The same run with noise of 0.5 N, beside a simulated run at another speed."""
+    case = {"case": "faster.toml", "direction": "up"}
+    changes: dict[str, Any] = {"pair.2": None, "pair.1.simulated": case, "reference": None, "validity": None}
+    path = copy_example(tmp_path / "in", {**changes, "required": ["line_test"]})
+    shutil.copy(tmp_path / "in" / "run-160.toml", tmp_path / "in" / "faster.toml")
+    edit_toml(tmp_path / "in" / "faster.toml", {"id": "example/faster", "speed_km_h": 160.4})
+    measured = tmp_path / "in" / "measured"
+    for name in ("run-160.csv", "run-160.toml"):
+        shutil.copy(measured / name, measured / name.replace("run-160", "again"))
+    noise = np.random.default_rng(1)
+    edit_column("again.csv", "force_1_N", lambda force: force + 0.5 * noise.standard_normal())(tmp_path / "in")
+    edit_toml(measured / "again.toml", {"file": "again.csv"})
+    edit_toml(path, {"pair.1.measured.record": "measured/again.csv"})
+    first, second = Validation(read_dossier(path), system, tmp_path / "out").run().cases
+    assert first.verdict != "error"
+    assert (second.verdict, second.reason) == ("error", "the measured run is that of another pair")
