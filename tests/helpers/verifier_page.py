@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, Protocol
 
 import pytest
@@ -52,7 +53,7 @@ def verify(verifier_page: Any) -> Verify:
 
 @pytest.fixture(scope="session")
 def genuine() -> Any:
-    """Documents (`Genuine`) of a run whose statistical maximum fails, as in the tests of the forgeries."""
+    """Documents (`Genuine`) of a run whose statistical maximum fails, with criteria close to their limits."""
     from helpers.wave_system import Wave
     from pantocheck.conformance.cases.library import load_case
     from pantocheck.conformance.execution.runner import run_cases
@@ -61,3 +62,16 @@ def genuine() -> Any:
 
     case = load_case(library_folder() / "en50318-2002" / "250.toml")
     return build_genuine(run_cases([case], Wave(mean=119.9, sigma=30.9)).to_dict())
+
+
+@pytest.fixture(scope="session")
+def bare(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Documents (`Genuine`) of the same run without contact height, whose record is unconfirmed."""
+    from helpers.wave_system import Wave
+    from pantocheck.conformance.cases.library import load_case
+    from pantocheck.conformance.line.library_folder import library_folder
+    from verification.attacks.forgeries import build_genuine, grade_record
+
+    case = load_case(library_folder() / "en50318-2002" / "250.toml")
+    record = replace(Wave(mean=119.9, sigma=30.9).record(case), contact_height=None)
+    return build_genuine(grade_record(record, tmp_path_factory.mktemp("bare")))
