@@ -113,9 +113,8 @@ def _working_height_warnings(case: Case) -> Iterator[str]:
 def _static_contact_force(file: PantographFile, lift: AppliedForces) -> float:
     """Contact force with the head at the working height [N]; NaN for a mechanism, which has no static state."""
     try:
-        return equilibrium(
-            build_pantograph(file, lift.uplift_force, 0.0, aerodynamic_force=lift.aerodynamic_force), 0.0
-        )[1]
+        model = build_pantograph(file, lift.uplift_force, 0.0, aerodynamic_force=lift.aerodynamic_force)
+        return float(equilibrium(model, 0.0)[1].sum())
     except np.linalg.LinAlgError:
         return math.nan
 

@@ -133,7 +133,7 @@ def _estimate_uplift_force(case: Case, line: DiscretisedLine, index: int, lift: 
     def contact_force(uplift_force: float) -> float:
         """Contact force that holds the head at its mean height [N]."""
         pantograph = build_pantographs(case, line, [uplift_force] * len(case.lift_forces))[index]
-        return equilibrium(pantograph, wire + case.pantographs[index].contact.penetration(target))[1]
+        return float(equilibrium(pantograph, wire + case.pantographs[index].contact.penetration(target))[1].sum())
 
     at_target = contact_force(target)
     slope = (contact_force(target + FORCE_STEP) - at_target) / FORCE_STEP

@@ -20,8 +20,20 @@ from pantocheck.model.description.arrays import Array
 
 
 @dataclass(frozen=True)
+class Strip:
+    """Collector strip: point of contact with a wire."""
+
+    offset: float
+    """Distance ahead of the position of the pantograph [m]."""
+    shape: Array
+    """Displacement of the strip at the lateral position y per unknown: coefficients of the powers of y from 0 on,
+    (D, n) [-, 1/m, ...]; one row if the lateral position of the wire has no effect.
+    """
+
+
+@dataclass(frozen=True)
 class Pantograph:
-    """Linear pantograph model: M z'' + C z' + K z = force - contact force on the head.
+    """Linear pantograph model: M z'' + C z' + K z = force - contact forces on the strips.
 
     Displacements z are positive upwards from the datum of the line.
     """
@@ -31,7 +43,7 @@ class Pantograph:
     stiffness: Array
     """Symmetric matrices, (n, n) [kg, N s/m, N/m]."""
     head: Array
-    """Selects the displacement of the head from the unknowns, (n,) [-]."""
+    """Selects the displacement of the head from the unknowns, (n,) [-]; of several strips, their mean."""
     force: Array
     """Constant forces on the unknowns, (n,): uplift force and preload of the springs [N]."""
     static_force: float
@@ -42,6 +54,30 @@ class Pantograph:
     """Damping beside this stiffness [N s/m]."""
     hertz_coefficient: float = math.inf
     """Coefficient K of Hertz's law F = K penetration^1.5, in series with the stiffness; infinite: none [N/m^1.5]."""
+    own_strips: tuple[Strip, ...] = ()
+    """Collector strips from front to rear; empty: the head is the only one."""
+
+    @property
+    def strips(self) -> tuple[Strip, ...]:
+        """Points of contact from front to rear."""
+        return self.own_strips or (Strip(0.0, self.head[None]),)
+
+    @property
+    def strip_shapes(self) -> Array:
+        """Displacement of each strip below the track axis per unknown, (strips, n) [-]."""
+        return np.array([strip.shape[0] for strip in self.strips])
+
+    @property
+    def strip_shares(self) -> Array:
+        """Share of each strip in the static force on a level wire, (strips,) [-]."""
+        size = len(self.strips)
+        if size == 1 or self.static_force == 0:
+            return np.full(size, 1 / size)
+        forces, raised = (equilibrium(self, height)[1] for height in (0.0, 1.0))
+        slope = raised - forces
+        # The height at which both carry the static force; without a base spring every height is suitable.
+        height = (self.static_force - forces.sum()) / slope.sum() if abs(slope.sum()) > 1e-9 else 0.0
+        return np.asarray((forces + height * slope) / (forces + height * slope).sum())
 
 
 def build_chain(
@@ -148,23 +184,25 @@ def preload_springs(pantograph: Pantograph, displacement: Array) -> Pantograph:
     return replace(pantograph, force=pantograph.force + pantograph.stiffness @ displacement)
 
 
-def equilibrium(pantograph: Pantograph, head_height: float) -> tuple[Array, float]:
-    """Static equilibrium with the head held at a height.
+def equilibrium(pantograph: Pantograph, height: float | Array) -> tuple[Array, Array]:
+    """Static equilibrium with the strips held at a height.
 
     Args:
         pantograph: Linear model.
-        head_height: Height of the head above the datum of the line [m].
+        height: Height of each strip, or of all, above the datum of the line, (strips,) [m].
 
     Returns:
-        displacement: Displacements of the unknowns, all but the head in equilibrium, (n,).
-        contact_force: Contact force that holds the head [N].
+        displacement: Displacements of the unknowns, all but the strips in equilibrium, (n,).
+        contact_forces: Contact force that holds each strip, (strips,) [N].
     """
-    n = pantograph.head.size
-    system = np.zeros((n + 1, n + 1))
+    n, shapes = pantograph.head.size, pantograph.strip_shapes
+    size = n + len(shapes)
+    system = np.zeros((size, size))
     system[:n, :n] = pantograph.stiffness
-    system[:n, n] = system[n, :n] = pantograph.head
-    solution = np.linalg.solve(system, np.append(pantograph.force, head_height))
-    return np.asarray(solution[:n]), float(solution[n])
+    system[:n, n:], system[n:, :n] = shapes.T, shapes
+    held = np.append(pantograph.force, np.broadcast_to(height, len(shapes)))
+    solution = np.linalg.solve(system, held)
+    return np.asarray(solution[:n]), np.asarray(solution[n:])
 
 
 def frequencies(pantograph: Pantograph) -> Array:

@@ -91,44 +91,46 @@ class ContactArrays(NamedTuple):
 
 
 class ContactWorkspace(NamedTuple):
-    """Predictors of the contacts of one step; P pantographs, W contact wires, N scalar forces near a contact at
-    most.
-    """
+    """Predictors of the contacts of one step; C strips, W contact wires, N scalar forces near a contact at most."""
 
+    place: Array
+    """Position of each strip along the track, (C,) [m]."""
     element: Indices
-    """Element above each pantograph, (P,)."""
+    """Element above each strip, (C,)."""
     above: Indices
-    """Contact wires above each pantograph, in the order of the line, (P, W)."""
+    """Contact wires above each strip, in the order of the line, (C, W)."""
     number_above: Indices
-    """Number of the contact wires above each pantograph, (P,)."""
+    """Number of the contact wires above each strip, (C,)."""
     shape: Array
-    """Hermite functions at the contacts, (P, W, 4)."""
+    """Hermite functions at the contacts, (C, W, 4)."""
     stiffness: Array
-    """Penalty and residual flexibility in series, (P, W) [N/m]."""
+    """Penalty and residual flexibility in series, (C, W) [N/m]."""
     damping: Array
-    """Damping of this series, (P, W) [N s/m]."""
+    """Damping of this series, (C, W) [N s/m]."""
     rate: Array
-    """Predicted rate of the overlap, zero without damping, (P, W) [m/s]."""
+    """Predicted rate of the overlap, zero without damping, (C, W) [m/s]."""
     overlap: Array
-    """Predicted overlap of head and wire, (P, W) [m]."""
+    """Predicted overlap of strip and wire, (C, W) [m]."""
+    pressing: Array
+    """Force of the last step on each strip, with that of a ramp, (C,) [N]."""
     head_compliance: Array
-    """Acceleration of each head per contact force, (P,) [1/kg]."""
+    """Acceleration of each strip per its contact force, (C,) [1/kg]."""
     response: Array
-    """Accelerations of deflection and slope around each contact per contact force, (P, W, 2, n) [1/kg, 1/(kg m)]."""
+    """Accelerations of deflection and slope around each contact per contact force, (C, W, 2, n) [1/kg, 1/(kg m)]."""
     start: Indices
-    """Station of the first value of each response, a multiple of a vector size, (P,); it can lie before the line."""
+    """Station of the first value of each response, a multiple of a vector size, (C,); it can lie before the line."""
     wire_compliance: Array
-    """Acceleration of each wire at one contact per force at another, (P, P, W) [1/kg]."""
+    """Acceleration of each wire at one contact per force at another, (C, C, W) [1/kg]."""
     wire_acceleration: Array
-    """Acceleration of each wire at its contacts under the forces of the last step, (P, W) [m/s2]."""
+    """Acceleration of each wire at its contacts under the forces of the last step, (C, W) [m/s2]."""
     first_guess: Array
-    """Contact forces of the last step, (P, W) [N]."""
+    """Contact forces of the last step, (C, W) [N]."""
     near: Indices
-    """Scalar forces that a contact influences, (P, W, N)."""
+    """Scalar forces that a contact influences, (C, W, N)."""
     influence: Array
-    """Accelerations of the elongations of these forces per contact force, (P, W, N) [1/kg]."""
+    """Accelerations of the elongations of these forces per contact force, (C, W, N) [1/kg]."""
     number_near: Indices
-    """Number of the scalar forces that a contact influences, (P, W)."""
+    """Number of the scalar forces that a contact influences, (C, W)."""
 
 
 def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float, half_width: int) -> ContactArrays:
@@ -149,31 +151,31 @@ def allocate_contact_workspace(
     contact: ContactArrays, connectors: ConnectorArrays, distributed: DistributedArrays, train: Train
 ) -> ContactWorkspace:
     """Allocate the scratch arrays for the simulation of a train."""
-    pantographs, wires = train.contact.shape
-    stiffness, damping, rate, overlap, wire_acceleration, first_guess = (
-        np.zeros((pantographs, wires)) for _ in range(6)
-    )
+    strips, wires = train.contact.shape
+    stiffness, damping, rate, overlap, wire_acceleration, first_guess = (np.zeros((strips, wires)) for _ in range(6))
     width = 2 * contact.half_width + 2 * LANES
     nodes = connectors.nodes
     place = nodes.row * (contact.position.size + width) + nodes.station
     ends_before = nodes.first_end[np.searchsorted(place, place + width)]
     near = int((ends_before - nodes.first_end[:-1]).max(initial=0)) + distributed.force.size
     return ContactWorkspace(
-        element=np.zeros(pantographs, dtype=np.int64),
-        above=np.zeros((pantographs, wires), dtype=np.int64),
-        number_above=np.zeros(pantographs, dtype=np.int64),
-        shape=np.zeros((pantographs, wires, 4)),
+        place=np.zeros(strips),
+        element=np.zeros(strips, dtype=np.int64),
+        above=np.zeros((strips, wires), dtype=np.int64),
+        number_above=np.zeros(strips, dtype=np.int64),
+        shape=np.zeros((strips, wires, 4)),
         stiffness=stiffness,
         damping=damping,
         rate=rate,
         overlap=overlap,
-        head_compliance=np.zeros(pantographs),
-        response=align(np.zeros((pantographs, wires, 2, width))),
-        start=np.zeros(pantographs, dtype=np.int64),
-        wire_compliance=np.zeros((pantographs, pantographs, wires)),
+        pressing=np.zeros(strips),
+        head_compliance=np.zeros(strips),
+        response=align(np.zeros((strips, wires, 2, width))),
+        start=np.zeros(strips, dtype=np.int64),
+        wire_compliance=np.zeros((strips, strips, wires)),
         wire_acceleration=wire_acceleration,
         first_guess=first_guess,
-        near=np.zeros((pantographs, wires, near), dtype=np.int64),
-        influence=np.zeros((pantographs, wires, near)),
-        number_near=np.zeros((pantographs, wires), dtype=np.int64),
+        near=np.zeros((strips, wires, near), dtype=np.int64),
+        influence=np.zeros((strips, wires, near)),
+        number_near=np.zeros((strips, wires), dtype=np.int64),
     )

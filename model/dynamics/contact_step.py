@@ -23,7 +23,6 @@ the scalar forces.
 
 import math
 
-from pantocheck.model.description.arrays import Array
 from pantocheck.model.dynamics.active_window import Window, search
 from pantocheck.model.dynamics.block_tridiagonal import solve_stations
 from pantocheck.model.dynamics.connector_step import ConnectorArrays, inner_product
@@ -57,83 +56,92 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
         holding = (1 + math.cos(math.pi * train.elapsed[0] / train.ramp[0])) / 2
     for p in range(train.position.size):
         train.position[p] += dt * train.speed[0]
-        _find_wires_above(contact, train, work, p)
         for i in range(unknowns):
             train.z[0, p, i] += dt * train.z[1, p, i] + dt * dt / 4 * train.z[2, p, i]
             train.z[1, p, i] += dt / 2 * train.z[2, p, i]
-        contact_force = 0.0
-        for n in range(work.number_above[p]):
-            contact_force += train.contact[p, work.above[p, n]]
-        contact_force += holding * train.held[p]
-        head, compliance = 0.0, 0.0
+        for c in range(train.first_strip[p], train.first_strip[p + 1]):
+            work.place[c] = train.position[p] + train.offset[c]
+            _find_wires_above(contact, train, work, c)
+            work.pressing[c] = 0.0
+            for n in range(work.number_above[c]):
+                work.pressing[c] += train.contact[c, work.above[c, n]]
+            work.pressing[c] += holding * train.held[c]
         for i in range(unknowns):
-            acceleration = 0.0
+            train.z[2, p, i] = 0.0
+        for j in range(unknowns):
+            force = train.force[p, j]
+            for c in range(train.first_strip[p], train.first_strip[p + 1]):
+                force -= train.head[c, j] * work.pressing[c]
+            for m in range(unknowns):
+                force -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
+            for i in range(unknowns):
+                train.z[2, p, i] += train.inverse[p, i, j] * force
+    for c in range(train.owner.size):
+        p, head, compliance = train.owner[c], 0.0, 0.0
+        for i in range(unknowns):
             for j in range(unknowns):
-                force = train.force[p, j] - train.head[p, j] * contact_force
-                for m in range(unknowns):
-                    force -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
-                acceleration += train.inverse[p, i, j] * force
-                compliance += train.head[p, i] * train.inverse[p, i, j] * train.head[p, j]
-            train.z[2, p, i] = acceleration
-            head += train.head[p, i] * train.z[0, p, i]
-        work.head_compliance[p] = compliance
-        for n in range(work.number_above[p]):
-            wire = work.above[p, n]
-            work.overlap[p, wire] = head
-            _predict_contact(contact, motion, train, work, p, wire)
-            _solve_response(contact, work, p, wire)
-            if math.isinf(train.contact_stiffness[p]):
-                mobility = work.head_compliance[p] + _at_contact(work, p, p, wire)
-                work.damping[p, wire] = 2 * math.sqrt(work.stiffness[p, wire] / mobility)
+                compliance += train.head[c, i] * train.inverse[p, i, j] * train.head[c, j]
+            head += train.head[c, i] * train.z[0, p, i]
+        work.head_compliance[c] = compliance
+        for n in range(work.number_above[c]):
+            wire = work.above[c, n]
+            work.overlap[c, wire] = head
+            _predict_contact(contact, motion, train, work, c, wire)
+            _solve_response(contact, work, c, wire)
+            if math.isinf(train.contact_stiffness[c]):
+                mobility = work.head_compliance[c] + _at_contact(work, c, c, wire)
+                work.damping[c, wire] = 2 * math.sqrt(work.stiffness[c, wire] / mobility)
 
 
 @kernel
-def _find_wires_above(contact: ContactArrays, train: Train, work: ContactWorkspace, p: int) -> None:
-    """Find the element and the contact wires above pantograph p; a wire that it has left presses no more."""
-    e, _, _ = _find_element(contact.position, train.position[p])
-    work.element[p], work.number_above[p] = e, 0
+def _find_wires_above(contact: ContactArrays, train: Train, work: ContactWorkspace, c: int) -> None:
+    """Find the element and the contact wires above strip c; a wire that it has left presses no more."""
+    e, _, _ = _find_element(contact.position, work.place[c])
+    work.element[c], work.number_above[c] = e, 0
     for wire in range(train.contact.shape[1]):
         if contact.wires.first[wire] <= e < contact.wires.last[wire]:
-            work.above[p, work.number_above[p]] = wire
-            work.number_above[p] += 1
+            work.above[c, work.number_above[c]] = wire
+            work.number_above[c] += 1
         else:
-            train.contact[p, wire] = 0.0
+            train.contact[c, wire] = work.first_guess[c, wire] = 0.0
 
 
 @kernel
 def _predict_contact(
-    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, p: int, wire: int
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, c: int, wire: int
 ) -> None:
-    """Complete the overlap of pantograph p, so far the height of its head, and load a wire with the contact force."""
-    row, n = contact.wires.row[wire], work.shape[p, wire]
-    e, h, s = _find_element(contact.position, train.position[p])
+    """Complete the overlap of strip c, so far its height, and load a wire with the contact force."""
+    row, n = contact.wires.row[wire], work.shape[c, wire]
+    e, h, s = _find_element(contact.position, work.place[c])
     # Hermite functions, as in `beam.shape`.
     n[0], n[1] = (1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2
     n[2], n[3] = s * s * (3 - 2 * s), h * s * s * (s - 1)
-    force, height = train.contact[p, wire], 0.0
-    work.first_guess[p, wire] = force
+    force, height = train.contact[c, wire], 0.0
+    work.first_guess[c, wire] = force
     for i in range(2):
         height += n[2 * i] * (contact.rest[row, e + i, 0] + motion.w[0, row, e + i])
         height += n[2 * i + 1] * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
         motion.w[2, row, e + i] += n[2 * i] * force
         motion.r[2, row, e + i] += n[2 * i + 1] * force
-    work.stiffness[p, wire] = 1 / (
-        1 / train.contact_stiffness[p] + _residual_flexibility(contact.flexibility[row, e], s)
+    work.stiffness[c, wire] = 1 / (
+        1 / train.contact_stiffness[c] + _residual_flexibility(contact.flexibility[row, e], s)
     )
-    work.overlap[p, wire] -= height + height_of_irregularity(contact.irregularity, wire, train.position[p])
-    if train.contact_damping[p] > 0.0:
-        softening = work.stiffness[p, wire] / train.contact_stiffness[p]
-        work.damping[p, wire] = softening * softening * train.contact_damping[p]
-    if train.contact_damping[p] > 0.0 or math.isinf(train.contact_stiffness[p]):
-        work.rate[p, wire] = _closing_rate(contact, motion, train, p, wire, n)
+    work.overlap[c, wire] -= height + height_of_irregularity(contact.irregularity, wire, work.place[c])
+    if train.contact_damping[c] > 0.0:
+        softening = work.stiffness[c, wire] / train.contact_stiffness[c]
+        work.damping[c, wire] = softening * softening * train.contact_damping[c]
+    if train.contact_damping[c] > 0.0 or math.isinf(train.contact_stiffness[c]):
+        work.rate[c, wire] = _closing_rate(contact, motion, train, work, c, wire)
 
 
 @kernel
-def _closing_rate(contact: ContactArrays, motion: Motion, train: Train, p: int, wire: int, shape: Array) -> float:
-    """Predicted rate of the overlap of pantograph p and a wire [m/s]: the contact moves along the slope of the wire."""
-    row, rate = contact.wires.row[wire], 0.0
-    e, h, s = _find_element(contact.position, train.position[p])
-    slope = slope_of_irregularity(contact.irregularity, wire, train.position[p])
+def _closing_rate(
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, c: int, wire: int
+) -> float:
+    """Predicted rate of the overlap of strip c and a wire [m/s]: the contact moves along the slope of the wire."""
+    row, shape, rate = contact.wires.row[wire], work.shape[c, wire], 0.0
+    e, h, s = _find_element(contact.position, work.place[c])
+    slope = slope_of_irregularity(contact.irregularity, wire, work.place[c])
     for i in range(2):
         # Derivatives of the Hermite functions along the track.
         by_w, by_r = (12 * i - 6) * s * (1 - s) / h, (1 - i - s) * (1 - i - 3 * s + 2 * i)
@@ -141,20 +149,20 @@ def _closing_rate(contact: ContactArrays, motion: Motion, train: Train, p: int, 
         slope += by_r * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
         rate -= shape[2 * i] * motion.w[1, row, e + i] + shape[2 * i + 1] * motion.r[1, row, e + i]
     for i in range(train.z.shape[2]):
-        rate += train.head[p, i] * train.z[1, p, i]
+        rate += train.head[c, i] * train.z[1, train.owner[c], i]
     return float(rate - train.speed[0] * slope)
 
 
 @kernel
-def _solve_response(contact: ContactArrays, work: ContactWorkspace, p: int, wire: int) -> None:
-    """Response of a wire to a unit force of pantograph p."""
-    e, half_width, response = work.element[p], contact.half_width, work.response[p, wire]
+def _solve_response(contact: ContactArrays, work: ContactWorkspace, c: int, wire: int) -> None:
+    """Response of a wire to a unit force of strip c."""
+    e, half_width, response = work.element[c], contact.half_width, work.response[c, wire]
     start = (e - half_width) // LANES * LANES
-    work.start[p] = start
+    work.start[c] = start
     response[:] = 0.0
     for i in range(2):
         for slope in range(2):
-            response[slope, e + i - start] = work.shape[p, wire, 2 * i + slope]
+            response[slope, e + i - start] = work.shape[c, wire, 2 * i + slope]
     first, last = max(0, e - half_width), min(contact.position.size - 1, e + 1 + half_width)
     solve_stations(contact.factor, contact.wires.row[wire], first, last, response[0], response[1], -start)
 
@@ -176,70 +184,70 @@ def accelerate_contacts(
         work: Responses of the wires; the rest is filled.
         window: Active window.
     """
-    pantographs, size = work.element.size, work.response.shape[3]
+    strips, size = work.element.size, work.response.shape[3]
     wires, rows, width = work.shape.shape[1], motion.w.shape[1], motion.w.shape[2]
-    for p in range(pantographs):
-        for n in range(work.number_above[p]):
-            wire = work.above[p, n]
-            at = (2 * rows + contact.wires.row[wire]) * width + work.start[p]
-            response = 2 * (p * wires + wire) * size
-            work.wire_acceleration[p, wire] = inner_product(work.response, response, size, motion.w, motion.r, at)
-            for other in range(pantographs):
-                work.wire_compliance[p, other, wire] = _at_contact(work, p, other, wire)
-            _list_near_connectors(contact, connectors, work, p, wire, window)
-            _list_near_distributed(contact, distributed, motion, work, p, wire)
+    for c in range(strips):
+        for n in range(work.number_above[c]):
+            wire = work.above[c, n]
+            at = (2 * rows + contact.wires.row[wire]) * width + work.start[c]
+            response = 2 * (c * wires + wire) * size
+            work.wire_acceleration[c, wire] = inner_product(work.response, response, size, motion.w, motion.r, at)
+            for other in range(strips):
+                work.wire_compliance[c, other, wire] = _at_contact(work, c, other, wire)
+            _list_near_connectors(contact, connectors, work, c, wire, window)
+            _list_near_distributed(contact, distributed, motion, work, c, wire)
 
 
 @kernel
-def _at_contact(work: ContactWorkspace, p: int, other: int, wire: int) -> float:
-    """Acceleration of a wire at the contact of another pantograph, or of p itself, per force of pantograph p."""
-    acceleration, s = 0.0, work.element[other] - work.start[p]
+def _at_contact(work: ContactWorkspace, c: int, other: int, wire: int) -> float:
+    """Acceleration of a wire at the contact of another strip, or of c itself, per force of strip c."""
+    acceleration, s = 0.0, work.element[other] - work.start[c]
     if s < 0 or s + 1 >= work.response.shape[3]:
         return 0.0
     for i in range(2):
         for slope in range(2):
-            acceleration += work.shape[other, wire, 2 * i + slope] * work.response[p, wire, slope, s + i]
+            acceleration += work.shape[other, wire, 2 * i + slope] * work.response[c, wire, slope, s + i]
     return acceleration
 
 
 @kernel
 def _list_near_connectors(
-    contact: ContactArrays, connectors: ConnectorArrays, work: ContactWorkspace, p: int, wire: int, window: Window
+    contact: ContactArrays, connectors: ConnectorArrays, work: ContactWorkspace, c: int, wire: int, window: Window
 ) -> None:
     """List the connectors with a node inside the response to a contact, and their accelerations."""
-    nodes, row, start, number = connectors.nodes, contact.wires.row[wire], work.start[p], 0
+    nodes, row, start, number = connectors.nodes, contact.wires.row[wire], work.start[c], 0
     low, high = max(start, window.first), min(start + work.response.shape[3], window.last + 1)
     j = search(nodes.station, nodes.first[row], nodes.first[row + 1], low)
     while j < nodes.first[row + 1] and nodes.station[j] < high:
-        acceleration = work.response[p, wire, 0, nodes.station[j] - start]
+        acceleration = work.response[c, wire, 0, nodes.station[j] - start]
         for end in range(nodes.first_end[j], nodes.first_end[j + 1]):
-            work.near[p, wire, number] = nodes.connector[end]
-            work.influence[p, wire, number] = nodes.coefficient[end] * acceleration
+            work.near[c, wire, number] = nodes.connector[end]
+            work.influence[c, wire, number] = nodes.coefficient[end] * acceleration
             number += 1
         j += 1
-    work.number_near[p, wire] = number
+    work.number_near[c, wire] = number
 
 
 @kernel
 def _list_near_distributed(
-    contact: ContactArrays, distributed: DistributedArrays, motion: Motion, work: ContactWorkspace, p: int, wire: int
+    contact: ContactArrays, distributed: DistributedArrays, motion: Motion, work: ContactWorkspace, c: int, wire: int
 ) -> None:
     """List the distributed forces whose response covers a contact, and their accelerations."""
-    number, n, e = work.number_near[p, wire], work.shape[p, wire], work.element[p]
+    number, n, e = work.number_near[c, wire], work.shape[c, wire], work.element[c]
     for z in range(distributed.force.size):
         size = (distributed.first[z + 1] - distributed.first[z]) // 2
         s = e - distributed.station[z]
         if distributed.row[z] == contact.wires.row[wire] and s >= 0 and s + 1 < size:
             at = distributed.first[z] + s
-            work.near[p, wire, number] = motion.force.size - distributed.number + distributed.force[z]
-            work.influence[p, wire, number] = (
+            work.near[c, wire, number] = motion.force.size - distributed.number + distributed.force[z]
+            work.influence[c, wire, number] = (
                 n[0] * distributed.response[at]
                 + n[1] * distributed.response[at + size]
                 + n[2] * distributed.response[at + 1]
                 + n[3] * distributed.response[at + size + 1]
             )
             number += 1
-    work.number_near[p, wire] = number
+    work.number_near[c, wire] = number
 
 
 @kernel
@@ -253,31 +261,32 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
         scalar: Scalar forces, whose accelerations are updated.
     """
     largest = 0.0
-    for p in range(train.position.size):
-        for number in range(work.number_above[p]):
-            wire = work.above[p, number]
-            old, k, c = train.contact[p, wire], work.stiffness[p, wire], work.damping[p, wire]
-            approach = -work.wire_acceleration[p, wire]
+    for c in range(train.owner.size):
+        p = train.owner[c]
+        for number in range(work.number_above[c]):
+            wire = work.above[c, number]
+            old, k, damper = train.contact[c, wire], work.stiffness[c, wire], work.damping[c, wire]
+            approach = -work.wire_acceleration[c, wire]
             for i in range(train.z.shape[2]):
-                approach += train.head[p, i] * train.z[2, p, i]
-            for other in range(train.position.size):
+                approach += train.head[c, i] * train.z[2, p, i]
+            for other in range(train.owner.size):
                 change = train.contact[other, wire] - work.first_guess[other, wire]
-                approach -= work.wire_compliance[p, other, wire] * change
-            for i in range(work.number_near[p, wire]):
-                approach += work.influence[p, wire, i] * scalar.change[work.near[p, wire, i]]
-            gain, held = k * dt * dt / 4 + c * dt / 2, k * work.overlap[p, wire] + c * work.rate[p, wire]
-            compliance = gain * (work.head_compliance[p] + work.wire_compliance[p, p, wire])
+                approach -= work.wire_compliance[c, other, wire] * change
+            for i in range(work.number_near[c, wire]):
+                approach += work.influence[c, wire, i] * scalar.change[work.near[c, wire, i]]
+            gain, held = k * dt * dt / 4 + damper * dt / 2, k * work.overlap[c, wire] + damper * work.rate[c, wire]
+            compliance = gain * (work.head_compliance[c] + work.wire_compliance[c, c, wire])
             force = max((held + gain * approach + compliance * old) / (1 + compliance), 0.0)
-            if train.hertz[p] > 0.0 and force > 0.0:
-                force = reduce_by_hertz(force, train.hertz[p] * k / (1 + compliance))
+            if train.hertz[c] > 0.0 and force > 0.0:
+                force = reduce_by_hertz(force, train.hertz[c] * k / (1 + compliance))
             change = force - old
             if abs(change) > NEGLIGIBLE_FORCE:
-                train.contact[p, wire] = force
-                for i in range(work.number_near[p, wire]):
-                    scalar.acceleration[work.near[p, wire, i]] += work.influence[p, wire, i] * change
+                train.contact[c, wire] = force
+                for i in range(work.number_near[c, wire]):
+                    scalar.acceleration[work.near[c, wire, i]] += work.influence[c, wire, i] * change
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
-                        train.z[2, p, i] -= train.inverse[p, i, j] * train.head[p, j] * change
+                        train.z[2, p, i] -= train.inverse[p, i, j] * train.head[c, j] * change
             largest = maximum(largest, abs(change))
     return largest
 
@@ -303,13 +312,13 @@ def reduce_by_hertz(linear: float, share: float) -> float:
 @kernel
 def load_contacts(contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace) -> None:
     """Load the wires with the changes of the contact forces since the last step."""
-    for p in range(train.position.size):
-        for number in range(work.number_above[p]):
-            wire, e = work.above[p, number], work.element[p]
-            row, change = contact.wires.row[wire], train.contact[p, wire] - work.first_guess[p, wire]
+    for c in range(train.owner.size):
+        for number in range(work.number_above[c]):
+            wire, e = work.above[c, number], work.element[c]
+            row, change = contact.wires.row[wire], train.contact[c, wire] - work.first_guess[c, wire]
             for i in range(2):
-                motion.w[2, row, e + i] += work.shape[p, wire, 2 * i] * change
-                motion.r[2, row, e + i] += work.shape[p, wire, 2 * i + 1] * change
+                motion.w[2, row, e + i] += work.shape[c, wire, 2 * i] * change
+                motion.r[2, row, e + i] += work.shape[c, wire, 2 * i + 1] * change
 
 
 @kernel

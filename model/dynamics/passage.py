@@ -40,17 +40,19 @@ class Passage:
 
 @dataclass(frozen=True)
 class History:
-    """Result of a passage; T steps, P pantographs, U watched stations."""
+    """Result of a passage; T steps, P pantographs, C strips, U watched stations."""
 
     time: Array
     """Time at the end of each step, (T,) [s]."""
     position: Array
     """Position of the pantographs, (P, T) [m]."""
     force: Array
-    """Contact force, unfiltered, (P, T) [N]."""
+    """Contact force, unfiltered, the sum over the strips of each pantograph, (P, T) [N]."""
     height: Array
-    """Height of the head above the datum of the line, (P, T) [m]."""
+    """Height of the head above the datum of the line, the mean over its strips, (P, T) [m]."""
     motion: Array
     """Vertical displacement, velocity and acceleration at the watched stations, (U, T, 3) [m, m/s, m/s2]; NaN while
     it is unknown, see `active_window`.
     """
+    strip_force: Array
+    """Contact force of each strip, numbered as in a `Train`, (C, T) [N]."""

@@ -21,15 +21,15 @@ BLOCK = 500
 
 
 class Recording(NamedTuple):
-    """Recorded time series; T steps, P pantographs, U stations."""
+    """Recorded time series; T steps, C strips, U stations."""
 
     row: Indices
     station: Indices
     """Rows and stations whose motion is recorded, (U,)."""
     contact: Array
-    """Contact force of each pantograph, summed over the contact wires, (T, P) [N]."""
+    """Contact force of each strip, summed over the contact wires, (T, C) [N]."""
     height: Array
-    """Height of the heads, (T, P) [m]."""
+    """Height of the strips, (T, C) [m]."""
     motion: Array
     """Displacement, velocity, acceleration at the stations, (T, U, 3) [m, m/s, m/s2]."""
     slack: Indices
@@ -87,13 +87,13 @@ def _advance(
         motion.load[0] = load[n]
         if step(kernel, motion, train, work) == 0:
             return n
-        for p in range(train.position.size):
+        for c in range(train.owner.size):
             total, head = 0.0, 0.0
             for k in range(train.contact.shape[1]):
-                total += train.contact[p, k]
+                total += train.contact[c, k]
             for i in range(train.z.shape[2]):
-                head += train.head[p, i] * train.z[0, p, i]
-            recording.contact[n, p], recording.height[n, p] = total, head
+                head += train.head[c, i] * train.z[0, train.owner[c], i]
+            recording.contact[n, c], recording.height[n, c] = total, head
         for u in range(recording.row.size):
             b, s = recording.row[u], recording.station[u]
             a = motion.w[2, b, s]
@@ -114,7 +114,7 @@ def allocate_recording(
     line: DiscretisedLine,
     watched: tuple[tuple[str, float], ...],
     steps: int,
-    pantographs: int,
+    strips: int,
     axes: tuple[str, ...] = ("z",),
 ) -> Recording:
     """Allocate a recording of a number of steps.
@@ -125,8 +125,8 @@ def allocate_recording(
     return Recording(
         row=np.array([line.mesh.row_of[wire, axis] for wire, _ in watched for axis in axes], dtype=np.int64),
         station=np.repeat(np.array(stations, dtype=np.int64), len(axes)),
-        contact=np.zeros((steps, pantographs)),
-        height=np.zeros((steps, pantographs)),
+        contact=np.zeros((steps, strips)),
+        height=np.zeros((steps, strips)),
         motion=np.zeros((steps, len(watched) * len(axes), 3)),
         slack=np.zeros(steps, dtype=np.int64),
     )

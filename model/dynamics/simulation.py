@@ -6,6 +6,7 @@ import numpy as np
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.failures import ImpossiblePassage
+from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_arrays import ContactArrays, height_of_irregularity
@@ -43,14 +44,22 @@ def simulate_passage(
     kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))
     motion, train = start_motion(line, kernel, passage)
     steps = round(passage.duration / passage.time_step)
-    recording = allocate_recording(line, passage.watched, steps, len(passage.pantographs))
+    recording = allocate_recording(line, passage.watched, steps, train.owner.size)
     simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
     time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     force, height = recording.contact.T.copy(), recording.height.T.copy()
+    first = train.first_strip[:-1]
     watched = recording.motion.transpose(1, 0, 2).copy()
     watched[find_unknown(kernel.window, passage, time)] = np.nan
-    return History(time, position, force, height, watched)
+    return History(
+        time=time,
+        position=position,
+        force=np.add.reduceat(force, first),
+        height=np.add.reduceat(height, first) / np.diff(train.first_strip)[:, None],
+        motion=watched,
+        strip_force=force,
+    )
 
 
 def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
@@ -58,28 +67,40 @@ def _check_passage(line: DiscretisedLine, passage: Passage) -> None:
     if not passage.pantographs:
         raise ImpossiblePassage("the passage has no pantograph; at least one is needed")
     first, last = line.mesh.position[0], line.mesh.position[-1]
-    rear, front = min(passage.start), max(passage.start) + passage.speed * passage.duration
+    places = [place for _, place in _strip_places(passage)]
+    rear, front = min(places), max(places) + passage.speed * passage.duration
     if rear < first or front > last:
         raise ImpossiblePassage(
             f"the pantographs run from {rear:g} m to {front:g} m, but the line extends from {first:g} m to {last:g} m"
         )
 
 
+def _strip_places(passage: Passage) -> list[tuple[Pantograph, float]]:
+    """Pantograph and position at the start of every strip."""
+    return [
+        (pantograph, x + strip.offset)
+        for pantograph, x in zip(passage.pantographs, passage.start, strict=True)
+        for strip in pantograph.strips
+    ]
+
+
 def start_motion(line: DiscretisedLine, kernel: KernelArrays, passage: Passage) -> tuple[Motion, Train]:
     """Compute line and pantographs at rest, each pressing with its static force; before a ramp, with none."""
     wires, pressed = locate_contact_wires(line), float(passage.ramp == 0)
-    touched = np.zeros((len(passage.pantographs), wires.row.size), dtype=np.bool_)
+    places = _strip_places(passage)
+    shares = [share for pantograph in passage.pantographs for share in pantograph.strip_shares]
+    touched = np.zeros((len(places), wires.row.size), dtype=np.bool_)
     load = np.zeros(line.beams.free.size)
-    for p, (pantograph, x) in enumerate(zip(passage.pantographs, passage.start, strict=True)):
+    for c, ((pantograph, x), share) in enumerate(zip(places, shares, strict=True)):
         under = touched_wires(line, x)
-        touched[p, under] = True
+        touched[c, under] = True
         for row in wires.row[under]:
-            load += 1 / under.size * pressed * pantograph.static_force * point_load(line, row, x)
+            load += share / under.size * pressed * pantograph.static_force * point_load(line, row, x)
     deflection = static_solver(line).deflection(load)
     profile = kernel.contact.rest + deflection.displacement
     height, flexibility = np.zeros(touched.shape), np.zeros(touched.shape)
-    for p, wire in np.argwhere(touched):
-        height[p, wire], flexibility[p, wire] = _contact_point(kernel.contact, profile, wire, passage.start[p])
+    for c, wire in np.argwhere(touched):
+        height[c, wire], flexibility[c, wire] = _contact_point(kernel.contact, profile, wire, places[c][1])
     train = build_train(passage, touched, height, flexibility)
     return motion_at_rest(kernel.layout, deflection, kernel.distributed.number), train
 

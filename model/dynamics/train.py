@@ -1,4 +1,7 @@
-"""Pantographs of a train as plain arrays, with their state."""
+"""Pantographs of a train as plain arrays, with their state.
+
+Strips are numbered through the train: those of the first pantograph from front to rear, then those of the second.
+"""
 
 import math
 from typing import NamedTuple
@@ -6,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.contact_law import penetration
 from pantocheck.model.description.pantograph import equilibrium
 from pantocheck.model.dynamics.passage import Passage
 
 
 class Train(NamedTuple):
-    """Pantographs and their state; P pantographs of at most n unknowns, W contact wires of the line."""
+    """Pantographs and their state; P pantographs of at most n unknowns, C strips, W contact wires."""
 
     position: Array
     """Position along the track, (P,) [m]."""
@@ -24,85 +27,101 @@ class Train(NamedTuple):
     ramp: Array
     """Time over which the heads are released, (1,) [s]."""
     held: Array
-    """Force that holds each head down at the start of the ramp, (P,) [N]."""
+    """Force that holds each strip down at the start of the ramp, (C,) [N]."""
     inverse: Array
     """Inverse of the effective matrix M + dt/2 C + dt^2/4 K of each pantograph, (P, n, n) [1/kg]."""
     damping: Array
     stiffness: Array
     """Matrices of each pantograph, (P, n, n) [N s/m, N/m]."""
-    head: Array
-    """Selects the displacement of the head, (P, n) [-]."""
     force: Array
     """Constant forces, (P, n) [N]."""
+    first_strip: Indices
+    """First strip of each pantograph, and C, (P + 1,)."""
+    owner: Indices
+    """Pantograph of each strip, (C,)."""
+    offset: Array
+    """Distance of each strip ahead of the position of its pantograph, (C,) [m]."""
+    head: Array
+    """Displacement of each strip per unknown, (C, n) [-]."""
     contact_stiffness: Array
-    """Stiffness of the penalty contact, infinite for a rigid contact, (P,) [N/m]."""
+    """Stiffness of the penalty contact, infinite for a rigid contact, (C,) [N/m]."""
     contact_damping: Array
-    """Damping beside this stiffness, (P,) [N s/m]."""
+    """Damping beside this stiffness, (C,) [N s/m]."""
     hertz: Array
-    """Penetration per F^(2/3) by Hertz's law, zero without this law, (P,) [m/N^(2/3)]."""
+    """Penetration per F^(2/3) by Hertz's law, zero without this law, (C,) [m/N^(2/3)]."""
     z: Array
     """Displacement, velocity, acceleration, (3, P, n) [m, m/s, m/s2]."""
     contact: Array
-    """Contact forces, (P, W) [N]."""
+    """Contact forces, (C, W) [N]."""
 
 
 def build_empty_train(contact_wires: int) -> Train:
     """Build a train without a pantograph, for the free motion of a line."""
-    return _allocate(0, 1, contact_wires)
+    return _allocate(0, 1, 0, contact_wires)
 
 
 def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array, flexibility: Array) -> Train:
     """Build the pantographs at rest, each pressing with its static force, or held down if the passage has a ramp.
 
-    The touched contact wires share the force equally.
+    The touched contact wires share the force of a strip equally.
 
     Args:
         passage: Pantographs, positions, speed, time step and ramp.
-        touched: Whether each head touches each contact wire at the start, (P, W).
-        wire_height: Height of each touched contact wire at the position of each head in the state at the start, (P, W)
-            [m].
-        flexibility: Residual flexibility of each touched contact wire there, (P, W) [m/N].
+        touched: Whether each strip touches each contact wire at the start, (C, W).
+        wire_height: Height of each touched contact wire at the position of each strip in the state at the start,
+            (C, W) [m].
+        flexibility: Residual flexibility of each touched contact wire there, (C, W) [m/N].
 
     Returns:
         Pantographs and their state.
     """
-    wires = wire_height.shape[1]
-    train = _allocate(len(passage.pantographs), max(p.head.size for p in passage.pantographs), wires)
+    unknowns = max(p.head.size for p in passage.pantographs)
+    train = _allocate(len(passage.pantographs), unknowns, *wire_height.shape)
     train.position[:], train.speed[0], train.ramp[0] = passage.start, passage.speed, passage.ramp
+    train.first_strip[1:] = np.cumsum([len(p.strips) for p in passage.pantographs])
     half, quarter = passage.time_step / 2, passage.time_step**2 / 4
     for p, pantograph in enumerate(passage.pantographs):
-        n = pantograph.head.size
+        n, strips = pantograph.head.size, slice(*train.first_strip[p : p + 2])
         effective = pantograph.mass + half * pantograph.damping + quarter * pantograph.stiffness
         train.inverse[p, :n, :n] = np.linalg.inv(effective)
         train.damping[p, :n, :n], train.stiffness[p, :n, :n] = pantograph.damping, pantograph.stiffness
-        train.head[p, :n], train.force[p, :n] = pantograph.head, pantograph.force
-        train.contact_stiffness[p], train.contact_damping[p] = pantograph.contact_stiffness, pantograph.contact_damping
-        train.hertz[p] = pantograph.hertz_coefficient ** (-2 / 3)
-        share = pantograph.static_force / touched[p].sum() if passage.ramp == 0 else 0.0
-        train.contact[p, touched[p]] = share
-        overlap = share * (1 / pantograph.contact_stiffness + float(flexibility[p, touched[p]].mean()))
-        overlap += penetration(math.inf, pantograph.hertz_coefficient, share)
-        train.z[0, p, :n], force_down = equilibrium(pantograph, float(wire_height[p, touched[p]].mean()) + overlap)
-        train.held[p] = force_down if passage.ramp > 0 else 0.0
+        train.force[p, :n] = pantograph.force
+        train.owner[strips], train.head[strips, :n] = p, pantograph.strip_shapes
+        train.offset[strips] = [strip.offset for strip in pantograph.strips]
+        train.contact_stiffness[strips] = pantograph.contact_stiffness
+        train.contact_damping[strips] = pantograph.contact_damping
+        train.hertz[strips] = pantograph.hertz_coefficient ** (-2 / 3)
+        height = np.zeros(len(pantograph.strips))
+        for k, (c, part) in enumerate(zip(range(strips.start, strips.stop), pantograph.strip_shares, strict=True)):
+            share = part * pantograph.static_force / touched[c].sum() if passage.ramp == 0 else 0.0
+            train.contact[c, touched[c]] = share
+            overlap = share * (1 / pantograph.contact_stiffness + float(flexibility[c, touched[c]].mean()))
+            overlap += penetration(math.inf, pantograph.hertz_coefficient, share)
+            height[k] = float(wire_height[c, touched[c]].mean()) + overlap
+        train.z[0, p, :n], forces_down = equilibrium(pantograph, height)
+        train.held[strips] = forces_down if passage.ramp > 0 else 0.0
     return train
 
 
-def _allocate(pantographs: int, unknowns: int, contact_wires: int) -> Train:
+def _allocate(pantographs: int, unknowns: int, strips: int, contact_wires: int) -> Train:
     """Train with zeros in all arrays."""
     return Train(
         position=np.zeros(pantographs),
         speed=np.zeros(1),
         elapsed=np.zeros(1),
         ramp=np.zeros(1),
-        held=np.zeros(pantographs),
+        held=np.zeros(strips),
         inverse=np.zeros((pantographs, unknowns, unknowns)),
         damping=np.zeros((pantographs, unknowns, unknowns)),
         stiffness=np.zeros((pantographs, unknowns, unknowns)),
-        head=np.zeros((pantographs, unknowns)),
         force=np.zeros((pantographs, unknowns)),
-        contact_stiffness=np.zeros(pantographs),
-        contact_damping=np.zeros(pantographs),
-        hertz=np.zeros(pantographs),
+        first_strip=np.zeros(pantographs + 1, dtype=np.int64),
+        owner=np.zeros(strips, dtype=np.int64),
+        offset=np.zeros(strips),
+        head=np.zeros((strips, unknowns)),
+        contact_stiffness=np.zeros(strips),
+        contact_damping=np.zeros(strips),
+        hertz=np.zeros(strips),
         z=np.zeros((3, pantographs, unknowns)),
-        contact=np.zeros((pantographs, contact_wires)),
+        contact=np.zeros((strips, contact_wires)),
     )

@@ -195,7 +195,7 @@ def simulate_exact_passage(discretised: DiscretisedLine, rest: Rest, passage: Pa
     time = INTERVAL * (np.arange(samples) + 0.5)
     uplift = (height - rest.position[2, watched]).T[:, :, None]
     position = (start + passage.speed * time)[None]
-    return History(time, position, contact[None], np.full_like(contact, np.nan)[None], uplift)
+    return History(time, position, contact[None], np.full_like(contact, np.nan)[None], uplift, contact[None])
 
 
 def _build_pantograph(pantograph: Pantograph) -> ExactPantograph:

@@ -172,6 +172,7 @@ def ramp(seconds: float) -> Callable[[DiscretisedLine, Passage], History]:
             np.concatenate([part.contact for part in histories]).T.copy(),
             np.concatenate([part.height for part in histories]).T.copy(),
             np.concatenate([part.motion for part in histories]).transpose(1, 0, 2).copy(),
+            np.concatenate([part.contact for part in histories]).T.copy(),
         )
 
     def uplift(pantograph: Any) -> NDArray[np.float64]:

@@ -125,7 +125,7 @@ def solve_delay_equations(speed: float, times: RealArray, head: Pantograph = _HE
     c = wave_speed(WIRE_TENSION, WIRE_MASS)
     distance = _PLACES[0] - _PLACES[1]
     delays = (distance / (c - speed), distance / (c + speed))
-    rest, held = equilibrium(head, 0.0)
+    rest, (held,) = equilibrium(head, 0.0)
     inverse, n, impedance = np.linalg.inv(head.mass), rest.size, 2 * WIRE_MASS * c
     # Unknowns of a head: displacements, velocities, height of the string at the contact.
     state = np.tile(np.concatenate([rest, np.zeros(n + 1)]), (2, 1))
