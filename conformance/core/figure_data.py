@@ -45,6 +45,8 @@ class Traces(ResultsPart):
     position_m: list[float]
     force_N: list[float]
     force_20_N: list[float] | None
+    strip_forces_N: Annotated[list[list[float]] | None, Field(exclude_if=lambda value: value is None)] = None
+    """Contact forces of front and rear strip; left out if they are not recorded."""
     mean_N: float
     std_N: float | None
     supports_m: list[float]
@@ -54,7 +56,11 @@ class Traces(ResultsPart):
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
         return check_lengths(
-            self, self.position_m, self.force_N, self.force_N if self.force_20_N is None else self.force_20_N
+            self,
+            self.position_m,
+            self.force_N,
+            self.force_N if self.force_20_N is None else self.force_20_N,
+            *(self.strip_forces_N or ()),
         )
 
 

@@ -95,13 +95,22 @@ class PantographSamples(ResultsPart):
     """Contact force as delivered."""
     contact_height_m: PackedSamples | None
     """Height of the contact point in the analysis sections, elsewhere missing; null: not delivered."""
+    front_strip_force_N: Annotated[PackedSamples | None, Field(exclude_if=lambda value: value is None)] = None
+    """Contact force of the front strip, of two, as delivered."""
     arcs: PackedSamples | None = None
     loaded: PackedSamples | None = None
     """Arcs, and time under load, as 1 or 0; null: no arc detector."""
 
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
-        channels = (self.position_m, self.force_N, self.contact_height_m, self.arcs, self.loaded)
+        channels = (
+            self.position_m,
+            self.force_N,
+            self.contact_height_m,
+            self.front_strip_force_N,
+            self.arcs,
+            self.loaded,
+        )
         return _check_lengths(self, [channel for channel in channels if channel is not None])
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
+from pydantic_core import PydanticCustomError
 
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
 from pantocheck.conformance.core.sourced_table import (
@@ -21,6 +22,7 @@ from pantocheck.conformance.core.sourced_table import (
     validation_problem,
 )
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
+from pantocheck.conformance.pantograph.head_tables import LISTED_BY_LAW, HeadTable
 from pantocheck.conformance.pantograph.validity_range import SupportedRange
 from pantocheck.model.description.contact_law import (
     Force,
@@ -209,6 +211,8 @@ class PantographFile(InputTable):
     matrices: Annotated[MatricesTable | None, Feature("matrices")] = None
     modes: Annotated[ModesTable | None, Feature("modes")] = None
     contact: ContactTable
+    head: Annotated[HeadTable | None, Field(exclude_if=is_absent), LISTED_BY_LAW] = None
+    """Strips, rotations, bending modes, friction and stops; default: the head is one rigid strip."""
     force_law: Annotated[
         ForceLaw | None,
         Field(exclude_if=is_absent),
@@ -236,6 +240,45 @@ class PantographFile(InputTable):
         if isinstance(self.force_law, AppliedForceLaw):
             yield from self._find_wrong_point("force_law.aerodynamic_force.on", self.force_law.aerodynamic_force.on)
 
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns of the model without the structure of its head."""
+        if self.chain is not None:
+            return len(self.chain.masses_kg)
+        return len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
+
+    @property
+    def strips(self) -> int:
+        """Number of strips."""
+        return max(len(self.head.strip), 1) if self.head is not None else 1
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the motion under the contact forces is linear and does not depend on the position of the wire."""
+        head = self.head
+        return head is None or not (head.friction or head.stop or head.roll or head.bending_mode)
+
+    def penetration(self, force: Force) -> Force:
+        """Penetration of the strips and the wire under a contact force that they share [m, N]."""
+        return self.contact.penetration(force / self.strips)
+
+    def compliance(self, force: float) -> float:
+        """Change of this penetration with the contact force, at a force [m/N, N]."""
+        return self.contact.compliance(force / self.strips) / self.strips
+
+    @cross_check
+    def _head_fits_the_model(self) -> Problems:
+        if self.head is None:
+            return
+        for problem in self.head.find_misfits(self.chain is not None, self.unknowns):
+            yield _place_problem("head", problem)
+        for key in ("friction", "stop"):
+            for i, table in enumerate(getattr(self.head, key)):
+                for part in table.between or ():
+                    known = ("base", *(f"strip {n}" for n, _ in enumerate(self.head.strip, 1)))
+                    if self.chain is not None and part not in known:
+                        yield from self.chain.find_wrong_mass(f"head.{key}[{i}].between", part)
+
     def _find_wrong_point(self, key: str, point: int | str | tuple[float, ...]) -> Problems:
         """Problem of a point of application that does not have the form of the model."""
         if self.chain is not None:
@@ -244,11 +287,16 @@ class PantographFile(InputTable):
             else:
                 yield from self.chain.find_wrong_mass(key, point)
             return
-        size = len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
-        if not isinstance(point, tuple) or len(point) != size:
+        if not isinstance(point, tuple) or len(point) != self.unknowns:
             yield validation_problem(
-                key, f"is not a list of {size} values", "Give the displacement of the point in each unknown."
+                key, f"is not a list of {self.unknowns} values", "Give the displacement of the point in each unknown."
             )
+
+
+def _place_problem(table: str, problem: PydanticCustomError) -> PydanticCustomError:
+    """Problem of a key of a table, as a problem of the file."""
+    context = problem.context or {}
+    return validation_problem(f"{table}.{context['key']}", context["found"], context["hint"])
 
 
 def _find_wrong_lengths(table: InputTable, keys: tuple[str, ...], n: int, item: str, items: str) -> Problems:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,12 +35,35 @@ def build_pantograph(
     """
     model = _build_model(file, uplift_force, working_height, wire_height)
     shift = _aerodynamic_point(file) - _uplift_point(file)
-    return replace(
+    model = replace(
         model,
         force=model.force + aerodynamic_force * shift,
         contact_damping=file.contact.damping_N_s_m,
         hertz_coefficient=file.contact.hertz_coefficient,
     )
+    if file.head is None:
+        return model
+    return file.head.extend(model, partial(_find_part, file), _datum(file, model.head, working_height, wire_height))
+
+
+def _datum(file: PantographFile, head: RealArray, working_height: float, wire_height: float) -> RealArray:
+    """Displacement of the unknowns at which the springs are without force."""
+    if file.chain is not None:
+        at_working_height = file.chain.base_spring_unstretched == "working_height"
+        return np.full(head.size, working_height if at_working_height else wire_height)
+    shapes = [strip.shape for strip in file.head.strip if strip.shape] if file.head is not None else []
+    if shapes:
+        return np.asarray(np.linalg.pinv(np.array(shapes)) @ np.full(len(shapes), working_height))
+    # Any displacement with the head at the working height is suitable: its spring forces become preload.
+    return np.asarray(head * working_height / (head @ head))
+
+
+def _find_part(file: PantographFile, part: int | str, size: int) -> RealArray:
+    """Displacement of the base or of a mass of a chain, per unit of each of the unknowns."""
+    place = np.zeros(size)
+    if part != "base" and file.chain is not None:
+        place[file.chain.mass_index(part)] = 1.0
+    return place
 
 
 def _build_model(file: PantographFile, uplift_force: float, working_height: float, wire_height: float) -> Pantograph:
@@ -55,20 +79,18 @@ def _build_model(file: PantographFile, uplift_force: float, working_height: floa
             parts.uplift_mass,
             contact,
         )
-        unstretched = working_height if parts.base_spring_unstretched == "working_height" else wire_height
-        return preload_springs(model, np.full(len(parts.masses_kg), unstretched))
+        return preload_springs(model, _datum(file, model.head, working_height, wire_height))
     if file.matrices is not None:
         table = file.matrices
         matrices = (np.array(table.mass_kg), np.array(table.damping_N_s_m), np.array(table.stiffness_N_m))
         model = from_matrices(*matrices, np.array(table.head), uplift_force, contact)
         model = replace(model, force=uplift_force * _uplift_point(file))
-        # Any displacement with the head at the working height is suitable: its spring forces become preload.
-        return preload_springs(model, model.head * working_height / (model.head @ model.head))
+        return preload_springs(model, _datum(file, model.head, working_height, wire_height))
     modes = file.modes
     if modes is None:
         raise ValueError("a pantograph without a model")  # No valid file has this content.
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
-    preload = omega**2 * shape * working_height / (shape @ shape)
+    preload = omega**2 * _datum(file, shape, working_height, wire_height)
     force = uplift_force * _uplift_point(file) + preload
     return from_modes(np.array(modes.frequency_Hz), np.array(modes.damping_ratio), shape, force, uplift_force, contact)
 

@@ -134,6 +134,8 @@ class PantographSignals:
     """Start (included) and end (excluded) of the analysis section [m]."""
     contact_height: RealArray | None = None
     """Height of the contact point, (n,) [m], or None."""
+    front_strip_force: RealArray | None = None
+    """Contact force of the front strip as delivered, (n,) [N]; the rear one has the rest; None: not recorded."""
     arc_channels: RealArray | None = None
     """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
     shortest_loss_s: float | None = None
@@ -191,6 +193,14 @@ class PantographSignals:
     def delivered(self) -> RealArray:
         """Contact force as delivered, over the analysis section [N]."""
         return self.force.delivered[self.inside]
+
+    @property
+    def strip_forces(self) -> tuple[RealArray, ...]:
+        """Contact forces of front and rear strip over the analysis section [N]; empty if they are not recorded."""
+        if self.front_strip_force is None:
+            return ()
+        front = self.front_strip_force[self.inside]
+        return front, self.delivered - front
 
     @property
     def graded(self) -> RealArray:

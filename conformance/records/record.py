@@ -20,6 +20,13 @@ SPEED_TOLERANCE = 0.005
 """Relative tolerance of the speed of a run [-]: a tenth of the width of a resonance over speed."""
 
 
+STRIP_CHANNELS = ("front_strip_force", "rear_strip_force")
+"""Channels of the two strips of a pantograph."""
+
+STRIP_TOLERANCE_N = 0.1
+"""Largest difference of the contact force from the sum of its strips: rounding of three channels [N]."""
+
+
 class RecordInvalid(ValueError):
     """Invalid channel of a record; statistics of such a record would have no meaning.
 
@@ -60,6 +67,9 @@ class Record:
     """Positions of the supports, (s,) [m]."""
     support_uplift: RealArray | None = None
     """Uplift of the contact wire at the supports, (s, n) [m]; NaN where it is not known."""
+    front_strip_force: RealArray | None = None
+    rear_strip_force: RealArray | None = None
+    """Contact forces of both strips of every pantograph, whose sum is its force, (p, n) [N]."""
     rate: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -83,10 +93,13 @@ class Record:
         n = self.time.size
         if self.force.ndim != 2 or self.force.shape[1] != n:
             raise RecordInvalid("force", f"has the shape {self.force.shape}, expected (pantographs, {n})")
-        for name in ("position", "contact_height"):
+        for name in ("position", "contact_height", *STRIP_CHANNELS):
             value = getattr(self, name)
             if value is not None and value.shape != self.force.shape:
                 raise RecordInvalid(name, f"has the shape {value.shape}, expected {self.force.shape} as for the force")
+        strips = [force for name in STRIP_CHANNELS if (force := getattr(self, name)) is not None]
+        if strips and not (len(strips) == 2 and np.abs(strips[0] + strips[1] - self.force).max() <= STRIP_TOLERANCE_N):
+            raise RecordInvalid(STRIP_CHANNELS[0], "the forces of both strips do not add up to the contact force")
         if (self.support_position is None) != (self.support_uplift is None):
             raise RecordInvalid("support_uplift", "uplift and positions of the supports are needed together")
         if self.support_position is not None and self.support_uplift is not None:
@@ -103,7 +116,9 @@ class Record:
         return int(self.force.shape[0])
 
 
-_ARRAYS = frozenset({"time", "position", "force", "contact_height", "support_position", "support_uplift"})
+_ARRAYS = frozenset(
+    {"time", "position", "force", "contact_height", *STRIP_CHANNELS, "support_position", "support_uplift"}
+)
 _WITH_GAPS = frozenset({"support_uplift"})
 """Arrays that may hold NaN: a simulation that moves only a part of the line does not know the motion far behind it."""
 
@@ -171,6 +186,7 @@ CHANNELS: dict[str, RecordChannel] = {
         RecordChannel("position", "m", "pantograph"),
         RecordChannel("force", "N", "pantograph"),
         RecordChannel("contact_height", "m", "pantograph"),
+        *(RecordChannel(name, "N", "pantograph") for name in STRIP_CHANNELS),
         RecordChannel("uplift", "m", "support"),
     )
 }

@@ -14,7 +14,7 @@ from pantocheck.conformance.core.files import file_digest, produce_atomically, w
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import CSV, HDF5, TableFormat, find_table_format
 from pantocheck.conformance.core.toml_file import read_toml
-from pantocheck.conformance.records.record import CHANNELS, Record, RecordChannel
+from pantocheck.conformance.records.record import CHANNELS, STRIP_CHANNELS, Record, RecordChannel
 from pantocheck.conformance.records.record_sidecar import RECORD_SCHEMA, RecordSidecar
 
 Rows = dict[RecordChannel, RealArray]
@@ -90,6 +90,7 @@ def _write_table(record: Record, table_format: TableFormat, path: Path) -> None:
         "position": record.position,
         "force": record.force,
         "contact_height": record.contact_height,
+        **{name: getattr(record, name) for name in STRIP_CHANNELS},
         "uplift": record.support_uplift,
     }
     rows = {CHANNELS[name]: values for name, values in channels.items() if values is not None}

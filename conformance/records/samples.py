@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.records.record import SPEED_TOLERANCE, Record, RecordInvalid
+from pantocheck.conformance.records.record import SPEED_TOLERANCE, STRIP_CHANNELS, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 
 
@@ -24,6 +24,9 @@ class RecordSamples:
     """Contact points along the track [m], (p, n), or (1, n) of the first pantograph only."""
     contact_height: RealArray | None = None
     """Height of the contact point, (p, n) [m]."""
+    front_strip_force: RealArray | None = None
+    rear_strip_force: RealArray | None = None
+    """Contact forces of both strips, (p, n) [N]."""
     uplift: RealArray | None = None
     """Uplift of the contact wire at the supports, (s, n) [m]."""
     support_position: RealArray | None = None
@@ -45,7 +48,7 @@ class RecordSamples:
 
 
 _WITH_GAPS = ("uplift", "event_level", "arcing", "loaded")
-_SAMPLED = ("force", "time", "speed", "position", "contact_height", "uplift", "event_level", "arcing", "loaded")
+_SAMPLED = ("force", "time", "speed", "position", "contact_height", *STRIP_CHANNELS, *_WITH_GAPS)
 
 
 def complete_samples(
@@ -139,6 +142,8 @@ def build_record(
         evaluated=section,
         filter_applied_Hz=sidecar.low_passed_Hz,
         contact_height=samples.contact_height,
+        front_strip_force=samples.front_strip_force,
+        rear_strip_force=samples.rear_strip_force,
         support_position=samples.support_position,
         support_uplift=samples.uplift,
     )

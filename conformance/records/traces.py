@@ -89,6 +89,7 @@ def _build_traces(signals: PantographSignals, position: RealArray, supports: lis
         position_m=thin_series(position[drawn]),
         force_N=thin_series(signals.delivered[drawn]),
         force_20_N=None if graded is None else thin_series(graded[drawn]),
+        strip_forces_N=[thin_series(force[drawn]) for force in signals.strip_forces] or None,
         mean_N=float(signals.delivered.mean()),
         std_N=None if graded is None else float(graded.std()),
         supports_m=supports,

@@ -177,6 +177,7 @@ def _watched_supports(case: Case, line: DiscretisedLine) -> tuple[tuple[str, flo
 
 def record_passage(case: Case, passage: Passage, history: History) -> Record:
     """Record of the passage of a case."""
+    front, rear = _strip_forces(passage, history)
     return Record(
         time=history.time,
         speed=passage.speed,
@@ -184,9 +185,20 @@ def record_passage(case: Case, passage: Passage, history: History) -> Record:
         force=history.force,
         evaluated=case.analysis_section,
         contact_height=history.height,
+        front_strip_force=front,
+        rear_strip_force=rear,
         support_position=np.array([position for _, position in passage.watched]),
         support_uplift=history.motion[:, :, 0],
     )
+
+
+def _strip_forces(passage: Passage, history: History) -> tuple[RealArray, RealArray] | tuple[None, None]:
+    """Forces of front and rear strip; none if no pantograph has two strips. A single strip is the front one."""
+    counts = [len(pantograph.strips) for pantograph in passage.pantographs]
+    if max(counts) == 1:
+        return None, None
+    front = history.strip_force[np.cumsum([0, *counts[:-1]])]
+    return front, history.force - front
 
 
 # Compiled simulations of the model. They need the extra `simulator`; the first simulation loads them.

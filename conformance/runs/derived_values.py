@@ -10,19 +10,17 @@ import numpy as np
 from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.sourced_table import InputTable
+from pantocheck.conformance.core.sourced_table import InputTable, is_absent
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.derived_line import DerivedLine, build_derived_line
 from pantocheck.conformance.line.elements.derived_numbers import Numbers, round_number, round_numbers, round_positions
-from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.records.sidecar_tables import StartTable
 from pantocheck.conformance.runs.case_run import list_start_forces
 from pantocheck.conformance.runs.uplift_tuning import (
     TOLERANCE,
+    build_pantographs,
     compute_working_height,
-    nominal_wire_height,
     working_height_positions,
 )
 from pantocheck.model import DiscretisedLine, discretise
@@ -58,8 +56,14 @@ class DerivedPantograph(InputTable):
     """Contact force at the start [N]."""
     start_wire_height_m: float
     """Height of the contact wire at the position of the head at the start [m]."""
+    start_strip_force_N: Annotated[Numbers | None, Field(exclude_if=is_absent)] = None
+    """Contact force of each of several strips at the start; their sum is start_force_N [N]."""
+    start_strip_wire_height_m: Annotated[Numbers | None, Field(exclude_if=is_absent)] = None
+    """Height of the contact wire above each of several strips at the start [m]."""
     start_displacement: Numbers
-    """z of every unknown at the start [m; modes: m kg^1/2]."""
+    """z of every unknown at the start [m; modes: m kg^1/2]; behind those of the model pitch, strips on springs, roll
+    and bending modes.
+    """
 
 
 class DerivedStart(StartTable):
@@ -146,25 +150,31 @@ def build_derived_start(case: Case) -> DerivedStart:
 
 
 def _train(case: Case, line: DiscretisedLine) -> DerivedTrain:
-    heights = height_under_forces(line, np.array(case.start_positions), np.array(list_start_forces(case)))
     return DerivedTrain(
-        pantographs=_pantographs(case, line, heights),
+        pantographs=_pantographs(case, line),
         working_height_positions_m=round_positions(working_height_positions(case)),
         start=build_derived_start(case),
         evaluation=_evaluation(case),
     )
 
 
-def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple[DerivedPantograph, ...]:
+def _pantographs(case: Case, line: DiscretisedLine) -> tuple[DerivedPantograph, ...]:
+    models = build_pantographs(case, line, list_start_forces(case))
+    places = [
+        np.array([start + strip.offset for strip in model.strips])
+        for model, start in zip(models, case.start_positions, strict=True)
+    ]
+    forces = [model.static_force * model.strip_shares for model in models]
+    heights = iter(height_under_forces(line, np.concatenate(places), np.concatenate(forces)).tolist())
     pantographs = []
-    for file, lift, start, height in zip(
-        case.pantographs, case.lift_forces, case.start_positions, heights, strict=True
-    ):
+    parts = zip(case.pantographs, case.lift_forces, case.start_positions, models, forces, strict=True)
+    for file, lift, start, model, strip_forces in parts:
         force = lift.uplift_force
         share = 1 / touched_rows(line, start).size
         working_height = compute_working_height(case, line, file, force)
-        model = build_pantograph(file, force, working_height, nominal_wire_height(case), lift.aerodynamic_force)
-        displacement, _ = equilibrium(model, float(height) + file.contact.penetration(force * share))
+        height = np.array([next(heights) for _ in strip_forces])
+        displacement, _ = equilibrium(model, height + file.contact.penetration(strip_forces * share))
+        several = height.size > 1
         pantographs.append(
             DerivedPantograph(
                 uplift_force_N=force,
@@ -174,7 +184,9 @@ def _pantographs(case: Case, line: DiscretisedLine, heights: RealArray) -> tuple
                 contact_force_share=share,
                 start_m=start,
                 start_force_N=force,
-                start_wire_height_m=round_number(height),
+                start_wire_height_m=round_number(float(height.mean())),
+                start_strip_force_N=round_numbers(strip_forces) if several else None,
+                start_strip_wire_height_m=round_numbers(height) if several else None,
                 start_displacement=round_numbers(displacement),
             )
         )

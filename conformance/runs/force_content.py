@@ -116,7 +116,7 @@ def kink_content(case: Case, number: int, upper: float) -> float:
     frequency = np.arange(LOWER_BAND_HZ[0], upper, FREQUENCY_STEP_HZ)
     omega = 2 * np.pi * frequency
     string = 1 / (2j * omega * wire.number * np.sqrt(wire.tension_N * wire.mass_kg_m))
-    contact = file.contact.compliance(case.lift_forces[number - 1].uplift_force)
+    contact = file.compliance(case.lift_forces[number - 1].uplift_force)
     compliance = head_receptance(file, omega) + contact + string
     return _compare_bands(frequency, np.abs(1 / compliance) / frequency**2)
 

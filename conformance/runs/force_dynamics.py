@@ -84,10 +84,13 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding:
     findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
+        if (reason := find_unknown_motion(file, signals, number)) is not None:
+            findings.append(report_not_made("dynamics", reason))
+            continue
         window = _compared_samples(pantograph)
-        force = low_pass(pantograph.force.delivered, record.rate)[window][::step]
+        forces = [low_pass(force, record.rate)[window][::step] for force in list_strip_forces(file, signals, number)]
         height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
-        fit = compare_motion(file, force, height, step / record.rate)
+        fit = compare_motion(file, np.array(forces), height, step / record.rate)
         if fit is None:
             findings.append(report_not_made("dynamics", f"the head of pantograph {number} hardly moves"))
         else:
@@ -98,12 +101,30 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding:
     return worst_finding(findings)
 
 
+def find_unknown_motion(file: PantographFile, signals: RecordSignals, number: int) -> str | None:
+    """Reason why a record does not determine the motion of the head of a pantograph; None if it does."""
+    if not file.is_linear:
+        return f"the head of pantograph {number} is not linear"
+    if file.strips > 1 and signals.record.front_strip_force is None:
+        return f"the record has no forces of the strips of pantograph {number}"
+    return None
+
+
+def list_strip_forces(file: PantographFile, signals: RecordSignals, number: int) -> list[RealArray]:
+    """Contact forces of the strips of a pantograph over the whole record, as delivered [N]."""
+    record, row = signals.record, number - 1
+    if file.strips == 1 or record.front_strip_force is None or record.rear_strip_force is None:
+        return [record.force[row]]
+    return [record.front_strip_force[row], record.rear_strip_force[row]]
+
+
 def compare_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
     Args:
         file: Pantograph of the case.
-        force, height: Contact force [N] and height of the contact point [m], (n,).
+        force: Contact force of each strip, (strips, n), or of a single one, (n,) [N].
+        height: Height of the contact point, (n,) [m].
         step: Time between samples [s].
 
     Returns:
@@ -115,7 +136,9 @@ def compare_motion(file: PantographFile, force: RealArray, height: RealArray, st
         return None
     # The contact point is the head, or the wire, which the head penetrates by force over contact stiffness.
     head = _fit(motion, response)
-    wire = _fit(remove_free_motion(height + file.contact.penetration(force), free), response)
+    wire = _fit(
+        remove_free_motion(height + file.contact.penetration(np.atleast_2d(force)).mean(axis=0), free), response
+    )
     return wire if wire.unexplained < head.unexplained / 2 else head
 
 
@@ -138,22 +161,23 @@ def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple
 
     Args:
         file: Pantograph of the case.
-        force: Contact force, (n,) [N].
+        force: Contact force of each strip, (strips, n), or of a single one, (n,) [N].
         step: Time between samples [s].
     """
-    model = build_pantograph(file, 0.0, 0.0)
-    m = model.head.size
+    model, force = build_pantograph(file, 0.0, 0.0), np.atleast_2d(force)
+    m, shapes = model.head.size, model.strip_shapes
     inverse = np.linalg.inv(model.mass)
     state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
-    drive = np.concatenate([np.zeros(m), -inverse @ model.head])
     head = np.concatenate([model.head, np.zeros(m)])
-    time = step * np.arange(force.size)
-    response = _simulate(state, drive, force - force.mean(), step) @ head
+    time, response = step * np.arange(force.shape[1]), np.zeros(force.shape[1])
+    for shape, part in zip(shapes, force, strict=True):
+        drive = np.concatenate([np.zeros(m), -inverse @ shape])
+        response += _simulate(state, drive, part - part.mean(), step) @ head
     poles = np.linalg.eigvals(state)
     slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]
     modes = np.exp(time[:, None] * slow)
     drift = [time] if np.abs(poles).min() < 1e-3 else []  # without a spring to the base
-    return response, np.column_stack([np.ones(force.size), *drift, modes.real, modes.imag])
+    return response, np.column_stack([np.ones(time.size), *drift, modes.real, modes.imag])
 
 
 def _simulate(matrix: RealArray, drive: RealArray, force: RealArray, step: float) -> RealArray:

@@ -32,7 +32,13 @@ from pantocheck.conformance.runs.check import (
     rounding_step,
     worst_finding,
 )
-from pantocheck.conformance.runs.force_dynamics import SAMPLES_PER_PERIOD, head_responses, remove_free_motion
+from pantocheck.conformance.runs.force_dynamics import (
+    SAMPLES_PER_PERIOD,
+    find_unknown_motion,
+    head_responses,
+    list_strip_forces,
+    remove_free_motion,
+)
 from pantocheck.model.description.cubic_spline import evaluate_polynomials, fit_polynomials
 
 FORCE_ERROR = Measure("largest error of the force up to the cut-off", "", {"doubt": 0.15})
@@ -69,6 +75,8 @@ def _check_implied_force(case: Case, signals: RecordSignals) -> Finding:
         if not is_observable(band.cutoff_Hz, record.rate):
             continue  # its quantities are not available either
         for number, file in enumerate(case.pantographs, 1):
+            if find_unknown_motion(file, signals, number) is not None:
+                return NAMED_ELSEWHERE  # by the dynamics
             error = force_error(file, signals, number, band)
             findings.append(_judge(number, measure, error, band, record.contact_height[number - 1]))
     return worst_finding(findings)
@@ -100,12 +108,13 @@ def force_error(file: PantographFile, signals: RecordSignals, number: int, low_p
     heights = [height]
     heights += [applied(height, record.rate) for applied in _stated_filters(low_pass, record.filter_applied_Hz)]
     force = smooth(record.force[number - 1])
-    response, free = head_responses(file, force, step)
+    forces = [smooth(strip) for strip in list_strip_forces(file, signals, number)]
+    response, free = head_responses(file, np.array(forces), step)
     spread = max(float(force[inside].std()), TINY)
     errors = []
     for candidate in heights:
         motion = smooth(candidate)
-        for compliance in (0.0, file.contact.compliance(float(force.mean()))):
+        for compliance in (0.0, file.compliance(float(force.mean()))):
             difference = remove_free_motion(motion - response + compliance * (force - force.mean()), free)
             difference *= _taper_ends(force.size, min(taper, force.size / 2))
             error = _multiply_by_dynamic_stiffness(file, difference, step, compliance)

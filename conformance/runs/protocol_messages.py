@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.core.sourced_table import PROVENANCE, InputTable, is_absent
 from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.force_law import PointOfForce
+from pantocheck.conformance.pantograph.head_tables import HeadTable
 from pantocheck.conformance.pantograph.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.runs.derived_values import Derived
@@ -51,6 +52,8 @@ class RequestedPantograph(InputTable):
     matrices: MatricesTable | None
     modes: ModesTable | None
     contact: ContactTable
+    head: Annotated[HeadTable | None, Field(exclude_if=is_absent)] = None
+    """Structure of the head; default: one rigid strip."""
     uplift_force_N: float | None
     """Constant uplift force, or start value of the tuning [N]."""
     target_mean_force_N: float | None

@@ -95,7 +95,7 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     assert record.contact_height is not None
     wire = case.line.contact_wire
     position, force = record.position[number - 1], record.force[number - 1]
-    height, contact = record.contact_height[number - 1], case.pantographs[number - 1].contact
+    height, file = record.contact_height[number - 1], case.pantographs[number - 1]
     rows = []
     for support, uplift in zip(line.supports, line.uplift, strict=True):
         in_overlap = any(start < support < end for start, end in case.line.overlaps)
@@ -107,7 +107,7 @@ def _find_passages(case: Case, signals: RecordSignals, number: int) -> _Passages
     support, load, z, u = (np.array([row[i] for row in rows]) for i in range(4))
     touching = load > 0
     z = z - rest_heights(case, support)
-    candidates = [z - contact.penetration(load), z]
+    candidates = [z - file.penetration(load), z]
     spreads = [np.ptp((candidate - u)[touching]) if touching.any() else 0.0 for candidate in candidates]
     best = candidates[int(np.argmin(spreads))]
     net = abs(wire.number * wire.tension_N - wire.number * wire.mass_kg_m * record.speed**2)

@@ -160,7 +160,7 @@ class _Passages:
             moment = self._moment(number, support)
             load = np.interp(moment, record.time, force)
             gap = np.interp(moment, record.time, height) - np.interp(moment, record.time, uplift)
-            gap -= file.contact.penetration(load) + rest_height
+            gap -= file.penetration(load) + rest_height
             differences.append(np.where(np.isfinite(moment) & (load > 0), gap, np.nan))
         scatter = _scatter(np.array(differences))
         at_passage = scatter[np.abs(self.shifts) <= COINCIDENCE_TOLERANCE_M]

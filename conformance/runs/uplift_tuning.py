@@ -133,7 +133,7 @@ def _estimate_uplift_force(case: Case, line: DiscretisedLine, index: int, lift: 
     def contact_force(uplift_force: float) -> float:
         """Contact force that holds the head at its mean height [N]."""
         pantograph = build_pantographs(case, line, [uplift_force] * len(case.lift_forces))[index]
-        return float(equilibrium(pantograph, wire + case.pantographs[index].contact.penetration(target))[1].sum())
+        return float(equilibrium(pantograph, wire + case.pantographs[index].penetration(target))[1].sum())
 
     at_target = contact_force(target)
     slope = (contact_force(target + FORCE_STEP) - at_target) / FORCE_STEP
@@ -177,7 +177,7 @@ def compute_working_height(case: Case, line: DiscretisedLine, file: PantographFi
         uplift_force: Its uplift force [N].
     """
     uplift = mean_static_uplift(line, tuple(working_height_positions(case).tolist()), uplift_force)
-    return nominal_wire_height(case) + (uplift + file.contact.penetration(uplift_force))
+    return nominal_wire_height(case) + (uplift + file.penetration(uplift_force))
 
 
 @keep_with_line

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy  # loads scipy.linalg when it is used
+from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array
 
@@ -29,6 +30,25 @@ class Strip:
     """Displacement of the strip at the lateral position y per unknown: coefficients of the powers of y from 0 on,
     (D, n) [-, 1/m, ...]; one row if the lateral position of the wire has no effect.
     """
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Force between parts of a pantograph: X = stiffness (e - gap) + damping e', within bounds, e = direction . z.
+
+    A stop is unilateral: X >= 0. Coulomb friction has the bounds +-F and a damper F / v: it slides at speeds above v.
+    """
+
+    direction: Array
+    """Closing of both parts per unknown, (n,) [-]; the force on the unknowns is -X direction."""
+    stiffness: float = 0.0
+    damping: float = 0.0
+    """Coefficients [N/m, N s/m]."""
+    gap: float = 0.0
+    """Closing from which the stiffness acts [m]."""
+    lower: float = 0.0
+    upper: float = math.inf
+    """Bounds of the force [N]."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +76,8 @@ class Pantograph:
     """Coefficient K of Hertz's law F = K penetration^1.5, in series with the stiffness; infinite: none [N/m^1.5]."""
     own_strips: tuple[Strip, ...] = ()
     """Collector strips from front to rear; empty: the head is the only one."""
+    joints: tuple[Joint, ...] = ()
+    """Forces of friction and stops."""
 
     @property
     def strips(self) -> tuple[Strip, ...]:
@@ -176,6 +198,70 @@ def from_modes(
         np.asarray(modal_force, dtype=float),
         static_force,
         contact_stiffness,
+    )
+
+
+def from_poles(
+    pole: NDArray[np.complex128],
+    residue: NDArray[np.complex128],
+    static_force: float,
+    contact_stiffness: float,
+) -> Pantograph:
+    """Build a pantograph from its receptance, the sum of r / (s - p) and of the conjugate terms [m/N].
+
+    A term is a state x with x' = p x + f, times r. The real and the negative imaginary part of r x' = r p x + r f are a
+    symmetric system without mass, C z' + K z = head f, so that a transfer function is a pantograph like any other.
+
+    Args:
+        pole: Poles with an imaginary part of zero or above, (n,) [1/s].
+        residue: Residues, (n,) [m/(N s)].
+        static_force: Contact force at rest [N].
+        contact_stiffness: Stiffness of the penalty contact [N/m].
+    """
+    real = np.flatnonzero(np.repeat(pole.imag == 0, 2) & (np.arange(2 * pole.size) % 2 == 1))
+
+    def matrix(factor: NDArray[np.complex128]) -> Array:
+        """Symmetric matrix of the form Re(factor x^2) of every pair, twice; a real pole has one unknown."""
+        blocks = [np.array([[f.real, -f.imag], [-f.imag, -f.real]]) * (2 if p.imag else 1) for f, p in pairs(factor)]
+        return np.delete(np.delete(scipy.linalg.block_diag(*blocks), real, 0), real, 1)
+
+    def pairs(factor: NDArray[np.complex128]) -> list[tuple[complex, complex]]:
+        return list(zip(factor.tolist(), pole.tolist(), strict=True))
+
+    head = np.delete(np.ravel([(2 if p.imag else 1) * np.array([r.real, -r.imag]) for r, p in pairs(residue)]), real)
+    damping = matrix(residue)
+    stiffness = -matrix(residue * pole)
+    return from_matrices(0 * damping, damping, stiffness, head, static_force, contact_stiffness)
+
+
+def add_unknown(pantograph: Pantograph, mass: float, damping: float = 0.0, stiffness: float = 0.0) -> Pantograph:
+    """Add an unknown with its own mass, damper and spring; no strip moves with it yet.
+
+    Args:
+        pantograph: Linear model.
+        mass, damping, stiffness: Coefficients [kg, N s/m, N/m], or those of a rotation or of a mode.
+    """
+    ends = ((pantograph.mass, mass), (pantograph.damping, damping), (pantograph.stiffness, stiffness))
+    matrices = [np.asarray(scipy.linalg.block_diag(matrix, value)) for matrix, value in ends]
+    strips = tuple(replace(strip, shape=np.pad(strip.shape, ((0, 0), (0, 1)))) for strip in pantograph.own_strips)
+    return replace(
+        pantograph,
+        mass=matrices[0],
+        damping=matrices[1],
+        stiffness=matrices[2],
+        head=np.append(pantograph.head, 0.0),
+        force=np.append(pantograph.force, 0.0),
+        own_strips=strips,
+    )
+
+
+def add_spring(pantograph: Pantograph, direction: Array, stiffness: float, damping: float) -> Pantograph:
+    """Add a spring and a damper [N/m, N s/m] on the displacement direction . z; direction: (n,)."""
+    square = np.outer(direction, direction)
+    return replace(
+        pantograph,
+        stiffness=pantograph.stiffness + stiffness * square,
+        damping=pantograph.damping + damping * square,
     )
 
 

@@ -78,6 +78,8 @@ class ContactArrays(NamedTuple):
     """Positions of the stations, (S,) [m]."""
     wires: ContactWires
     """Rows and extents of the contact wires."""
+    lateral_row: Indices
+    """Row of the lateral motion of each wire; -1 without lateral field, (W,)."""
     rest: Array
     """Height and slope of the rows in the initial state, (B, S, 2) [m, -]."""
     flexibility: Array
@@ -113,8 +115,12 @@ class ContactWorkspace(NamedTuple):
     """Predicted overlap of strip and wire, (C, W) [m]."""
     pressing: Array
     """Force of the last step on each strip, with that of a ramp, (C,) [N]."""
+    joint: Array
+    """Forces of the joints in the predicted motion, without their bounds, (J,) [N]."""
+    head: Array
+    """Displacement of each strip below each wire per unknown, (C, W, n) [-]."""
     head_compliance: Array
-    """Acceleration of each strip per its contact force, (C,) [1/kg]."""
+    """Acceleration of each strip per its contact force, (C, W) [1/kg]."""
     response: Array
     """Accelerations of deflection and slope around each contact per contact force, (C, W, 2, n) [1/kg, 1/(kg m)]."""
     start: Indices
@@ -139,6 +145,7 @@ def build_contact_arrays(line: DiscretisedLine, factor: Factor, time_step: float
         time_step=time_step,
         position=line.mesh.position,
         wires=locate_contact_wires(line),
+        lateral_row=np.array([line.mesh.row_of.get((wire.name, "y"), -1) for wire in line.catenary.contact_wires]),
         rest=np.ascontiguousarray(line.state.deflection),
         flexibility=line.beams.flexibility,
         irregularity=build_irregularity_arrays(line.catenary.contact_wires),
@@ -169,7 +176,9 @@ def allocate_contact_workspace(
         rate=rate,
         overlap=overlap,
         pressing=np.zeros(strips),
-        head_compliance=np.zeros(strips),
+        joint=np.zeros(train.joint_owner.size),
+        head=np.zeros((strips, wires, train.z.shape[2])),
+        head_compliance=np.zeros((strips, wires)),
         response=align(np.zeros((strips, wires, 2, width))),
         start=np.zeros(strips, dtype=np.int64),
         wire_compliance=np.zeros((strips, strips, wires)),

@@ -65,6 +65,7 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             work.pressing[c] = 0.0
             for n in range(work.number_above[c]):
                 work.pressing[c] += train.contact[c, work.above[c, n]]
+                _shape_strip(contact, motion, train, work, c, work.above[c, n])
             work.pressing[c] += holding * train.held[c]
         for i in range(unknowns):
             train.z[2, p, i] = 0.0
@@ -72,25 +73,74 @@ def predict_train(contact: ContactArrays, motion: Motion, train: Train, work: Co
             force = train.force[p, j]
             for c in range(train.first_strip[p], train.first_strip[p + 1]):
                 force -= train.head[c, j] * work.pressing[c]
+                if train.lateral.shape[1] > 0:
+                    for n in range(work.number_above[c]):
+                        wire = work.above[c, n]
+                        force -= (work.head[c, wire, j] - train.head[c, j]) * train.contact[c, wire]
+            for k in range(train.joint_owner.size):
+                if train.joint_owner[k] == p:
+                    force -= train.joint[k, j] * train.joint_force[k]
             for m in range(unknowns):
                 force -= train.damping[p, j, m] * train.z[1, p, m] + train.stiffness[p, j, m] * train.z[0, p, m]
             for i in range(unknowns):
                 train.z[2, p, i] += train.inverse[p, i, j] * force
     for c in range(train.owner.size):
-        p, head, compliance = train.owner[c], 0.0, 0.0
-        for i in range(unknowns):
-            for j in range(unknowns):
-                compliance += train.head[c, i] * train.inverse[p, i, j] * train.head[c, j]
-            head += train.head[c, i] * train.z[0, p, i]
-        work.head_compliance[c] = compliance
+        p = train.owner[c]
         for n in range(work.number_above[c]):
-            wire = work.above[c, n]
-            work.overlap[c, wire] = head
+            wire, head, compliance = work.above[c, n], 0.0, 0.0
+            for i in range(unknowns):
+                for j in range(unknowns):
+                    compliance += work.head[c, wire, i] * train.inverse[p, i, j] * work.head[c, wire, j]
+                head += work.head[c, wire, i] * train.z[0, p, i]
+            work.head_compliance[c, wire], work.overlap[c, wire] = compliance, head
             _predict_contact(contact, motion, train, work, c, wire)
             _solve_response(contact, work, c, wire)
             if math.isinf(train.contact_stiffness[c]):
-                mobility = work.head_compliance[c] + _at_contact(work, c, c, wire)
+                mobility = compliance + _at_contact(work, c, c, wire)
                 work.damping[c, wire] = 2 * math.sqrt(work.stiffness[c, wire] / mobility)
+    for k in range(train.joint_owner.size):
+        p, closing, rate = train.joint_owner[k], -train.joint_law[k, 2], 0.0
+        for i in range(unknowns):
+            closing += train.joint[k, i] * train.z[0, p, i]
+            rate += train.joint[k, i] * train.z[1, p, i]
+        work.joint[k] = train.joint_law[k, 0] * closing + train.joint_law[k, 1] * rate
+
+
+@kernel
+def _shape_strip(
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, c: int, wire: int
+) -> None:
+    """Displacement of strip c per unknown below a wire, at its lateral position."""
+    for i in range(train.head.shape[1]):
+        work.head[c, wire, i] = train.head[c, i]
+    if train.lateral.shape[1] > 0:
+        (y, _), power = _lateral_motion(contact, motion, train, work, c, wire), 1.0
+        for k in range(train.lateral.shape[1]):
+            power *= y
+            for i in range(train.head.shape[1]):
+                work.head[c, wire, i] += power * train.lateral[c, k, i]
+
+
+@kernel
+def _lateral_motion(
+    contact: ContactArrays, motion: Motion, train: Train, work: ContactWorkspace, c: int, wire: int
+) -> tuple[float, float]:
+    """Predicted lateral position of a wire above strip c, and its rate as the strip moves [m, m/s]."""
+    row, y, rate = contact.lateral_row[wire], 0.0, 0.0
+    if row < 0:
+        return 0.0, 0.0
+    e, h, s = _find_element(contact.position, work.place[c])
+    for i in range(2):
+        # Hermite functions and their derivatives along the track.
+        n, m = (1 - s) ** 2 * (1 + 2 * s) if i == 0 else s * s * (3 - 2 * s), h * s * (1 - s) * (1 - i - s)
+        by_w, by_r = (12 * i - 6) * s * (1 - s) / h, (1 - i - s) * (1 - i - 3 * s + 2 * i)
+        w, r = (
+            contact.rest[row, e + i, 0] + motion.w[0, row, e + i],
+            contact.rest[row, e + i, 1] + motion.r[0, row, e + i],
+        )
+        y += n * w + m * r
+        rate += train.speed[0] * (by_w * w + by_r * r) + n * motion.w[1, row, e + i] + m * motion.r[1, row, e + i]
+    return y, rate
 
 
 @kernel
@@ -149,7 +199,13 @@ def _closing_rate(
         slope += by_r * (contact.rest[row, e + i, 1] + motion.r[0, row, e + i])
         rate -= shape[2 * i] * motion.w[1, row, e + i] + shape[2 * i + 1] * motion.r[1, row, e + i]
     for i in range(train.z.shape[2]):
-        rate += train.head[c, i] * train.z[1, train.owner[c], i]
+        rate += work.head[c, wire, i] * train.z[1, train.owner[c], i]
+    if train.lateral.shape[1] > 0:
+        (y, moving), power = _lateral_motion(contact, motion, train, work, c, wire), 1.0
+        for k in range(train.lateral.shape[1]):
+            for i in range(train.z.shape[2]):
+                rate += moving * (k + 1) * power * train.lateral[c, k, i] * train.z[0, train.owner[c], i]
+            power *= y
     return float(rate - train.speed[0] * slope)
 
 
@@ -268,14 +324,14 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
             old, k, damper = train.contact[c, wire], work.stiffness[c, wire], work.damping[c, wire]
             approach = -work.wire_acceleration[c, wire]
             for i in range(train.z.shape[2]):
-                approach += train.head[c, i] * train.z[2, p, i]
+                approach += work.head[c, wire, i] * train.z[2, p, i]
             for other in range(train.owner.size):
                 change = train.contact[other, wire] - work.first_guess[other, wire]
                 approach -= work.wire_compliance[c, other, wire] * change
             for i in range(work.number_near[c, wire]):
                 approach += work.influence[c, wire, i] * scalar.change[work.near[c, wire, i]]
             gain, held = k * dt * dt / 4 + damper * dt / 2, k * work.overlap[c, wire] + damper * work.rate[c, wire]
-            compliance = gain * (work.head_compliance[c] + work.wire_compliance[c, c, wire])
+            compliance = gain * (work.head_compliance[c, wire] + work.wire_compliance[c, c, wire])
             force = max((held + gain * approach + compliance * old) / (1 + compliance), 0.0)
             if train.hertz[c] > 0.0 and force > 0.0:
                 force = reduce_by_hertz(force, train.hertz[c] * k / (1 + compliance))
@@ -286,8 +342,28 @@ def sweep_contacts(dt: float, train: Train, work: ContactWorkspace, scalar: Scal
                     scalar.acceleration[work.near[c, wire, i]] += work.influence[c, wire, i] * change
                 for i in range(train.z.shape[2]):
                     for j in range(train.z.shape[2]):
-                        train.z[2, p, i] -= train.inverse[p, i, j] * train.head[c, j] * change
+                        train.z[2, p, i] -= train.inverse[p, i, j] * work.head[c, wire, j] * change
             largest = maximum(largest, abs(change))
+    return largest
+
+
+@kernel
+def sweep_joints(train: Train, work: ContactWorkspace) -> float:
+    """Solve every joint once, all other forces held; return the largest change of a force [N]."""
+    largest = 0.0
+    for k in range(train.joint_owner.size):
+        p, old, acceleration = train.joint_owner[k], train.joint_force[k], 0.0
+        for i in range(train.z.shape[2]):
+            acceleration += train.joint[k, i] * train.z[2, p, i]
+        force = work.joint[k] + train.joint_gain[k] * acceleration + train.joint_compliance[k] * old
+        force = min(max(force / (1 + train.joint_compliance[k]), train.joint_law[k, 3]), train.joint_law[k, 4])
+        change = force - old
+        if abs(change) > NEGLIGIBLE_FORCE:
+            train.joint_force[k] = force
+            for i in range(train.z.shape[2]):
+                for j in range(train.z.shape[2]):
+                    train.z[2, p, i] -= train.inverse[p, i, j] * train.joint[k, j] * change
+        largest = maximum(largest, abs(change))
     return largest
 
 

@@ -23,6 +23,7 @@ from pantocheck.model.dynamics.contact_step import (
     load_contacts,
     predict_train,
     sweep_contacts,
+    sweep_joints,
 )
 from pantocheck.model.dynamics.distributed_step import accelerate_distributed, load_distributed, predict_distributed
 from pantocheck.model.dynamics.extents import active_run
@@ -86,6 +87,7 @@ def settle_forces(kernel: KernelArrays, motion: Motion, train: Train, work: Work
     distributed = motion.force.size - kernel.distributed.number
     for sweeps in range(1, MAX_SWEEPS + 1):
         largest = sweep_contacts(kernel.time_step, train, work.contact, work.scalar)
+        largest = maximum(largest, sweep_joints(train, work.contact))
         for k in range(connectors.run.size - 1):
             first, end = active_run(connectors.station, connectors.run, k, window)
             largest = maximum(largest, sweep_forces(forces, work.scalar, motion.force, first, end))

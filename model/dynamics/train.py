@@ -16,7 +16,7 @@ from pantocheck.model.dynamics.passage import Passage
 
 
 class Train(NamedTuple):
-    """Pantographs and their state; P pantographs of at most n unknowns, C strips, W contact wires."""
+    """Pantographs and their state; P pantographs of at most n unknowns, C strips, J joints, W contact wires."""
 
     position: Array
     """Position along the track, (P,) [m]."""
@@ -42,13 +42,27 @@ class Train(NamedTuple):
     offset: Array
     """Distance of each strip ahead of the position of its pantograph, (C,) [m]."""
     head: Array
-    """Displacement of each strip per unknown, (C, n) [-]."""
+    """Displacement of each strip per unknown, below the track axis, (C, n) [-]."""
+    lateral: Array
+    """Additions to it by the powers of the lateral position of the wire, from 1 on, (C, D, n) [1/m, ...]."""
     contact_stiffness: Array
     """Stiffness of the penalty contact, infinite for a rigid contact, (C,) [N/m]."""
     contact_damping: Array
     """Damping beside this stiffness, (C,) [N s/m]."""
     hertz: Array
     """Penetration per F^(2/3) by Hertz's law, zero without this law, (C,) [m/N^(2/3)]."""
+    joint_owner: Indices
+    """Pantograph of each joint, (J,)."""
+    joint: Array
+    """Closing of each joint per unknown, (J, n) [-]."""
+    joint_law: Array
+    """Stiffness, damping, gap, lower and upper bound of each joint, (J, 5) [N/m, N s/m, m, N, N]."""
+    joint_gain: Array
+    """Force of each joint per acceleration of its closing within a step, (J,) [kg]."""
+    joint_compliance: Array
+    """Change of this force per force, (J,) [-]."""
+    joint_force: Array
+    """Forces of the joints, (J,) [N]."""
     z: Array
     """Displacement, velocity, acceleration, (3, P, n) [m, m/s, m/s2]."""
     contact: Array
@@ -57,7 +71,7 @@ class Train(NamedTuple):
 
 def build_empty_train(contact_wires: int) -> Train:
     """Build a train without a pantograph, for the free motion of a line."""
-    return _allocate(0, 1, 0, contact_wires)
+    return _allocate((0, 1, 0, 0, 0), contact_wires)
 
 
 def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array, flexibility: Array) -> Train:
@@ -76,7 +90,10 @@ def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array
         Pantographs and their state.
     """
     unknowns = max(p.head.size for p in passage.pantographs)
-    train = _allocate(len(passage.pantographs), unknowns, *wire_height.shape)
+    joints = [(p, joint) for p, pantograph in enumerate(passage.pantographs) for joint in pantograph.joints]
+    powers = max(len(strip.shape) for p in passage.pantographs for strip in p.strips) - 1
+    sizes = (len(passage.pantographs), unknowns, len(wire_height), powers, len(joints))
+    train = _allocate(sizes, wire_height.shape[1])
     train.position[:], train.speed[0], train.ramp[0] = passage.start, passage.speed, passage.ramp
     train.first_strip[1:] = np.cumsum([len(p.strips) for p in passage.pantographs])
     half, quarter = passage.time_step / 2, passage.time_step**2 / 4
@@ -88,6 +105,8 @@ def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array
         train.force[p, :n] = pantograph.force
         train.owner[strips], train.head[strips, :n] = p, pantograph.strip_shapes
         train.offset[strips] = [strip.offset for strip in pantograph.strips]
+        for c, strip in zip(range(strips.start, strips.stop), pantograph.strips, strict=True):
+            train.lateral[c, : len(strip.shape) - 1, :n] = strip.shape[1:]
         train.contact_stiffness[strips] = pantograph.contact_stiffness
         train.contact_damping[strips] = pantograph.contact_damping
         train.hertz[strips] = pantograph.hertz_coefficient ** (-2 / 3)
@@ -100,11 +119,17 @@ def build_train(passage: Passage, touched: NDArray[np.bool_], wire_height: Array
             height[k] = float(wire_height[c, touched[c]].mean()) + overlap
         train.z[0, p, :n], forces_down = equilibrium(pantograph, height)
         train.held[strips] = forces_down if passage.ramp > 0 else 0.0
+    for j, (p, joint) in enumerate(joints):
+        train.joint_owner[j], train.joint[j, : joint.direction.size] = p, joint.direction
+        train.joint_law[j] = joint.stiffness, joint.damping, joint.gap, joint.lower, joint.upper
+        train.joint_gain[j] = quarter * joint.stiffness + half * joint.damping
+        train.joint_compliance[j] = train.joint_gain[j] * (train.joint[j] @ train.inverse[p] @ train.joint[j])
     return train
 
 
-def _allocate(pantographs: int, unknowns: int, strips: int, contact_wires: int) -> Train:
-    """Train with zeros in all arrays."""
+def _allocate(sizes: tuple[int, int, int, int, int], contact_wires: int) -> Train:
+    """Train with zeros in all arrays; sizes: pantographs, unknowns, strips, powers of the lateral position, joints."""
+    pantographs, unknowns, strips, powers, joints = sizes
     return Train(
         position=np.zeros(pantographs),
         speed=np.zeros(1),
@@ -119,9 +144,16 @@ def _allocate(pantographs: int, unknowns: int, strips: int, contact_wires: int) 
         owner=np.zeros(strips, dtype=np.int64),
         offset=np.zeros(strips),
         head=np.zeros((strips, unknowns)),
+        lateral=np.zeros((strips, powers, unknowns)),
         contact_stiffness=np.zeros(strips),
         contact_damping=np.zeros(strips),
         hertz=np.zeros(strips),
+        joint_owner=np.zeros(joints, dtype=np.int64),
+        joint=np.zeros((joints, unknowns)),
+        joint_law=np.zeros((joints, 5)),
+        joint_gain=np.zeros(joints),
+        joint_compliance=np.zeros(joints),
+        joint_force=np.zeros(joints),
         z=np.zeros((3, pantographs, unknowns)),
         contact=np.zeros((strips, contact_wires)),
     )

@@ -12,8 +12,8 @@ from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.simulation import start_motion
 from pantocheck.model.statics.assembly import bandwidth_order
 
-SCALES = {"q": 0.01, "v": 0.1, "a": 10.0, "tension": 100.0, "contact": 100.0}
-"""Sizes of a passage [m, m/s, m/s2, N, N] below which a difference is not made relative to the largest value.
+SCALES = {"q": 0.01, "v": 0.1, "a": 10.0, "tension": 100.0, "contact": 100.0, "joint": 100.0}
+"""Sizes of a passage [m, m/s, m/s2, N, N, N] below which a difference is not made relative to the largest value.
 
 Both implementations balance forces of the order of 100 N to 1e-9 N, so their differences do not shrink with the motion:
 a line that hardly moves has the same absolute error as a line that moves by centimetres.
@@ -26,11 +26,11 @@ THREE_MASSES = build_chain(
 
 def largest_differences(
     line: DiscretisedLine, passage: Passage, steps: int, drop: float
-) -> tuple[dict[str, float], Array, Array]:
+) -> tuple[dict[str, float], Array, Array, Array]:
     """Advance kernel and plain implementation side by side; the heads start with the speed `drop` downwards [m/s].
 
     Returns the largest difference of each quantity as a share of its largest value, at least of the size in `SCALES`,
-    then the tensions and the contact forces.
+    then the tensions, the contact forces and the forces of the joints.
     """
     kernel = build_kernel_arrays(line, passage.time_step)
     motion, train = start_motion(line, kernel, passage)
@@ -38,7 +38,7 @@ def largest_differences(
         train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
     plain = PlainNewmark(line, passage)
     state, work, place = plain.copy_state(motion, train), build_workspace(kernel, train), bandwidth_order(line)
-    computed: dict[str, list[Array]] = {name: [] for name in ("q", "v", "a", "tension", "contact")}
+    computed: dict[str, list[Array]] = {name: [] for name in SCALES}
     expected: dict[str, list[Array]] = {name: [] for name in computed}
     for _ in range(steps):
         assert step(kernel, motion, train, work)
@@ -50,6 +50,7 @@ def largest_differences(
             computed[name].append(np.concatenate([wires, *masses]))
         computed["tension"].append(motion.force[: line.connectors.station.size].copy())
         computed["contact"].append(train.contact.ravel().copy())
+        computed["joint"].append(train.joint_force.copy())
         for name, values in expected.items():
             values.append(getattr(state, name))
     difference = {
@@ -57,4 +58,4 @@ def largest_differences(
         / max(float(np.abs(np.array(expected[name])).max(initial=0.0)), SCALES[name])
         for name in computed
     }
-    return difference, np.array(computed["tension"]), np.array(computed["contact"])
+    return difference, *(np.array(computed[name]) for name in ("tension", "contact", "joint"))

@@ -64,18 +64,26 @@ class Lines(NamedTuple):
 
 
 class Heads(NamedTuple):
-    """Pantographs of a train; P pantographs, n masses from base to head. Every array is (P, n) or (P,)."""
+    """Pantographs of a train, M z'' + C z' + K z = load - contact forces; P pantographs, n unknowns, S strips."""
 
     position: Floats
     speed: float
+    """Positions of the pantographs, (P,) [m], and their speed [m/s]."""
     mass: Floats
+    """Diagonal of M, (P, n)."""
     stiffness: Floats
     damping: Floats
-    unstretched: Floats
-    uplift: Floats
+    """K and C, (P, n, n)."""
+    load: Floats
+    """Uplift force, and forces of the springs at z = 0, (P, n)."""
+    offset: Floats
+    """Distance of each strip ahead of the position, (P, S) [m]."""
+    shape: Floats
+    """Displacement of each strip per unknown, (P, S, n)."""
     contact_stiffness: float
     height: Floats
     velocity: Floats
+    """Displacements z and velocities, (P, n)."""
 
 
 # Line of the second formulation: wires, droppers, arms, supports and clamps from the case that a program receives.
@@ -88,9 +96,10 @@ CaseData = dict[str, Any]
 FEATURES = frozenset(
     (
         "applied_forces", "bending_stiffness", "chain", "contact_laws", "dropper_mass", "droppers", "gradients",
-        "line_at_rest", "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs",
-        "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire",
-        "support_dampers", "surveyed_wire_heights", "uplift_force_tuning", "wire_height",
+        "head_pitch", "line_at_rest", "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping",
+        "several_pantographs", "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass",
+        "steady_arms", "stitch_wire", "support_dampers", "surveyed_wire_heights", "two_strips",
+        "uplift_force_tuning", "wire_height",
     )
 )  # fmt: skip
 """Features of a case that the second formulation has."""

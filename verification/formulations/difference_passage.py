@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.conformance.quantities.bands import band_rms
 from pantocheck.conformance.quantities.filters import Filter
@@ -44,7 +45,11 @@ def simulate(case: CaseData, model: Model, uplift_forces: tuple[float, ...]) -> 
     arrays, speed, last = model.arrays, case["speed_km_h"] / 3.6, case["pantographs"][-1]
     starts = np.array([pantograph["start_m"] for pantograph in case["pantographs"]])
     steps = int((last["end_m"] - last["start_m"]) / speed / arrays.step) + 1
-    rest = sum(model.point_load(x, f) for x, f in zip(starts, uplift_forces, strict=True))
+    rest = sum(
+        model.point_load(x + ahead, share)
+        for x, pantograph, force in zip(starts, case["pantographs"], uplift_forces, strict=True)
+        for ahead, share in _list_strip_forces(pantograph, force)
+    )
     displacement = model.uplift.displacement(rest)
     heads = build_heads(case, model, starts, uplift_forces, displacement)
     force = np.zeros((starts.size, steps))
@@ -55,6 +60,14 @@ def simulate(case: CaseData, model: Model, uplift_forces: tuple[float, ...]) -> 
     march(arrays, heads, displacement, np.zeros_like(displacement), force, uplift, watched, every)
     position = starts[:, None] + speed * arrays.step * np.arange(steps)
     return Passage(force, position, uplift, arrays.step)
+
+
+def _list_strip_forces(pantograph: CaseData, force: float) -> list[tuple[float, float]]:
+    """Offset of every strip, and its part of the uplift force on a level wire [m, N]."""
+    part, chain = build_parts(pantograph), pantograph["chain"]
+    load = np.zeros(part.mass.size)
+    load[: len(chain["masses_kg"])] = _place_forces(pantograph, chain, force)
+    return list(zip(part.offset.tolist(), part.level_forces(load, force).tolist(), strict=True))
 
 
 def check_conventions(case: CaseData) -> None:
@@ -81,45 +94,117 @@ def build_heads(
     case: CaseData, model: Model, starts: Floats, uplift_forces: tuple[float, ...], displacement: Floats
 ) -> Heads:
     """Pantographs at rest on the displaced line."""
-    chains = [_chain(pantograph) for pantograph in case["pantographs"]]
     contact = case["pantographs"][0]["contact"]
     if contact.get("law", "spring") == "hertz" or contact.get("damping_N_s_m"):
         raise ValueError("the second formulation has contacts by a spring without damper, or by a constraint")
     stiffness = contact.get("stiffness_N_m", np.inf)
     excess = 0.0 if np.isinf(stiffness) else 1.0
-    unstretched, height, uplift = [], [], []
-    cache: dict[float, float] = {}
-    for pantograph, chain, x, force in zip(case["pantographs"], chains, starts, uplift_forces, strict=True):
-        if chain["base_spring_unstretched"] == "working_height":
-            free = cache.setdefault(force, working_height(case, model, force, stiffness))
-        else:
-            free = nominal_height(case, model)
-        load = _place_forces(pantograph, chain, force)
-        head = model.lift(x, model.rest.shape + displacement) + force * (
-            1 / stiffness - excess * model.contact.excess_at(x)
-        )
-        unstretched.append(free)
-        uplift.append(load)
-        height.append(_equilibrium(np.array(chain["stiffness_N_m"]), load, free, head))
+    parts = [build_parts(pantograph) for pantograph in case["pantographs"]]
+    loads, heights = [], []
+    for pantograph, part, x, force in zip(case["pantographs"], parts, starts, uplift_forces, strict=True):
+        free = nominal_height(case, model)
+        if pantograph["chain"]["base_spring_unstretched"] == "working_height":
+            free = working_height(case, model, force, stiffness * part.offset.size)
+        load = np.zeros(part.mass.size)
+        masses = len(pantograph["chain"]["masses_kg"])
+        load[:masses] = _place_forces(pantograph, pantograph["chain"], force)
+        # Every spring is without force with all masses at one height.
+        load += part.stiffness @ np.where(part.is_height, free, 0.0)
+        shares = part.level_forces(load, force)
+        held = [
+            model.lift(x + ahead, model.rest.shape + displacement)
+            + share * (1 / stiffness - excess * model.contact.excess_at(x + ahead))
+            for ahead, share in zip(part.offset, shares, strict=True)
+        ]
+        loads.append(load)
+        heights.append(part.hold(load, np.array(held)))
     return Heads(
         position=starts.copy(),
         speed=case["speed_km_h"] / 3.6,
-        mass=np.array([chain["masses_kg"] for chain in chains]),
-        stiffness=np.array([chain["stiffness_N_m"] for chain in chains]),
-        damping=np.array([chain["damping_N_s_m"] for chain in chains]),
-        unstretched=np.array(unstretched),
-        uplift=np.array(uplift),
+        mass=np.array([part.mass for part in parts]),
+        stiffness=np.array([part.stiffness for part in parts]),
+        damping=np.array([part.damping for part in parts]),
+        load=np.array(loads),
+        offset=np.array([part.offset for part in parts]),
+        shape=np.array([part.shape for part in parts]),
         contact_stiffness=stiffness,
-        height=np.array(height),
-        velocity=np.zeros((starts.size, len(chains[0]["masses_kg"]))),
+        height=np.array(heights),
+        velocity=np.zeros((starts.size, parts[0].mass.size)),
     )
 
 
-def _chain(pantograph: CaseData) -> CaseData:
+@dataclass(frozen=True)
+class Parts:
+    """Pantograph of n unknowns and S strips: masses of a chain, pitch, and strips on springs."""
+
+    mass: Floats
+    stiffness: Floats
+    damping: Floats
+    is_height: NDArray[np.bool_]
+    """Whether an unknown is a height, (n,)."""
+    offset: Floats
+    shape: Floats
+
+    def hold(self, load: Floats, heights: Floats) -> Floats:
+        """Displacements at rest with the strips held at heights, (n,)."""
+        n, strips = self.mass.size, self.offset.size
+        system = np.zeros((n + strips, n + strips))
+        system[:n, :n], system[:n, n:], system[n:, :n] = self.stiffness, self.shape.T, self.shape
+        return np.linalg.solve(system, np.append(load, heights))[:n]
+
+    def level_forces(self, load: Floats, force: float) -> Floats:
+        """Forces of the strips at rest under a level wire, at the height where they add up to a force [N]."""
+        n, strips = self.mass.size, self.offset.size
+        if strips == 1:
+            return np.array([force])
+        size = n + strips + 1
+        system = np.zeros((size, size))
+        system[:n, :n], system[:n, n:-1], system[n:-1, :n] = self.stiffness, self.shape.T, self.shape
+        system[n:-1, -1], system[-1, n:-1] = -1.0, 1.0
+        right = np.concatenate([load, np.zeros(strips), [force]])
+        return np.asarray(np.linalg.lstsq(system, right)[0][n:-1])
+
+
+def build_parts(pantograph: CaseData) -> Parts:
+    """Matrices of a pantograph from its inputs, spring by spring."""
     chain: CaseData | None = pantograph["chain"]
     if chain is None:
         raise ValueError("the second formulation has pantographs of lumped masses only")
-    return chain
+    head = pantograph.get("head") or {}
+    strips, pitch = head.get("strip", []), head.get("pitch")
+    masses = len(chain["masses_kg"])
+    turn = masses if pitch else None
+    own = [n for n, strip in enumerate(strips) if strip.get("mass_kg")]
+    size = masses + bool(pitch) + len(own)
+    mass, shape = np.zeros(size), np.zeros((max(len(strips), 1), size))
+    matrices = np.zeros((2, size, size))
+
+    def connect(ends: dict[int, float], spring: float, damper: float) -> None:
+        """Add a spring and a damper on a weighted sum of unknowns."""
+        row = np.zeros(size)
+        row[list(ends)] = list(ends.values())
+        matrices[0] += spring * np.outer(row, row)
+        matrices[1] += damper * np.outer(row, row)
+
+    mass[:masses] = chain["masses_kg"]
+    for n, spring, damper in zip(range(masses), chain["stiffness_N_m"], chain["damping_N_s_m"], strict=True):
+        connect({n: 1.0, n - 1: -1.0} if n else {0: 1.0}, spring, damper)
+    if pitch and turn is not None:
+        mass[turn] = pitch["inertia_kg_m2"]
+        connect({turn: 1.0}, pitch["stiffness_N_m_rad"], pitch["damping_N_m_s_rad"])
+    shape[0, masses - 1] = 1.0
+    for n, strip in enumerate(strips):
+        lower = {masses - 1: 1.0} | ({} if turn is None else {turn: strip["position_m"]})
+        shape[n] = 0.0
+        if n in own:
+            place = size - len(own) + own.index(n)
+            mass[place], shape[n, place] = strip["mass_kg"], 1.0
+            ends = {place: -1.0} | lower
+            connect(ends, strip["stiffness_N_m"], strip["damping_N_s_m"])
+        else:
+            shape[n, list(lower)] = list(lower.values())
+    offset = np.array([strip["position_m"] for strip in strips] or [0.0])
+    return Parts(mass, matrices[0], matrices[1], np.arange(size) != turn, offset, shape)
 
 
 def _place_forces(pantograph: CaseData, chain: CaseData, uplift_force: float) -> Floats:
@@ -135,21 +220,6 @@ def _place_forces(pantograph: CaseData, chain: CaseData, uplift_force: float) ->
 def _find_mass(chain: CaseData, on: int | str) -> int:
     """Index of a mass; the case has its name, or its number from 1."""
     return chain["names"].index(on) if isinstance(on, str) else int(on) - 1
-
-
-def _equilibrium(stiffness: Floats, load: Floats, free: float, head: float) -> Floats:
-    """Heights of the masses of a chain at rest with the head held; the first spring is unstretched at `free`."""
-    n = stiffness.size
-    system, right = np.zeros((n, n)), load.copy()
-    for j in range(n):
-        system[j, j] += stiffness[j]
-        if j > 0:
-            system[j - 1, j - 1] += stiffness[j]
-            system[j, j - 1] -= stiffness[j]
-            system[j - 1, j] -= stiffness[j]
-    right[0] += stiffness[0] * free
-    system[-1], right[-1] = np.eye(n)[-1], head
-    return np.linalg.solve(system, right)
 
 
 def force_quantities(

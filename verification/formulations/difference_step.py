@@ -8,23 +8,25 @@ from verification.formulations.difference_strands import Floats, Indices
 
 
 @njit(cache=True)
-def _free_acceleration(heads: Heads, k: int) -> float:
-    """Acceleration of the head of a pantograph without contact force [m/s2]."""
-    z, u, n = heads.height[k], heads.velocity[k], heads.mass.shape[1]
-    below_z, below_u = (z[n - 2], u[n - 2]) if n > 1 else (heads.unstretched[k], 0.0)
-    spring = heads.stiffness[k, n - 1] * (z[n - 1] - below_z) + heads.damping[k, n - 1] * (u[n - 1] - below_u)
-    return (heads.uplift[k, n - 1] - spring) / heads.mass[k, n - 1]
+def accelerate_pantograph(heads: Heads, k: int, dt: float) -> None:
+    """Velocities of a pantograph at the end of a step under all forces but those of the contacts."""
+    z, u, n = heads.height[k], heads.velocity[k].copy(), heads.mass.shape[1]
+    for i in range(n):
+        force = heads.load[k, i]
+        for j in range(n):
+            force -= heads.stiffness[k, i, j] * z[j] + heads.damping[k, i, j] * u[j]
+        heads.velocity[k, i] += dt * force / heads.mass[k, i]
 
 
 @njit(cache=True)
-def push_wire(line: Lines, heads: Heads, k: int, w: Floats, v: Floats) -> float:
-    """Contact force of a pantograph, applied to the contact wire: a Catmull-Rom spline interpolates and distributes.
+def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Floats) -> float:
+    """Contact force of a strip, applied to strip and wire: a Catmull-Rom spline interpolates and distributes.
 
-    A constraint (infinite stiffness) lets head and wire meet at the end of the step, at the head's next position; the
+    A constraint (infinite stiffness) lets strip and wire meet at the end of the step, at the strip's next position; the
     excess flexibility of the points then remains as a penetration, which the spacing removes.
     """
-    constrained = np.isinf(heads.contact_stiffness)
-    x = (heads.position[k] + heads.speed * line.step * constrained) / line.spacing
+    constrained, shape = np.isinf(heads.contact_stiffness), heads.shape[k, strip]
+    x = (heads.position[k] + heads.offset[k, strip] + heads.speed * line.step * constrained) / line.spacing
     s, point = x - int(x), line.first[line.contact] + int(x) - 1
     weights = (
         0.5 * (-s + 2 * s**2 - s**3),
@@ -32,40 +34,27 @@ def push_wire(line: Lines, heads: Heads, k: int, w: Floats, v: Floats) -> float:
         0.5 * (s + 4 * s**2 - 3 * s**3),
         0.5 * (-(s**2) + s**3),
     )
-    height, excess, mobility = 0.0, 0.0, line.step / heads.mass[k, -1]
+    height, excess, mobility, gap, closing = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(shape.size):
+        mobility += line.step * shape[i] ** 2 / heads.mass[k, i]
+        gap += shape[i] * heads.height[k, i]
+        closing += shape[i] * heads.velocity[k, i]
     for j in range(4):
         mobility += line.gain[point + j] * weights[j] ** 2
         height += weights[j] * (w[point + j] + line.rest[point + j])
+        closing -= weights[j] * v[point + j]
         for m in range(4):
             excess += weights[j] * line.excess[abs(j - m)] * weights[m]
     if constrained:
-        closing = heads.velocity[k, -1] + line.step * _free_acceleration(heads, k)
-        for j in range(4):
-            closing -= weights[j] * v[point + j]
-        push = max(0.0, ((heads.height[k, -1] - height) / line.step + closing) / mobility)
+        push = max(0.0, ((gap - height) / line.step + closing) / mobility)
     else:
         stiffness = heads.contact_stiffness / (1 - heads.contact_stiffness * excess)
-        push = max(0.0, stiffness * (heads.height[k, -1] - height))
+        push = max(0.0, stiffness * (gap - height))
     for j in range(4):
         v[point + j] += line.gain[point + j] * weights[j] * push
+    for i in range(shape.size):
+        heads.velocity[k, i] -= line.step * shape[i] * push / heads.mass[k, i]
     return push
-
-
-@njit(cache=True)
-def move_pantograph(heads: Heads, k: int, push: float, dt: float) -> None:
-    """Advance the masses of a pantograph under its contact force; its base spring is unstretched at `unstretched`."""
-    z, u, n = heads.height[k], heads.velocity[k], heads.mass.shape[1]
-    below_z, below_u = heads.unstretched[k], 0.0
-    for j in range(n):
-        spring = heads.stiffness[k, j] * (z[j] - below_z) + heads.damping[k, j] * (u[j] - below_u)
-        below_z, below_u = z[j], u[j]
-        load = heads.uplift[k, j] - spring - (push if j == n - 1 else 0.0)
-        u[j] += dt * load / heads.mass[k, j]
-        if j > 0:
-            u[j - 1] += dt * spring / heads.mass[k, j - 1]
-    for j in range(n):
-        z[j] += dt * u[j]
-    heads.position[k] += heads.speed * dt
 
 
 # Time step of the second formulation: explicit central differences in time (leapfrog).
@@ -185,7 +174,7 @@ def march(
         line: Arrays of the line.
         heads: Pantographs; positions, heights and velocities are advanced in place.
         w, v: Displacement from the state of rest and velocity, advanced in place, (N,) [m, m/s].
-        force: Filled with the contact force at the start of every step, (P, T) [N].
+        force: Contact force at the start of every step, the sum over the strips, added to its content, (P, T) [N].
         uplift: Filled with the displacement of the watched points at every `every`-th step, (U, (T - 1) // every + 1)
             [m].
         watched: Watched points, (U,).
@@ -200,8 +189,11 @@ def march(
         _move_strands(line, v, p, before)
         _apply_bars(line, v, p, tension)
         for k in range(force.shape[0]):
-            force[k, t] = push_wire(line, heads, k, w, v)
-            move_pantograph(heads, k, force[k, t], line.step)
+            accelerate_pantograph(heads, k, line.step)
+            for strip in range(heads.offset.shape[1]):
+                force[k, t] += push_wire(line, heads, k, strip, w, v)
+            heads.height[k] += line.step * heads.velocity[k]
+            heads.position[k] += heads.speed * line.step
         _join_parts(line, v, p)
         for g in range(line.first.size):
             _move(w, v, p, line.step, line.delay[g], line.first[g], line.first[g] + line.count[g])

@@ -107,7 +107,7 @@ def test_step_equals_the_plain_implementation_on_irregular_wires() -> None:
     bump = Irregularity((26.0, 30.0, 31.5, 37.0), (0.0, 0.004, -0.003, 0.002))
     catenary = with_irregularity(catenary, realise_irregularity(SPECTRUM, 80.0, seed=3), bump)
     passage = Passage((PANTOGRAPH_2002, THREE_MASSES), (24.0, 12.0), 80.0, 0.4, 2e-3)
-    difference, _, _ = largest_differences(discretise(catenary, 5.0), passage, 200, drop=1.0)
+    difference, _, _, _ = largest_differences(discretise(catenary, 5.0), passage, 200, drop=1.0)
     assert max(difference.values()) < 1e-9, difference
 
 

@@ -89,7 +89,7 @@ def test_step_equals_the_plain_implementation_over_masses_and_changes() -> None:
         point_masses=(PointMass(21.3, "contact", 12.0), PointMass(17.0, "messenger", 5.0)),
     )
     passage = Passage((PANTOGRAPH_2002, THREE_MASSES), (18.03, 10.03), 80.0, 0.4, 2e-3)  # no head exactly at a station
-    difference, _, _ = largest_differences(discretise(line, 2.5), passage, 200, drop=1.0)
+    difference, _, _, _ = largest_differences(discretise(line, 2.5), passage, 200, drop=1.0)
     assert max(difference.values()) < 1e-9, difference
 
 

@@ -1,0 +1,66 @@
+"""Heads with two strips, roll, bending, friction and stops against full matrices."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from helpers.lines import DAMPED, PANTOGRAPH_2002, simple_line
+from helpers.step_differences import THREE_MASSES, largest_differences
+from pantocheck.model import Passage
+from pantocheck.model.description.head_structure import (
+    MountedStrip,
+    Rotation,
+    add_bending_mode,
+    add_friction,
+    add_roll,
+    add_stop,
+    mount_strips,
+)
+from pantocheck.model.description.pantograph import Pantograph, equilibrium
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, discretise
+
+TWO_STRIPS = (MountedStrip(0.3, 3.0, 5000.0, 20.0), MountedStrip(-0.28, 3.0, 6000.0, 15.0))
+
+
+def structured(base: Pantograph) -> Pantograph:
+    """Two strips, pitch, roll and a bending mode, friction in the head suspension, stops of both directions."""
+    model = mount_strips(base, TWO_STRIPS, Rotation(0.8, 40.0, 3.0))
+    model = add_roll(model, Rotation(2.0, 300.0, 5.0))
+    model = add_bending_mode(model, 31.0, 0.02, [(0.3, 0.0, -0.8), (0.3, 0.1)])
+    suspension = np.eye(model.head.size)[1] - np.eye(model.head.size)[0]
+    model = add_friction(model, suspension, 12.0, 2e-3)
+    model = add_stop(model, suspension, 0.01, 2e4, 30.0)
+    return add_stop(model, -suspension, 0.03, 2e4, 0.0)
+
+
+def zigzag_line() -> DiscretisedLine:
+    catenary = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
+    contact, messenger = catenary.wires
+    stagger = ((0.0, 0.2), (40.0, -0.2), (80.0, 0.2), (120.0, -0.2))
+    arms = tuple(replace(arm, vertical_stiffness=None, length=1.2, mass=0.7) for arm in catenary.steady_arms)
+    wires = (replace(contact, stagger=stagger), replace(messenger, stagger=tuple((x, 0.0) for x, _ in stagger)))
+    return discretise(replace(catenary, wires=wires, steady_arms=arms), 5.0)
+
+
+@pytest.mark.parametrize("law", [{}, {"contact_damping": 60.0}, {"contact_stiffness": np.inf}])
+def test_step_equals_full_matrices(law: dict[str, float]) -> None:
+    """Two pantographs with two strips each lose contact, slide, stick and hit stops; rigid arms as elsewhere: 1e-8."""
+    pantographs = (replace(structured(PANTOGRAPH_2002), **law), replace(structured(THREE_MASSES), **law))
+    passage = Passage(pantographs, (24.0, 12.0), 80.0, 0.6, 2e-3)
+    difference, _, contact, joint = largest_differences(zigzag_line(), passage, 300, drop=1.0)
+    lost = contact == 0.0
+    assert contact.shape[1] == 4
+    assert (np.diff(lost.astype(int), axis=0) != 0).any(axis=0).sum() >= 3
+    friction, stops = joint[:, [0, 3]], joint[:, [1, 2, 4, 5]]
+    assert ((np.abs(friction) < 12.0).any(axis=0) & (np.abs(friction) == 12.0).any(axis=0)).all()
+    assert (stops[:, :2] > 0).any()
+    assert max(difference.values()) < 1e-8, difference
+
+
+def test_strips_share_the_static_force_by_their_lever_arms() -> None:
+    """A head that pitches freely: F_1 x_1 = F_2 x_2, whatever the springs of the strips."""
+    model = mount_strips(PANTOGRAPH_2002, TWO_STRIPS, Rotation(0.8, 0.0, 0.0))
+    np.testing.assert_allclose(model.strip_shares, np.array([0.28, 0.3]) / 0.58, rtol=1e-9)
+    _, forces = equilibrium(model, 0.05)
+    assert forces.sum() == pytest.approx(equilibrium(PANTOGRAPH_2002, 0.05)[1][0], rel=1e-3)
