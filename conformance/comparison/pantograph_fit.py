@@ -49,20 +49,29 @@ class FileTexts:
 
 
 def describe_pantograph(
-    fit: ChainFit, intervals: FitIntervals, texts: FileTexts, contact_stiffness: float
+    selection: ChainSelection, masses: int, texts: FileTexts, contact_stiffness: float
 ) -> dict[str, Any]:
     """Content of the pantograph file.
 
     Args:
-        fit: Fitted chain.
-        intervals: Its intervals.
+        selection: Fitted chains.
+        masses: Number of masses of the chosen one.
         texts: Title and source.
         contact_stiffness: Stiffness of the contact, which the response does not contain [N/m].
 
     Returns:
         Tables of the file. It states no trust: these are data of the user.
     """
+    fit, intervals, modes = selection.fits[masses], selection.intervals(masses), selection.modes[masses]
     values = {key: [_round(v) for v in row] for key, row in zip(CHAIN_KEYS, fit.values, strict=True)}
+    bending = [
+        {
+            "frequency_Hz": _round(mode.frequency_Hz),
+            "damping_ratio": _round(mode.damping_ratio),
+            "shapes": [[_round(mode.shape)]],
+        }
+        for mode in modes
+    ]
     return {
         "title": texts.title,
         "chain": {**values, "source": texts.source, "note": _describe_intervals(intervals)},
@@ -70,6 +79,7 @@ def describe_pantograph(
             "stiffness_N_m": contact_stiffness,
             "source": "chosen, not measured: the response of a head contains no contact",
         },
+        **({"head": {"bending_mode": bending, "source": texts.source}} if bending else {}),
     }
 
 
@@ -177,6 +187,11 @@ def _list_warnings(selection: ChainSelection, masses: int, parameters: tuple[Cha
             yield f"{name}: the measured band does not distinguish it from 0; --fix {name}=VALUE gives it a value"
         if item.determination == "weakly_determined":
             yield f"{name}: weakly determined, to {100 * item.half_width / item.value:.0f} %"
+    for mode in selection.modes[masses]:
+        yield (
+            f"bending mode at {mode.frequency_Hz:.3g} Hz, damping ratio {mode.damping_ratio:.2g}, shape "
+            f"{mode.shape:.3g} kg^-1/2: the intervals of the chain hold for this mode"
+        )
     if masses != selection.best:
         yield f"the information criterion prefers {selection.best} masses"
     fit = selection.fits[masses]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.pantograph.bending_fit import FittedMode, fit_bending_modes, remove_modes
 from pantocheck.conformance.pantograph.chain_problem import ChainProblem, MeasuredStiffness
 from pantocheck.conformance.pantograph.chain_starts import choose_starts
 from pantocheck.conformance.pantograph.response_record import ResponseRecord
@@ -193,6 +194,8 @@ class FitTask:
     """Fixed masses [kg], stiffnesses [N/m] and dampings [N s/m] of a chain of n masses, NaN, (3, n): free; None: no
     value is fixed, and every number of masses is tried.
     """
+    bending_modes: int = 0
+    """Number of bending modes of the head beside the chain."""
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,8 @@ class ChainSelection:
     """Fit by number of masses."""
     is_noise_stated: bool
     """Whether every record states its uncertainty."""
+    modes: dict[int, tuple[FittedMode, ...]]
+    """Bending modes of the head beside each chain, by its number of masses."""
 
     @property
     def best(self) -> int:
@@ -237,8 +242,13 @@ def fit_chains(records: Sequence[ResponseRecord], task: FitTask) -> ChainSelecti
             f"have {data.frequency.size} values from {task.band[0]:g} to {task.band[1]:g} Hz",
             f"Give at least {fewest}, three per mass.",
         )
-    fits = {n: fit_chain(data, np.full((3, n), np.nan) if task.fixed is None else task.fixed) for n in counts}
-    return ChainSelection(fits, all(record.uncertainty is not None for record in records))
+    fixed = {n: np.full((3, n), np.nan) if task.fixed is None else task.fixed for n in counts}
+    fits = {n: fit_chain(data, values) for n, values in fixed.items()}
+    modes: dict[int, tuple[FittedMode, ...]] = dict.fromkeys(counts, ())
+    if task.bending_modes:
+        modes = {n: fit_bending_modes(data, fits[n].values, task.bending_modes) for n in counts}
+        fits = {n: fit_chain(remove_modes(data, modes[n]), values) for n, values in fixed.items()}
+    return ChainSelection(fits, all(record.uncertainty is not None for record in records), modes)
 
 
 def join_responses(records: Sequence[ResponseRecord], band: tuple[float, float]) -> MeasuredStiffness:

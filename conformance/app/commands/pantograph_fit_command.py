@@ -36,6 +36,9 @@ def pantograph_fit_command(
             help="Number of masses.", min=MASS_COUNTS[0], max=MASS_COUNTS[-1], show_default="by information criterion"
         ),
     ] = None,
+    bending_modes: Annotated[
+        int, typer.Option(help="Number of bending modes of the head beside the chain.", min=0, max=4)
+    ] = 0,
     fix: Annotated[
         list[str] | None,
         typer.Option(metavar="KEY.NUMBER=VALUE", help="Fixed value, e.g. masses_kg.3=7.5; repeat for several."),
@@ -59,7 +62,7 @@ def pantograph_fit_command(
     if out.suffix != ".toml":
         raise InputError("--out", f"{out.name!r} is not a TOML file", "Give a name that ends in .toml .")
     check_writable(out.parent)
-    task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses))
+    task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses), bending_modes)
     with follow_steps("fitting"):
         selection = fit_chains(records, task)
         fit = build_fitted_pantograph(records, selection, masses or selection.best, title, contact_stiffness)

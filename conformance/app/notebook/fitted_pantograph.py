@@ -117,6 +117,7 @@ class FittedPantograph:
 def fit_pantograph(
     *responses: str | Path,
     masses: int | None = None,
+    bending_modes: int = 0,
     band_Hz: tuple[float, float] = (0.0, math.inf),
     title: str = "Fitted pantograph",
     contact_stiffness_N_m: float = CONTACT_STIFFNESS_N_M,
@@ -126,6 +127,7 @@ def fit_pantograph(
     Args:
         *responses: Tables of measured responses, or their sidecars.
         masses: Number of masses, 2 to 4; None: that with the lowest information criterion.
+        bending_modes: Number of bending modes of the head beside the chain.
         band_Hz: Lowest and highest frequency of the fit [Hz].
         title: Title of the pantograph.
         contact_stiffness_N_m: Stiffness of the contact, which a response does not contain [N/m].
@@ -134,7 +136,7 @@ def fit_pantograph(
         InputError: A response cannot be read, is not that of the centre of the head, or has too few rows in the band.
     """
     records = tuple(read_response(Path(path)) for path in responses)
-    selection = fit_chains(records, FitTask(band_Hz, None))
+    selection = fit_chains(records, FitTask(band_Hz, None, bending_modes))
     if masses is not None and masses not in selection.fits:
         raise InputError("masses", f"{masses} is not possible", f"Give one of {', '.join(map(str, selection.fits))}.")
     return build_fitted_pantograph(records, selection, masses or selection.best, title, contact_stiffness_N_m)
@@ -146,7 +148,7 @@ def build_fitted_pantograph(
     """Pantograph file and report of the fitted chain with one number of masses; contact stiffness in [N/m]."""
     names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
     texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
-    tables = describe_pantograph(selection.fits[masses], selection.intervals(masses), texts, contact_stiffness)
+    tables = describe_pantograph(selection, masses, texts, contact_stiffness)
     pantograph = validate_model(tables, PantographFile, "fitted pantograph")
     comparison = compare_responses(records, pantograph)
     if (highest := comparison.supported_to_Hz) is not None:
