@@ -1,18 +1,22 @@
 """Second formulation against the reference simulator; prints the tables of docs/second-formulation.md.
 
 python -m verification.formulations.finite_differences [CASE ...] [--coarse 0.25] [--fine 0.125] [--jobs 2]
+    [--pantograph FILE [--law constraint]]
 """
 
 import argparse
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
+from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.pantograph.pantograph_file import ContactTable, PantographFile
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import run_passage
 from pantocheck.conformance.runs.command_system import build_case_message
@@ -49,9 +53,11 @@ class Comparison:
         return {key: 100 * (value / self.reference[key] - 1) for key, value in self.limit.items()}
 
 
-def compare(name: str, coarse: float, fine: float) -> Comparison:
-    """Run a case with both formulations and the same uplift forces."""
+def compare(name: str, coarse: float, fine: float, pantograph: PantographFile | None = None) -> Comparison:
+    """Run a case with both formulations and the same uplift forces, with its pantographs or with another one."""
     case = next(candidate for candidate in select_cases([name]) if candidate.id == name)
+    if pantograph is not None:
+        case = replace(case, pantographs=(pantograph,) * len(case.pantographs))
     forces, message = uplift_forces(case), build_case_message(case)
     return Comparison(
         name,
@@ -128,10 +134,17 @@ def main() -> None:
         "--fine", type=float, default=0.125, help="fine spacing of the points, half the coarse one [m]"
     )
     options.add_argument("--jobs", type=int, default=1, help="cases that run at the same time")
+    options.add_argument("--pantograph", type=Path, help="pantograph file in place of those of the cases")
+    options.add_argument("--law", choices=("spring", "constraint"), default="spring", help="contact of that pantograph")
     chosen = options.parse_args()
+    pantograph = None
+    if chosen.pantograph is not None:
+        pantograph = read_model(chosen.pantograph, PantographFile, "pantograph")
+        if chosen.law == "constraint":
+            pantograph = pantograph.model_copy(update={"contact": ContactTable(law="constraint")})
     comparisons = []
     with ProcessPoolExecutor(chosen.jobs) as executor:
-        runs = [executor.submit(compare, name, chosen.coarse, chosen.fine) for name in chosen.cases]
+        runs = [executor.submit(compare, name, chosen.coarse, chosen.fine, pantograph) for name in chosen.cases]
         for run in runs:
             comparisons.append(run.result())
             print_comparison(comparisons[-1], (chosen.coarse, chosen.fine))

@@ -1,6 +1,6 @@
 """Topic: contact laws of head and wire against closed forms, and the energy of a passage with loss of contact."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Pantograph, Passage, SimulationError, build_chain, discretise
+from pantocheck.model.description.head_structure import MountedStrip, Rotation, add_friction, add_stop, mount_strips
 from pantocheck.model.discretisation.discretised_line import make_droppers_bilateral
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import end_of_step
@@ -34,6 +35,17 @@ LAWS = {
 }
 """Parameters of each law; the coefficient is that of copper on carbon (12 GN/m2, 6 mm)."""
 
+_STRIPS = (MountedStrip(0.3, 2.0, 8000.0, 10.0), MountedStrip(-0.25, 2.0, 8000.0, 10.0))
+_SUSPENSION = np.array([-1.0, 1.0])
+
+HEADS: dict[str, Callable[[Pantograph], Pantograph]] = {
+    "one strip": lambda chain: chain,
+    "two strips": lambda chain: mount_strips(chain, _STRIPS, Rotation(0.2, 40.0, 1.0)),
+    "friction": lambda chain: add_friction(chain, _SUSPENSION, 15.0, 1e-3),
+    "stops": lambda chain: add_stop(add_stop(chain, _SUSPENSION, 0.0, 2e5, 50.0), -_SUSPENSION, 0.06, 2e5, 0.0),
+}
+"""Structures of the head of a pantograph of two masses."""
+
 _MASS, _SPEED = 7.5, 0.5
 """Mass [kg] that hits a string, and its speed [m/s]."""
 
@@ -47,6 +59,7 @@ def study_contact_laws() -> Topic:
     speed = SHARES[1] * wave_speed(WIRE_TENSION, WIRE_MASS)
     heads = [(element, _constrained_error(speed, element, dt)) for element, dt in DISCRETISATIONS]
     ledgers = {law: measure_ledger(law) for law in LAWS}
+    ledgers |= {head: measure_ledger("spring", head=head) for head in list(HEADS)[1:]}
     return Topic(
         title="Contact laws",
         theory="A mass m that hits a long string at the speed u feels F = Zu exp(-Zt/m), Z = 2 sqrt(T m_l), with the "
@@ -74,8 +87,8 @@ def study_contact_laws() -> Topic:
             ),
             *(
                 compare_absolute(
-                    f"energy-{law}",
-                    f"energy balance with the law {law}, over the energy put in",
+                    f"energy-{law.replace(' ', '-')}",
+                    f"energy balance with {law}, over the energy put in",
                     "-",
                     (ledger.error, 0.0),
                     1e-6,
@@ -146,46 +159,64 @@ class Ledger:
     """Largest error of the balance over this work [-]."""
     lost_in_contact: float
     """Energy that the contact takes and does not store, over this work [-]."""
+    taken_by_joints: float
+    """Energy that friction and stops take, over this work [-]."""
     losses: int
-    """Number of losses of contact."""
+    """Number of losses of contact by a strip."""
+    bounds: int
+    """Number of steps in which a joint is at a bound of its force, and number of steps in which it is not."""
+    inside: int
 
 
-def measure_ledger(law: str, element: float = 0.5, dt: float = 1e-3, damping: float = 0.0) -> Ledger:
+def measure_ledger(
+    law: str, element: float = 0.5, dt: float = 1e-3, damping: float = 0.0, head: str = "one strip"
+) -> Ledger:
     """Energy of a passage that loses contact.
 
     Args:
         law: Law of `LAWS`.
         element, dt: Element length [m] and time step [s].
         damping: Damper beside the law [N s/m].
+        head: Structure of `HEADS`.
     """
     line = make_droppers_bilateral(discretise(build_short_line(4), element))
-    head = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 250.0, 0, np.inf)
-    head = replace(head, **LAWS[law], contact_damping=damping)
-    states = list(_states(line, head, dt))
-    put_in, balance, contact, errors = 0.0, 0.0, 0.0, [0.0]
+    chain = build_chain(np.array([15.0, 7.2]), np.array([50.0, 4200.0]), np.array([90.0, 10.0]), 250.0, 0, np.inf)
+    pantograph = HEADS[head](replace(chain, **LAWS[law], contact_damping=damping))
+    states = list(_states(line, pantograph, dt))
+    put_in, balance, contact, joints, errors = 0.0, 0.0, 0.0, 0.0, [0.0]
     for a, b in pairwise(states):
-        uplift, slope = float((b.z - a.z) @ head.force), b.shape - a.shape
+        uplift, slope = float((b.z - a.z) @ pantograph.force), b.shape - a.shape
         # The wire moves up the head by its slope: the horizontal contact force takes this work from the train.
-        train = -float(a.force * (slope @ b.height) + b.force * (slope @ a.height)) / 2
-        damped = float((b.z - a.z) @ head.damping @ (b.z - a.z)) / dt
-        taken = (a.force + b.force) / 2 * (b.closing - a.closing)
-        put_in, contact = put_in + abs(uplift) + abs(train), contact + taken
-        balance += b.energy - a.energy - uplift - train + damped + taken
+        train = -float(a.force @ (slope @ b.height) + b.force @ (slope @ a.height)) / 2
+        damped = float((b.z - a.z) @ pantograph.damping @ (b.z - a.z)) / dt
+        taken = float((a.force + b.force) @ (b.closing - a.closing)) / 2
+        rubbed = float((a.joint + b.joint) @ (pantograph_joints(pantograph) @ (b.z - a.z))) / 2
+        put_in, contact, joints = put_in + abs(uplift) + abs(train), contact + taken, joints + rubbed
+        balance += b.energy - a.energy - uplift - train + damped + taken + rubbed
         errors.append(abs(balance))
-    losses = sum(a.force > 0 and b.force == 0 for a, b in pairwise(states))
+    losses = sum(int(((a.force > 0) & (b.force == 0)).sum()) for a, b in pairwise(states))
     lost = contact - states[-1].stored + states[0].stored
-    return Ledger(put_in, max(errors) / put_in, lost / put_in, losses)
+    limits = np.array([(joint.lower, joint.upper) for joint in pantograph.joints]).reshape(-1, 2)
+    at_bound = np.array([(state.joint[:, None] == limits).any(axis=1) for state in states])
+    bounds = int(at_bound.sum())
+    return Ledger(put_in, max(errors) / put_in, lost / put_in, joints / put_in, losses, bounds, at_bound.size - bounds)
+
+
+def pantograph_joints(pantograph: Pantograph) -> RealArray:
+    """Closing of each joint per unknown, (joints, n)."""
+    return np.array([joint.direction for joint in pantograph.joints]).reshape(-1, pantograph.head.size)
 
 
 @dataclass(frozen=True)
 class _State:
-    """End of a time step: wire and its shape functions at the head, displacements of the pantograph, contact."""
+    """End of a time step: wire, its shape functions at the strips, displacements of the pantograph, forces."""
 
     height: RealArray
     shape: RealArray
     z: RealArray
-    force: float
-    closing: float
+    force: RealArray
+    closing: RealArray
+    joint: RealArray
     energy: float
     stored: float
 
@@ -203,10 +234,12 @@ def _states(line: DiscretisedLine, head: Pantograph, dt: float) -> Iterator[_Sta
             raise SimulationError("the forces of a time step did not converge")
         w, r = end_of_step(motion, kernel.layout, dt)
         q, v = (np.stack([w[i], r[i]], axis=-1).ravel()[place] for i in range(2))
-        z, u, force = train.z[0, 0].copy(), train.z[1, 0], float(train.contact[0, 0])
-        shape, height = point_load(line, row, float(train.position[0])), rest.copy()
+        z, u, force = train.z[0, 0].copy(), train.z[1, 0], train.contact[:, 0].copy()
+        shape = np.array([point_load(line, row, float(x)) for x in train.position[0] + train.offset])
+        height = rest.copy()
         height[matrices.free] += q
-        stored = force**2 / work.contact.stiffness[0, 0] / 2
-        stored += 2 / 5 * force * (force / head.hertz_coefficient) ** (2 / 3)
+        stored = (force**2 / work.contact.stiffness[:, 0] / 2).sum()
+        stored += (2 / 5 * force * (force / head.hertz_coefficient) ** (2 / 3)).sum()
         energy = float(v @ mass @ v + q @ (matrices.stiffness @ q) + u @ head.mass @ u + z @ head.stiffness @ z) / 2
-        yield _State(height, shape, z, force, float(head.head @ z - shape @ height), energy, float(stored))
+        closing = head.strip_shapes @ z - shape @ height
+        yield _State(height, shape, z, force, closing, train.joint_force.copy(), energy, float(stored))
