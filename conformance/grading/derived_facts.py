@@ -83,11 +83,13 @@ def _list_wire_facts(line: LineFile, speed: float, section: str) -> Iterator[Der
 def _list_pantograph_facts(case: Case, uplift_forces: Sequence[float]) -> Iterator[DerivedFact]:
     for number, pantograph in enumerate(case.pantographs, 1):
         if pantograph.chain is not None:
+            head = pantograph.head
+            strips = [strip.mass_kg for strip in head.strip if strip.mass_kg] if head is not None else []
             yield DerivedFact(
                 name=f"Mass of pantograph {number}",
-                value=math.fsum(pantograph.chain.masses_kg),
+                value=math.fsum((*pantograph.chain.masses_kg, *strips)),
                 unit="kg",
-                basis="sum of the masses of its chain",
+                basis="sum of the masses of its chain" + (" and of its strips" if strips else ""),
             )
     if not uplift_forces:
         return

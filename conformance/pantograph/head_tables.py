@@ -34,13 +34,13 @@ from pantocheck.model.description.head_structure import (
 )
 from pantocheck.model.description.pantograph import Pantograph
 
-Part = int | str
+ChainPart = int | str
 """Part of a chain: number of a mass from the base, from 1; its name; base; strip 1 or strip 2."""
 
 LISTED_BY_LAW = Feature("", lambda _: False)
 """Declaration of the table: each law states its own feature."""
 
-FindPart = Callable[[Part, int], RealArray]
+FindPart = Callable[[ChainPart, int], RealArray]
 """Displacement of a part per unit of each unknown, from the part and the number of unknowns."""
 
 Optional = Field(exclude_if=is_absent)
@@ -101,7 +101,7 @@ class BendingModeTable(InputTable):
 class RubbingTable(InputTable):
     """Parts between which a force acts: two parts of a chain, or a direction of matrices and modes."""
 
-    between: Annotated[tuple[Part, Part] | None, Field(strict=False), NO_FEATURE] = None
+    between: Annotated[tuple[ChainPart, ChainPart] | None, Field(strict=False), NO_FEATURE] = None
     """Chain: lower and upper part; mass by name or number from the base, base, strip 1 or strip 2."""
     direction: Annotated[NumberList | None, Field(max_length=200), NO_FEATURE] = None
     """Matrices and modes: distance of both parts per unit of each unknown."""
@@ -210,7 +210,7 @@ class HeadTable(SourcedTable):
             model = add_bending_mode(model, mode.frequency_Hz, mode.damping_ratio, mode.shapes)
         size = model.head.size
 
-        def find(part: Part) -> RealArray:
+        def find(part: ChainPart) -> RealArray:
             number = int(part[6:]) - 1 if isinstance(part, str) and part in ("strip 1", "strip 2") else None
             return model.strip_shapes[number] if number is not None else find_part(part, size)
 

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.features import NO_FEATURE, Feature
 from pantocheck.conformance.core.sourced_table import (
     InputTable,
@@ -23,6 +24,7 @@ from pantocheck.conformance.core.sourced_table import (
 )
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
 from pantocheck.conformance.pantograph.head_tables import LISTED_BY_LAW, HeadTable
+from pantocheck.conformance.pantograph.transfer_function import TransferFunctionTable
 from pantocheck.conformance.pantograph.validity_range import SupportedRange
 from pantocheck.model.description.contact_law import (
     Force,
@@ -202,14 +204,21 @@ class ModesTable(SourcedTable):
             yield validation_problem("head_shape", "all values are 0", "Give at least one value that is not 0.")
 
 
+MOTION_MODELS = ("chain", "matrices", "modes", "transfer_function")
+"""Tables of a pantograph file that describe its motion."""
+
+
 class PantographFile(InputTable):
-    """Content of a pantograph file: contact, one of the tables chain, matrices and modes, and its force law."""
+    """Content of a pantograph file: contact, one table of `MOTION_MODELS`, structure of the head, and force law."""
 
     title: Annotated[str, Field(max_length=200)]
     """Title in reports."""
     chain: Annotated[ChainTable | None, Feature("chain")] = None
     matrices: Annotated[MatricesTable | None, Feature("matrices")] = None
     modes: Annotated[ModesTable | None, Feature("modes")] = None
+    transfer_function: Annotated[
+        TransferFunctionTable | None, Field(exclude_if=is_absent), Feature("transfer_function")
+    ] = None
     contact: ContactTable
     head: Annotated[HeadTable | None, Field(exclude_if=is_absent), LISTED_BY_LAW] = None
     """Strips, rotations, bending modes, friction and stops; default: the head is one rigid strip."""
@@ -228,8 +237,8 @@ class PantographFile(InputTable):
 
     @cross_check
     def _has_one_model(self) -> Problems:
-        models = [name for name in ("chain", "matrices", "modes") if getattr(self, name) is not None]
-        hint = "Give one of the tables chain, matrices and modes."
+        models = [name for name in MOTION_MODELS if getattr(self, name) is not None]
+        hint = f"Give one of the tables {', '.join(MOTION_MODELS[:-1])} and {MOTION_MODELS[-1]}."
         if not models:
             yield validation_problem("chain", "missing", hint)
         if len(models) > 1:
@@ -238,6 +247,9 @@ class PantographFile(InputTable):
     @cross_check
     def _law_fits_the_model(self) -> Problems:
         if isinstance(self.force_law, AppliedForceLaw):
+            if self.transfer_function is not None:
+                yield validation_problem("force_law", "applied forces of a transfer function", "Give a mean force.")
+                return
             yield from self._find_wrong_point("force_law.aerodynamic_force.on", self.force_law.aerodynamic_force.on)
 
     @property
@@ -245,12 +257,23 @@ class PantographFile(InputTable):
         """Number of unknowns of the model without the structure of its head."""
         if self.chain is not None:
             return len(self.chain.masses_kg)
+        if self.transfer_function is not None:
+            return self.transfer_function.unknowns
         return len(self.matrices.head if self.matrices is not None else self.modes.head_shape if self.modes else ())
 
     @property
     def strips(self) -> int:
         """Number of strips."""
         return max(len(self.head.strip), 1) if self.head is not None else 1
+
+    def rigid_motion(self, size: int) -> RealArray:
+        """Displacement of the unknowns of a chain and its head when all masses rise by one, (size,)."""
+        rigid = np.zeros(size)
+        rigid[: self.unknowns] = 1.0
+        if self.head is not None:
+            first = self.unknowns + (self.head.pitch is not None)
+            rigid[first : first + sum(strip.mass_kg is not None for strip in self.head.strip)] = 1.0
+        return rigid
 
     @property
     def is_linear(self) -> bool:
@@ -269,6 +292,9 @@ class PantographFile(InputTable):
     @cross_check
     def _head_fits_the_model(self) -> Problems:
         if self.head is None:
+            return
+        if self.transfer_function is not None:
+            yield validation_problem("head", "found beside a transfer function", "A receptance has one rigid strip.")
             return
         for problem in self.head.find_misfits(self.chain is not None, self.unknowns):
             yield _place_problem("head", problem)

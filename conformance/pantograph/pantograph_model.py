@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw
 from pantocheck.conformance.pantograph.pantograph_file import ChainTable, PantographFile
-from pantocheck.model.description.pantograph import Pantograph, build_chain, from_matrices, from_modes, preload_springs
+from pantocheck.conformance.pantograph.transfer_function import TransferFunctionTable
+from pantocheck.model.description.pantograph import (
+    Pantograph,
+    build_chain,
+    from_matrices,
+    from_modes,
+    from_poles,
+    preload_springs,
+)
 
 
 def build_pantograph(
@@ -88,7 +96,10 @@ def _build_model(file: PantographFile, uplift_force: float, working_height: floa
         return preload_springs(model, _datum(file, model.head, working_height, wire_height))
     modes = file.modes
     if modes is None:
-        raise ValueError("a pantograph without a model")  # No valid file has this content.
+        function = _transfer_function(file)
+        model = from_poles(function.pole, function.residue, uplift_force, contact)
+        model = replace(model, force=uplift_force * function.uplift_factor * model.head)
+        return preload_springs(model, _datum(file, model.head, working_height, wire_height))
     omega, shape = 2 * np.pi * np.array(modes.frequency_Hz), np.array(modes.head_shape)
     preload = omega**2 * _datum(file, shape, working_height, wire_height)
     force = uplift_force * _uplift_point(file) + preload
@@ -103,7 +114,13 @@ def _uplift_point(file: PantographFile) -> RealArray:
         return np.array(file.matrices.uplift_force_on or file.matrices.head)
     if file.modes is not None:
         return np.array(file.modes.uplift_force_on or file.modes.head_shape)
-    raise ValueError("a pantograph without a model")  # No valid file has this content.
+    return np.zeros(_transfer_function(file).unknowns)
+
+
+def _transfer_function(file: PantographFile) -> TransferFunctionTable:
+    if file.transfer_function is None:
+        raise ValueError("a pantograph without a model")  # No valid file has this content.
+    return file.transfer_function
 
 
 def _aerodynamic_point(file: PantographFile) -> RealArray:

@@ -26,6 +26,7 @@ from pantocheck.conformance.runs.check import (
     report_not_made,
     worst_finding,
 )
+from pantocheck.model.description.pantograph import state_space
 
 MISFIT = Measure("misfit of the motion", "", {"contradiction": 0.1})
 """Misfit over the response. Rounding, a filter of one channel or another integration scheme give less than 0.02."""
@@ -165,13 +166,9 @@ def head_responses(file: PantographFile, force: RealArray, step: float) -> tuple
         step: Time between samples [s].
     """
     model, force = build_pantograph(file, 0.0, 0.0), np.atleast_2d(force)
-    m, shapes = model.head.size, model.strip_shapes
-    inverse = np.linalg.inv(model.mass)
-    state = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ model.stiffness, -inverse @ model.damping]])
-    head = np.concatenate([model.head, np.zeros(m)])
+    state, drives, head = state_space(model)
     time, response = step * np.arange(force.shape[1]), np.zeros(force.shape[1])
-    for shape, part in zip(shapes, force, strict=True):
-        drive = np.concatenate([np.zeros(m), -inverse @ shape])
+    for drive, part in zip(-drives.T, force, strict=True):
         response += _simulate(state, drive, part - part.mean(), step) @ head
     poles = np.linalg.eigvals(state)
     slow = poles[(poles.imag >= 0) & (np.abs(poles) < 2 * np.pi / (SAMPLES_PER_PERIOD * step))]

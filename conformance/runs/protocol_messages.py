@@ -12,6 +12,7 @@ from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.force_law import PointOfForce
 from pantocheck.conformance.pantograph.head_tables import HeadTable
 from pantocheck.conformance.pantograph.pantograph_file import ChainTable, ContactTable, MatricesTable, ModesTable
+from pantocheck.conformance.pantograph.transfer_function import TransferFunctionTable
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.runs.derived_values import Derived
 
@@ -46,11 +47,12 @@ class RequestedAppliedForces(InputTable):
 
 
 class RequestedPantograph(InputTable):
-    """Pantograph of a run, in running order. One of chain, matrices and modes describes it."""
+    """Pantograph of a run, in running order. One of chain, matrices, modes and transfer function describes it."""
 
     chain: ChainTable | None
     matrices: MatricesTable | None
     modes: ModesTable | None
+    transfer_function: Annotated[TransferFunctionTable | None, Field(exclude_if=is_absent)] = None
     contact: ContactTable
     head: Annotated[HeadTable | None, Field(exclude_if=is_absent)] = None
     """Structure of the head; default: one rigid strip."""

@@ -179,11 +179,7 @@ def _compare(
         return DOES_NOT_APPLY
     allowed = 0.0
     if lift.target_mean_force is None:
-        model = build_pantograph(file, 0.0, 0.0)
-        rigid = np.ones(model.head.size) if file.chain is not None else model.head / (model.head @ model.head)
-        mass, damping, stiffness = (
-            float(rigid @ part @ rigid) for part in (model.mass, model.damping, model.stiffness)
-        )
+        mass, damping, stiffness = _rigid_coefficients(file)
         velocity = np.gradient(height, 1 / rate)
         impulse = mass * (velocity[-1] - velocity[0]) + damping * (height[-1] - height[0])
         allowed = stiffness * LIFTS * max(uplift, float(np.ptp(height))) + abs(float(impulse)) * rate / height.size
@@ -195,6 +191,21 @@ def _compare(
     )
     share = (abs(difference) - allowed) / max(expected, TINY)
     return FORCE_DIFFERENCE.compare(share, f"pantograph {number}", text)
+
+
+def _rigid_coefficients(file: PantographFile) -> tuple[float, float, float]:
+    """Mass, damper and spring of a slow motion of the whole pantograph [kg, N s/m, N/m]."""
+    model = build_pantograph(file, 0.0, 0.0)
+    if file.transfer_function is not None:
+        # Dynamic stiffness at a real frequency s and at -s, of a pole at 0 as well.
+        s = 1e-2
+        rising, falling = (
+            1 / (model.head @ np.linalg.solve(model.stiffness + x * model.damping, model.head)) for x in (s, -s)
+        )
+        return 0.0, float(rising - falling) / (2 * s), float(rising + falling) / 2
+    rigid = file.rigid_motion(model.head.size) if file.chain is not None else model.head / (model.head @ model.head)
+    mass, damping, stiffness = (float(rigid @ part @ rigid) for part in (model.mass, model.damping, model.stiffness))
+    return mass, damping, stiffness
 
 
 MEAN_FORCE = Check(

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pantocheck.model.description.arrays import Array
-from pantocheck.model.description.pantograph import Joint, Pantograph, Strip, add_spring, add_unknown
+from pantocheck.model.description.pantograph import ContactStrip, Joint, Pantograph, add_spring, add_unknown
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def set_strips(pantograph: Pantograph, offsets: Sequence[float], shapes: Sequenc
         offsets: Distance of each strip ahead of the position of the pantograph [m].
         shapes: Displacement of each strip per unknown, (n,) each [-].
     """
-    strips = tuple(Strip(offset, shape[None]) for offset, shape in zip(offsets, shapes, strict=True))
+    strips = tuple(ContactStrip(offset, shape[None]) for offset, shape in zip(offsets, shapes, strict=True))
     return replace(pantograph, own_strips=strips, head=np.mean(shapes, axis=0))
 
 

@@ -21,7 +21,7 @@ from pantocheck.model.description.arrays import Array
 
 
 @dataclass(frozen=True)
-class Strip:
+class ContactStrip:
     """Collector strip: point of contact with a wire."""
 
     offset: float
@@ -74,15 +74,15 @@ class Pantograph:
     """Damping beside this stiffness [N s/m]."""
     hertz_coefficient: float = math.inf
     """Coefficient K of Hertz's law F = K penetration^1.5, in series with the stiffness; infinite: none [N/m^1.5]."""
-    own_strips: tuple[Strip, ...] = ()
+    own_strips: tuple[ContactStrip, ...] = ()
     """Collector strips from front to rear; empty: the head is the only one."""
     joints: tuple[Joint, ...] = ()
     """Forces of friction and stops."""
 
     @property
-    def strips(self) -> tuple[Strip, ...]:
+    def strips(self) -> tuple[ContactStrip, ...]:
         """Points of contact from front to rear."""
-        return self.own_strips or (Strip(0.0, self.head[None]),)
+        return self.own_strips or (ContactStrip(0.0, self.head[None]),)
 
     @property
     def strip_shapes(self) -> Array:
@@ -291,8 +291,29 @@ def equilibrium(pantograph: Pantograph, height: float | Array) -> tuple[Array, A
     return np.asarray(solution[:n]), np.asarray(solution[n:])
 
 
+def state_space(pantograph: Pantograph) -> tuple[Array, Array, Array]:
+    """State space x' = A x - B F of the contact forces, and the head as a sum of the states.
+
+    Returns:
+        A: Matrix of the states: displacements and velocities, or those of a transfer function, (k, k).
+        B: Effect of each strip, (k, strips).
+        head: Displacement of the head per state, (k,).
+    """
+    n, shapes = pantograph.head.size, pantograph.strip_shapes
+    if not pantograph.mass.any():
+        inverse = np.linalg.inv(pantograph.damping)
+        return -inverse @ pantograph.stiffness, inverse @ shapes.T, pantograph.head
+    inverse = np.linalg.inv(pantograph.mass)
+    lower = [-inverse @ pantograph.stiffness, -inverse @ pantograph.damping]
+    matrix = np.block([[np.zeros((n, n)), np.eye(n)], lower])
+    drive = np.vstack([np.zeros(shapes.T.shape), inverse @ shapes.T])
+    return matrix, drive, np.append(pantograph.head, np.zeros(n))
+
+
 def frequencies(pantograph: Pantograph) -> Array:
     """Undamped natural frequencies with the base fixed and the head free, ascending [Hz]."""
+    if not pantograph.mass.any():  # a transfer function has poles only
+        return np.unique(np.abs(np.linalg.eigvals(state_space(pantograph)[0]).imag)) / (2 * np.pi)
     w2 = scipy.linalg.eigh(pantograph.stiffness, pantograph.mass, eigvals_only=True)
     return np.asarray(np.sqrt(np.maximum(w2, 0.0)) / (2 * np.pi))
 
