@@ -95,7 +95,7 @@ class PantographSamples(ResultsPart):
     """Contact force as delivered."""
     contact_height_m: PackedSamples | None
     """Height of the contact point in the analysis sections, elsewhere missing; null: not delivered."""
-    front_strip_force_N: Annotated[PackedSamples | None, Field(exclude_if=lambda value: value is None)] = None
+    front_strip_N: Annotated[PackedSamples | None, Field(exclude_if=lambda value: value is None)] = None
     """Contact force of the front strip, of two, as delivered."""
     arcs: PackedSamples | None = None
     loaded: PackedSamples | None = None
@@ -107,7 +107,7 @@ class PantographSamples(ResultsPart):
             self.position_m,
             self.force_N,
             self.contact_height_m,
-            self.front_strip_force_N,
+            self.front_strip_N,
             self.arcs,
             self.loaded,
         )

@@ -89,7 +89,9 @@ def _list_pantograph_facts(case: Case, uplift_forces: Sequence[float]) -> Iterat
                 name=f"Mass of pantograph {number}",
                 value=math.fsum((*pantograph.chain.masses_kg, *strips)),
                 unit="kg",
-                basis="sum of the masses of its chain" + (" and of its strips" if strips else ""),
+                basis="sum of the masses of its chain and of its strips"
+                if strips
+                else "sum of the masses of its chain",
             )
     if not uplift_forces:
         return

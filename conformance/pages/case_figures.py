@@ -137,8 +137,8 @@ REFERENCE_STYLE: PlotStyle = {
 """Style of the force of the reference; it is hidden where the force of the system lies on it."""
 
 
-STRIP_COLORS = ("#9c6b30", "#3f7d8c")
-"""Colours of front and rear strip."""
+STRIP_COLORS = {"front strip": "#9c6b30", "rear strip": "#3f7d8c"}
+"""Colours of the forces of both strips."""
 
 
 @render_svg
@@ -148,8 +148,8 @@ def draw_force(trace: Traces, reference: list[float]) -> Figure:
     position = trace.position_m
     if trace.force_N:
         axes.plot(position, trace.force_N, color=GREY, linewidth=0.6, label="unfiltered")
-    for force, color, strip in zip(trace.strip_forces_N or (), STRIP_COLORS, ("front", "rear"), strict=False):
-        axes.plot(position, force, color=color, linewidth=0.5, label=f"{strip} strip")
+    for force, (label, color) in zip(trace.strip_forces_N or (), STRIP_COLORS.items(), strict=False):
+        axes.plot(position, force, color=color, linewidth=0.5, label=label)
     if reference:
         axes.plot(position, reference, **REFERENCE_STYLE)
     if trace.force_20_N:

@@ -134,7 +134,7 @@ class PantographSignals:
     """Start (included) and end (excluded) of the analysis section [m]."""
     contact_height: RealArray | None = None
     """Height of the contact point, (n,) [m], or None."""
-    front_strip_force: RealArray | None = None
+    front_strip: RealArray | None = None
     """Contact force of the front strip as delivered, (n,) [N]; the rear one has the rest; None: not recorded."""
     arc_channels: RealArray | None = None
     """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
@@ -197,9 +197,9 @@ class PantographSignals:
     @property
     def strip_forces(self) -> tuple[RealArray, ...]:
         """Contact forces of front and rear strip over the analysis section [N]; empty if they are not recorded."""
-        if self.front_strip_force is None:
+        if self.front_strip is None:
             return ()
-        front = self.front_strip_force[self.inside]
+        front = self.front_strip[self.inside]
         return front, self.delivered - front
 
     @property

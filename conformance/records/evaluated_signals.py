@@ -86,9 +86,7 @@ def pack_signals(
             position_m=pack_samples(signals.position[window]),
             force_N=pack_samples(signals.force.delivered[window]),
             contact_height_m=None if height is None else pack_samples(height[window]),
-            front_strip_force_N=None
-            if signals.front_strip_force is None
-            else pack_samples(signals.front_strip_force[window]),
+            front_strip_N=None if signals.front_strip is None else pack_samples(signals.front_strip[window]),
             arcs=arcs,
             loaded=loaded,
         )
@@ -192,7 +190,7 @@ def unpack_signals(samples: SignalSamples, low_pass: Filter, section: Stretch | 
             force=ForceChannel(_unpack_finite(part.force_N), samples.rate_Hz, low_pass, part.filter_applied_Hz),
             section=evaluated,
             contact_height=None if part.contact_height_m is None else part.contact_height_m.unpack(),
-            front_strip_force=None if part.front_strip_force_N is None else _unpack_finite(part.front_strip_force_N),
+            front_strip=None if part.front_strip_N is None else _unpack_finite(part.front_strip_N),
             arc_channels=None
             if part.arcs is None or part.loaded is None
             else np.vstack([part.arcs.unpack(), part.loaded.unpack()]),

@@ -20,7 +20,7 @@ SPEED_TOLERANCE = 0.005
 """Relative tolerance of the speed of a run [-]: a tenth of the width of a resonance over speed."""
 
 
-STRIP_CHANNELS = ("front_strip_force", "rear_strip_force")
+STRIP_CHANNELS = ("front_strip", "rear_strip")
 """Channels of the two strips of a pantograph."""
 
 STRIP_TOLERANCE_N = 0.1
@@ -67,8 +67,8 @@ class Record:
     """Positions of the supports, (s,) [m]."""
     support_uplift: RealArray | None = None
     """Uplift of the contact wire at the supports, (s, n) [m]; NaN where it is not known."""
-    front_strip_force: RealArray | None = None
-    rear_strip_force: RealArray | None = None
+    front_strip: RealArray | None = None
+    rear_strip: RealArray | None = None
     """Contact forces of both strips of every pantograph, whose sum is its force, (p, n) [N]."""
     rate: float = field(init=False)
 

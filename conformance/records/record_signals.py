@@ -35,7 +35,7 @@ class RecordSignals(SectionEvaluations):
                 force=ForceChannel(record.force[row], record.rate, self.low_pass, record.filter_applied_Hz),
                 section=record.evaluated,
                 contact_height=None if record.contact_height is None else record.contact_height[row],
-                front_strip_force=None if record.front_strip_force is None else record.front_strip_force[row],
+                front_strip=None if record.front_strip is None else record.front_strip[row],
             )
             for row in range(record.pantographs)
         }

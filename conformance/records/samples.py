@@ -24,8 +24,8 @@ class RecordSamples:
     """Contact points along the track [m], (p, n), or (1, n) of the first pantograph only."""
     contact_height: RealArray | None = None
     """Height of the contact point, (p, n) [m]."""
-    front_strip_force: RealArray | None = None
-    rear_strip_force: RealArray | None = None
+    front_strip: RealArray | None = None
+    rear_strip: RealArray | None = None
     """Contact forces of both strips, (p, n) [N]."""
     uplift: RealArray | None = None
     """Uplift of the contact wire at the supports, (s, n) [m]."""
@@ -142,8 +142,8 @@ def build_record(
         evaluated=section,
         filter_applied_Hz=sidecar.low_passed_Hz,
         contact_height=samples.contact_height,
-        front_strip_force=samples.front_strip_force,
-        rear_strip_force=samples.rear_strip_force,
+        front_strip=samples.front_strip,
+        rear_strip=samples.rear_strip,
         support_position=samples.support_position,
         support_uplift=samples.uplift,
     )

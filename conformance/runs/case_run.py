@@ -185,8 +185,8 @@ def record_passage(case: Case, passage: Passage, history: History) -> Record:
         force=history.force,
         evaluated=case.analysis_section,
         contact_height=history.height,
-        front_strip_force=front,
-        rear_strip_force=rear,
+        front_strip=front,
+        rear_strip=rear,
         support_position=np.array([position for _, position in passage.watched]),
         support_uplift=history.motion[:, :, 0],
     )

@@ -106,7 +106,7 @@ def find_unknown_motion(file: PantographFile, signals: RecordSignals, number: in
     """Reason why a record does not determine the motion of the head of a pantograph; None if it does."""
     if not file.is_linear:
         return f"the head of pantograph {number} is not linear"
-    if file.strips > 1 and signals.record.front_strip_force is None:
+    if file.strips > 1 and signals.record.front_strip is None:
         return f"the record has no forces of the strips of pantograph {number}"
     return None
 
@@ -114,9 +114,9 @@ def find_unknown_motion(file: PantographFile, signals: RecordSignals, number: in
 def list_strip_forces(file: PantographFile, signals: RecordSignals, number: int) -> list[RealArray]:
     """Contact forces of the strips of a pantograph over the whole record, as delivered [N]."""
     record, row = signals.record, number - 1
-    if file.strips == 1 or record.front_strip_force is None or record.rear_strip_force is None:
+    if file.strips == 1 or record.front_strip is None or record.rear_strip is None:
         return [record.force[row]]
-    return [record.front_strip_force[row], record.rear_strip_force[row]]
+    return [record.front_strip[row], record.rear_strip[row]]
 
 
 def compare_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
