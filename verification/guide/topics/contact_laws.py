@@ -8,7 +8,14 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.model import DiscretisedLine, Pantograph, Passage, SimulationError, build_chain, discretise
-from pantocheck.model.description.head_structure import MountedStrip, Rotation, add_friction, add_stop, mount_strips
+from pantocheck.model.description.head_structure import (
+    MountedStrip,
+    Rotation,
+    add_bending_mode,
+    add_friction,
+    add_stop,
+    mount_strips,
+)
 from pantocheck.model.discretisation.discretised_line import make_droppers_bilateral
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import end_of_step
@@ -41,6 +48,7 @@ _SUSPENSION = np.array([-1.0, 1.0])
 HEADS: dict[str, Callable[[Pantograph], Pantograph]] = {
     "one strip": lambda chain: chain,
     "two strips": lambda chain: mount_strips(chain, _STRIPS, Rotation(0.2, 40.0, 1.0)),
+    "bending mode": lambda chain: add_bending_mode(chain, 30.0, 0.02, [(0.3,)]),
     "friction": lambda chain: add_friction(chain, _SUSPENSION, 15.0, 1e-3),
     "stops": lambda chain: add_stop(add_stop(chain, _SUSPENSION, 0.0, 2e5, 50.0), -_SUSPENSION, 0.06, 2e5, 0.0),
 }
