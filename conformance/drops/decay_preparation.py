@@ -3,11 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
-from pantocheck.conformance.drops.decay_search import SHORTEST_DECAY, DecaySearch
+from pantocheck.conformance.drops.decay_search import CALM, SHORTEST_DECAY, DecaySearch, ResidualCourse
 from pantocheck.conformance.drops.drop_record import DropChannel, DropRecord
 from pantocheck.conformance.drops.noise_estimate import shows_motion
 from pantocheck.conformance.records.force_checks import find_clipping
@@ -33,6 +34,8 @@ class Release:
     """End of the rest before the release [s]; 0 if the record has no rest."""
     warnings: tuple[str, ...] = ()
     """Caveats on the release."""
+    onsets: tuple[float | None, ...] = ()
+    """First lasting motion of each channel, in the time of the record [s]; None: it does not stand out."""
 
 
 def find_release(signals: RealArray, rate: float, nominal: float | None, name: str) -> Release:
@@ -62,18 +65,26 @@ def find_release(signals: RealArray, rate: float, nominal: float | None, name: s
     displaced = signals - np.median(rest, axis=0)
     noise = 1.4826 * np.median(np.abs(displaced[:rest_end]), axis=0)
     noise_floor = np.maximum(noise, 1e-9 * np.abs(displaced).max(axis=0))
-    beyond = np.any(np.abs(displaced[rest_end:]) > ONSET * noise_floor, axis=1)
-    sustained = np.convolve(beyond, np.ones(5), mode="valid") >= 3
-    if not sustained.any():
+    beyond = np.abs(displaced[rest_end:]) > ONSET * noise_floor
+    time = _find_onset(beyond.any(axis=1), rest_end, rate)
+    if time is None:
         raise InputError(
             name, "no channel moves after the planned release", "Check trigger_nominal_s, the channels and their units."
         )
-    time = (rest_end + int(np.argmax(sustained)) + int(np.argmax(beyond[np.argmax(sustained) :]))) / rate
     late = nominal is not None and time > nominal + 1.0
     warnings = (f"{name}: the first motion is {time - (nominal or 0):.1f} s after the planned release",) if late else ()
     if n / rate - time < 1.0:
         raise InputError(name, f"ends {n / rate - time:.2f} s after the release", "Record the whole decay.")
-    return Release(time, max(0.0, min(rest_end / rate, time - 0.1)), warnings)
+    onsets = tuple(_find_onset(channel, rest_end, rate) for channel in beyond.T)
+    return Release(time, max(0.0, min(rest_end / rate, time - 0.1)), warnings, onsets)
+
+
+def _find_onset(beyond: NDArray[np.bool_], rest_end: int, rate: float) -> float | None:
+    """First of five samples of a channel of which three stand out of its noise, in the time of the record [s]."""
+    sustained = np.flatnonzero(np.convolve(beyond, np.ones(5), mode="valid") >= 3)
+    if not sustained.size:
+        return None
+    return float((rest_end + sustained[0] + np.argmax(beyond[sustained[0] :])) / rate)
 
 
 def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
@@ -92,8 +103,23 @@ def _quiet_start(signals: RealArray, rate: float, name: str) -> int:
 CLIPPED_EARLY = 0.15
 """Share of the decay after which a clipped channel is left out [-]."""
 
+NO_POLES: ComplexArray = np.zeros(0, dtype=np.complex128)
+
 GUARD = 2.0
 """Estimated time from the release until all droppers are taut again [s]."""
+
+
+@dataclass(frozen=True)
+class StretchEvidence:
+    """RMS of the residual over that of the motion at rest, in windows over the whole record."""
+
+    time: RealArray
+    """Middle of each window after the release, (w,) [s]."""
+    ratio: RealArray
+    """Median over the channels, (w,) [-]."""
+
+
+NO_EVIDENCE = StretchEvidence(np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -117,8 +143,10 @@ class LinearDecay:
     """Poles of the search for the linear part, (m,) [1/s]. They are the start poles of an identification if its
     records have different sampling rates; otherwise start poles are searched in all records together.
     """
+    evidence: StretchEvidence = NO_EVIDENCE
+    """Residual over the whole record, by which the part was chosen."""
     warnings: tuple[str, ...] = ()
-    """Reasons why the decay is shorter than the record."""
+    """Measurements by which the decay is shorter than the record."""
 
     @property
     def duration(self) -> float:
@@ -190,6 +218,8 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
     if len(columns) == 1:
         warnings.append(f"{name}: a single channel does not show modes with a node there, and gives no mode shape")
     used = tuple(columns)
+    if release.onsets:
+        release = replace(release, onsets=tuple(release.onsets[vertical.index(c)] for c in used))
     driven = shows_motion(record.signals[: int(release.rest_end * record.rate), columns], record.rate, band)
     search = use_whole_decay if driven else find_linear_decay
     linear = search(record, used, release, band, clipped_until)
@@ -198,8 +228,9 @@ def prepare_decay(record: DropRecord, band: FrequencyBand) -> PreparedDecay:
 
 
 def extend_decay(decay: PreparedDecay, band: FrequencyBand) -> PreparedDecay:
-    """Decay of a record whose residual shows ambient motion: as a whole, without the search for disturbances."""
-    linear = use_whole_decay(decay.record, decay.columns, decay.release, band, decay.linear.start)
+    """Decay of a record whose residual shows ambient motion, extended to the end of the record."""
+    filtered = _filter_record(decay.record, decay.columns, decay.release, band, decay.linear.start)
+    linear = _cut_record(decay.record, filtered, (filtered.guard, filtered.samples.shape[0]), decay.linear.evidence)
     kept = tuple(text for text in decay.warnings if text not in decay.linear.warnings)
     return replace(decay, linear=linear, lateral=_filter_lateral(decay.record, linear), warnings=kept, driven=True)
 
@@ -219,6 +250,8 @@ class _FilteredRecord:
     begin: int
     """First sample of the record after the release."""
     samples: RealArray
+    rest: RealArray
+    """Samples at rest, (r, c)."""
     guard: int
     """First of the samples that may be linear."""
     taps: RealArray
@@ -251,7 +284,9 @@ def _filter_record(
             "is constant after the release",
             "Leave this channel out; its sensor failed.",
         )
-    return _FilteredRecord(begin, samples, guard, taps, step)
+    quiet = signals[: int(release.rest_end * rate)]
+    rest = filter_full_overlap(quiet, taps)[::step] if quiet.shape[0] > taps.size else samples[:0]
+    return _FilteredRecord(begin, samples, rest, guard, taps, step)
 
 
 def find_linear_decay(
@@ -271,35 +306,116 @@ def find_linear_decay(
     """
     filtered = _filter_record(record, columns, release, band, clipped_until)
     name, total, dt = record.name, filtered.samples.shape[0], filtered.step / record.rate
-    start, end, poles = DecaySearch(filtered.samples, filtered.guard, dt, band).find_linear_part()
+    search = DecaySearch(filtered.samples, filtered.guard, dt, band, filtered.rest)
+    start, end, poles = search.find_linear_part()
+    course = search.follow_residual(end, poles)
+    if course.level(max(start, search.begin), end) > CALM and (begin := search.find_late_begin()) is not None:
+        search = replace(search, begin=begin)
+        start, end, poles = search.find_linear_part()
+        course = search.follow_residual(end, poles)
     if clipped_until > release.time:
         start = max(start, filtered.guard)
-    warnings = []
-    if end < total:
-        warnings.append(f"{name}: used up to {end * dt:.0f} s after the release; later it is not a free decay")
     if (end - start) * dt < SHORTEST_DECAY - filtered.taps.size / record.rate:
         raise InputError(
             name,
             f"is a free decay for only {(end - start) * dt:.1f} s",
             "Repeat the drop in calm weather and without traffic.",
         )
+    names = [record.channels[c].name for c in columns]
+    _require_calm(name, course, names, (start, end), dt, band)
+    warnings = _describe_ends(name, course, names, (start, end), total, dt)
+    return _cut_record(record, filtered, (start, end), _build_evidence(course, dt), poles, warnings)
+
+
+REFUSED = 30.0
+"""Power of the residual over that of the motion at rest, above which a record is refused [-]."""
+
+
+def _require_calm(
+    name: str, course: ResidualCourse, channels: list[str], part: tuple[int, int], dt: float, band: FrequencyBand
+) -> None:
+    """Refuse a record whose residual is far above the motion at rest wherever decays are fitted.
+
+    Raises:
+        InputError: It is.
+    """
+    start, end = part
+    if course.level(start, end) > REFUSED:
+        inside = (course.starts >= start) & (course.starts + course.window <= end)
+        levels = np.sqrt(np.median(course.ratio[inside], axis=0))
+        raise InputError(
+            name,
+            f"has no part of {SHORTEST_DECAY:g} s or longer that is a free decay: from {start * dt:.0f} to "
+            f"{end * dt:.0f} s after the release the residual from {band.low:g} to {band.fitted:g} Hz is "
+            + ", ".join(f"{level:.0f}" for level in levels)
+            + f" times {course.reference}, at {', '.join(channels)}",
+            "Record longer, or drop a smaller mass: as long as droppers slacken, no sum of decays fits.",
+        )
+
+
+def _describe_ends(
+    name: str, course: ResidualCourse, channels: list[str], part: tuple[int, int], total: int, dt: float
+) -> tuple[str, ...]:
+    """Sentences on the residual outside the used part, at its ends that are not those of the record."""
+    start, end = part
+    texts = []
     if start * dt > GUARD + 1.0:
-        warnings.append(f"{name}: the decay is linear only from {start * dt:.1f} s after the release")
-    return _cut_record(record, filtered, start, end, poles, tuple(warnings))
+        before = course.starts + course.window <= start
+        texts.append(
+            f"{name}: used from {start * dt:.1f} s after the release{_describe_part(course, channels, before)}"
+        )
+    if end < total:
+        after = course.starts >= end
+        texts.append(f"{name}: used up to {end * dt:.0f} s after the release{_describe_part(course, channels, after)}")
+    return tuple(texts)
+
+
+def _describe_part(course: ResidualCourse, channels: list[str], windows: NDArray[np.bool_]) -> str:
+    """Largest residual in some windows, as the end of a sentence."""
+    if not windows.any():
+        return ""
+    largest = np.sqrt(course.ratio[windows].max(axis=0))
+    worst = channels[int(largest.argmax())]
+    return f"; beyond, the residual reaches {largest.max():.2g} times {course.reference}, at channel {worst}"
 
 
 def use_whole_decay(
     record: DropRecord, columns: tuple[int, ...], release: Release, band: FrequencyBand, clipped_until: float
 ) -> LinearDecay:
-    """Decay from the estimated end of slack droppers to the end of the record; parameters as in `find_linear_decay`."""
+    """Decay of a line in motion to the end of the record; parameters as in `find_linear_decay`.
+
+    It begins after the guard, or later if the residual of a fit is largest in the first half of the record, and beyond
+    the motion at rest.
+    """
     filtered = _filter_record(record, columns, release, band, clipped_until)
-    none = np.zeros(0, dtype=np.complex128)
-    return _cut_record(record, filtered, filtered.guard, filtered.samples.shape[0], none, ())
+    total, dt = filtered.samples.shape[0], filtered.step / record.rate
+    search = DecaySearch(filtered.samples, filtered.guard, dt, band, filtered.rest)
+    course = search.follow_coarse_fit()
+    largest = course.starts[course.starts >= search.begin][course.middle[course.starts >= search.begin].argmax()]
+    is_early = largest < (search.begin + total) // 2
+    if is_early and course.level(search.begin, total) > CALM and (begin := search.find_late_begin()) is not None:
+        search = replace(search, begin=begin)
+        course = search.follow_coarse_fit()
+    names = [record.channels[c].name for c in columns]
+    if is_early:
+        _require_calm(record.name, course, names, (search.begin, total), dt, band)
+    warnings = _describe_ends(record.name, course, names, (search.begin, total), total, dt)
+    return _cut_record(record, filtered, (search.begin, total), _build_evidence(course, dt), warnings=warnings)
+
+
+def _build_evidence(course: ResidualCourse, dt: float) -> StretchEvidence:
+    return StretchEvidence(np.asarray((course.starts + course.window / 2) * dt), np.sqrt(course.middle))
 
 
 def _cut_record(
-    record: DropRecord, filtered: _FilteredRecord, start: int, end: int, poles: ComplexArray, warnings: tuple[str, ...]
+    record: DropRecord,
+    filtered: _FilteredRecord,
+    part: tuple[int, int],
+    evidence: StretchEvidence,
+    poles: ComplexArray = NO_POLES,
+    warnings: tuple[str, ...] = (),
 ) -> LinearDecay:
+    start, end = part
     rate, dt, half_filter = record.rate, filtered.step / record.rate, (filtered.taps.size - 1) / 2 / record.rate
     return LinearDecay(
         samples=filtered.samples[start:end],
@@ -310,5 +426,6 @@ def _cut_record(
         end=filtered.begin / rate + end * dt + 2 * half_filter,
         first=filtered.begin / rate + start * dt + half_filter,
         poles=poles,
+        evidence=evidence,
         warnings=warnings,
     )

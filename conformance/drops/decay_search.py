@@ -3,9 +3,14 @@
 The decay is linear from the time when the last dropper becomes taut until wind or traffic moves the line. Both times
 are unknown. Decays are fitted to the first minute and then to longer and longer parts of the record. The residual of
 each fit is compared with the noise in windows over the whole record; a disturbed window limits the linear part.
+
+If the residual of this part exceeds the motion at rest, the decay begins later: decays are fitted to the last half,
+quarter and eighth of the record. The first fit with a residual like the motion at rest is extended back, step by step,
+as far as its residual allows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +35,18 @@ EARLIEST_START = 1.0
 
 TEST_TRANSITION = 2.5
 """Transition band of the low-pass for the residual [Hz]."""
+
+CALM = 4.0
+"""Power of the residual over that of the motion at rest, up to which a part counts as linear decay [-]."""
+
+NEAR_FIT = 30.0
+"""Same ratio before a fitted part, up to which errors of its poles can be the cause [-]."""
+
+LEAST_RESIDUAL = 3e-4
+"""Residual over the RMS of the decay, which no record falls below: a rest without noise is not a measure [-]."""
+
+LATE_SHARES = (1 / 2, 3 / 4, 7 / 8)
+"""Shares of the record after which a late linear part is searched [-]."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +79,36 @@ class ResidualWindows:
 
 
 @dataclass(frozen=True)
+class ResidualCourse:
+    """Power of a residual over that of the motion at rest, in windows."""
+
+    starts: IntegerArray
+    """First sample of each window, (w,)."""
+    window: int
+    """Samples of a window."""
+    ratio: RealArray
+    """Ratio in each window at each channel, (w, c) [-]."""
+    reference: str
+    """Motion at rest, or what replaces it."""
+
+    @property
+    def middle(self) -> RealArray:
+        """Median over the channels, (w,) [-]."""
+        return np.asarray(np.median(self.ratio, axis=1))
+
+    def level(self, begin: int, end: int) -> float:
+        """Median over the windows in [begin, end), or in its first quarter if that is larger [-]."""
+        inside = (self.starts >= begin) & (self.starts + self.window <= end)
+        first = inside & (self.starts < begin + (end - begin) // 4)
+        return max((float(np.median(self.middle[part])) for part in (inside, first) if part.any()), default=0.0)
+
+    def first_near(self, begin: int, limit: float) -> int:
+        """First window of an unbroken sequence before `begin` whose ratios stay below a limit [samples]."""
+        beyond = np.flatnonzero((self.middle > limit) & (self.starts < begin))
+        return int(self.starts[beyond[-1] + 1]) if beyond.size and beyond[-1] + 1 < self.starts.size else 0
+
+
+@dataclass(frozen=True)
 class DecaySearch:
     """Search in the filtered and decimated samples after a release, (n, c), at intervals `dt` [s], from `begin`."""
 
@@ -69,6 +116,70 @@ class DecaySearch:
     begin: int
     dt: float
     band: FrequencyBand
+    rest: RealArray
+    """Filtered and decimated samples at rest before the release, (r, c); may be none."""
+
+    def find_late_begin(self) -> int | None:
+        """Begin of a later part whose residual is like the motion at rest; None if there is none."""
+        total = self.samples.shape[0]
+        for share in LATE_SHARES:
+            late = replace(self, begin=self.begin + int(share * (total - self.begin)))
+            if (total - late.begin) * self.dt < SHORTEST_DECAY:
+                break
+            if late.follow_coarse_fit().level(late.begin, total) <= CALM:
+                return late._extend_back(self.begin)
+        return None
+
+    def _extend_back(self, earliest: int) -> int:
+        """Earliest begin of a fit whose residual remains like the motion at rest."""
+        total, begin, limit = self.samples.shape[0], self.begin, NEAR_FIT
+        for _ in range(8):
+            near = replace(self, begin=begin).follow_coarse_fit().first_near(begin, limit)
+            earlier = replace(self, begin=max(near, earliest))
+            if (begin - earlier.begin) * self.dt < SHORT_WINDOW:
+                break
+            if earlier.follow_coarse_fit().level(earlier.begin, total) <= CALM:
+                begin = earlier.begin
+            elif limit == CALM:
+                break
+            else:
+                limit = CALM
+        return begin
+
+    def follow_coarse_fit(self) -> ResidualCourse:
+        """Residual of a fit of start poles from `begin` to the end of the record, which takes tenths of a second."""
+        return self.follow_residual(self.samples.shape[0], self._find_coarse_poles())
+
+    def _find_coarse_poles(self) -> ComplexArray:
+        samples = self.samples[self.begin :]
+        scaled = samples / np.maximum(samples.std(axis=0), np.finfo(float).tiny)
+        return find_start_poles([scaled], 1 / self.dt, self.band.low, self.band.fitted + 0.5)
+
+    def follow_residual(self, end: int, poles: ComplexArray) -> ResidualCourse:
+        """Residual of the decays fitted to [begin, end) over the motion at rest, in windows over the whole record."""
+        filter_length = _test_filter(self.dt, self.band).size
+        window = min(int(LONG_WINDOW / self.dt), self.samples.shape[0] - filter_length)
+        starts, level = _residual_levels(self._residual(end, poles), window, self.dt, self.band)
+        reference = "the motion at rest" if self._has_rest else "that of the last half, because there is no rest"
+        return ResidualCourse(starts, window, level / self._rest_level, reference)
+
+    @property
+    def _has_rest(self) -> bool:
+        return bool((self.rest.shape[0] - _test_filter(self.dt, self.band).size) * self.dt >= SHORT_WINDOW)
+
+    @cached_property
+    def _rest_level(self) -> RealArray:
+        """Mean square of the motion at rest; without a rest that of the residual in the last half, (c,)."""
+        residual, window = self.rest, int(LONG_WINDOW / self.dt)
+        if self._has_rest:
+            window = min(window, self.rest.shape[0] - _test_filter(self.dt, self.band).size)
+        else:
+            late = replace(self, begin=self.samples.shape[0] // 2)
+            residual = late._residual(self.samples.shape[0], late._find_coarse_poles())[late.begin :]
+            window = min(window, residual.shape[0] - _test_filter(self.dt, self.band).size)
+        level = np.median(_residual_levels(residual, window, self.dt, self.band)[1], axis=0)
+        least = LEAST_RESIDUAL * self.samples.std(axis=0)
+        return np.asarray(np.maximum(level, least**2 + np.finfo(float).tiny))
 
     def find_linear_part(self) -> tuple[int, int, ComplexArray]:
         """Find the start and the end of the linear part [samples], and the poles of the last fit, (m,) [1/s].

@@ -1,7 +1,7 @@
 """Analysis of an identified line: groups of modes, repeatability, spectra and frequency responses."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from math import ceil
 
 import numpy as np
@@ -82,9 +82,11 @@ def _record(decay: PreparedDecay) -> IdentifiedRecord:
         used_to_s=decay.linear.end,
         channels=decay.channel_names,
         sensors=tuple(
-            RecordSensor(channel=channel.name, wire=channel.wire, position_m=channel.position)
-            for channel in decay.channels
+            RecordSensor(channel=channel.name, wire=channel.wire, position_m=channel.position, onset_s=onset)
+            for channel, onset in zip_longest(decay.channels, decay.release.onsets)
         ),
+        residual_time_s=round_curve(decay.linear.evidence.time),
+        residual_over_rest=round_curve(decay.linear.evidence.ratio),
     )
 
 

@@ -20,6 +20,7 @@ from pantocheck.conformance.core.figure_style import (
 from pantocheck.conformance.pages.fixed_panels import PanelGrid, add_panel, add_panels
 from pantocheck.conformance.results.identification_format import (
     BandOrders,
+    IdentifiedRecord,
     OrderSearch,
     RecordResponses,
     RecordSpectra,
@@ -45,6 +46,20 @@ def draw_spectra(data: RecordSpectra, unit: str) -> Figure:
         axes.tick_params(labelbottom=axes is panels[-1][0])
     panels[-1][0].set_xlabel("frequency [Hz]; ticks: identified modes")
     add_legend(panels[0][0])
+    return figure
+
+
+@render_svg
+def draw_stretch(record: IdentifiedRecord) -> Figure:
+    """Residual over the motion at rest through a record; the used part is shaded, and dashed: equal to the rest."""
+    figure, axes = add_panel(FULL, 1.6)
+    start, end = (time - record.release_s for time in (record.used_from_s, record.used_to_s))
+    axes.axvspan(start, end, color=SHADES[3], alpha=0.4, linewidth=0, label="used")
+    axes.plot(record.residual_time_s, record.residual_over_rest, color=INK, linewidth=1.0, label="residual")
+    axes.axhline(1, color=INK, linestyle=LIMIT_LINE, linewidth=0.9)
+    axes.set_yscale("log")
+    axes.set(xlabel="time after the release [s]", ylabel="residual over rest")
+    add_legend(axes)
     return figure
 
 

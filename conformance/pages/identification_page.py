@@ -10,6 +10,7 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_response_zoom,
     draw_responses,
     draw_spectra,
+    draw_stretch,
 )
 from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
 from pantocheck.conformance.pages.shape_figure import draw_shapes, list_measured_shapes, list_supports
@@ -157,7 +158,19 @@ def list_record_blocks(line: IdentifiedLine) -> Iterator[doc.Block]:
     if line.clocks:
         stated = {None: "not stated", True: "one clock", False: "clocks of their own"}[line.shared_clock]
         yield _clock_table(line.clocks, stated)
-    yield doc.Figures((_spectrogram_figure(line.spectrogram, line.records[0]),))
+    figures_of_time = [_stretch_figure(record) for record in line.records if record.residual_time_s]
+    yield doc.Figures((*figures_of_time, _spectrogram_figure(line.spectrogram, line.records[0])))
+
+
+def _stretch_figure(record: IdentifiedRecord) -> doc.Figure:
+    start, end = (format_value(time - record.release_s, 3) for time in (record.used_from_s, record.used_to_s))
+    return doc.Figure(
+        draw_stretch(record),
+        f"Residual of the fitted decays through the record {record.name}, over the motion at rest before the release. "
+        f"The part from {start} s to {end} s after the release is used.",
+        f"{record.name}: choice of the used part (shaded). Line: residual of a sum of decays, in windows of 4 s, over "
+        "the motion at rest (dashed: equal); it grows where droppers slacken or the line is moved.",
+    )
 
 
 def _spectrogram_figure(data: Spectrogram, record: IdentifiedRecord) -> doc.Figure:
@@ -169,8 +182,7 @@ def _spectrogram_figure(data: Spectrogram, record: IdentifiedRecord) -> doc.Figu
         f"Amplitude of {data.channel} over time and frequency: whole record, and first seconds. The linear decay "
         f"lasts from {format_value(start, 3)} s to {format_value(end)} s after the release.",
         f"{data.record}: spectrogram of {data.channel}, left in windows of {data.whole.window_s:g} s, "
-        f"right in windows of {data.start.window_s:g} s. "
-        f"Droppers may be slack from the release to the start of the linear decay, for {format_value(start, 3)} s.",
+        f"right in windows of {data.start.window_s:g} s.",
     )
 
 
@@ -208,6 +220,7 @@ def _record_table(records: Sequence[IdentifiedRecord]) -> doc.Table:
         "Recording": lambda record: f"{format_value(record.length_s)} s at {record.sampling_rate_Hz:g} Hz",
         "Used after the release": analysed,
         "Channels": lambda record: ", ".join(record.channels),
+        "First motion [s]": lambda record: ", ".join(format_value(sensor.onset_s, 4) for sensor in record.sensors),
     }
     return doc.make_grid("Records and the part of each that was used", records, cells)
 

@@ -21,6 +21,8 @@ class RecordSensor(RoundedModel):
     """Wire with the sensor: CW (contact wire) or MW (messenger wire); empty: unknown."""
     position_m: float | None
     """Distance from the first support [m]; null: unknown."""
+    onset_s: Rounded | None = None
+    """First motion of the sensor, in the time of the record [s]; null: not found."""
 
 
 class IdentifiedRecord(RoundedModel):
@@ -44,6 +46,10 @@ class IdentifiedRecord(RoundedModel):
     """Names of the vertical channels."""
     sensors: tuple[RecordSensor, ...] = ()
     """Sensors of these channels."""
+    residual_time_s: Curve = []
+    """Middle of the windows of the residual that chose the linear decay, after the release [s]; empty: no window."""
+    residual_over_rest: Curve = []
+    """RMS of this residual over that of the motion at rest, median of the channels [-]."""
 
 
 class ModeGroup(RoundedModel):

@@ -167,7 +167,7 @@ def test_one_disturbed_sensor_among_sixteen_ends_the_decay(factor: float, ends: 
     noise = 0.02 * random.standard_normal((n, 16))
     noise[t > 30.0, 3] *= factor
     samples = 2 * (np.exp(np.outer(t, poles)) @ residues).real + noise
-    search = DecaySearch(np.asarray(samples), 40, dt, FrequencyBand.up_to(4.0, 50.0))
+    search = DecaySearch(np.asarray(samples), 40, dt, FrequencyBand.up_to(4.0, 50.0), np.asarray(samples)[:0])
     start, end, found = search.find_linear_part()
     assert start * dt < 2.1
     # A window of 4 s and its filter reach beyond the start of the disturbance.
