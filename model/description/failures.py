@@ -25,6 +25,10 @@ class ImpossibleDropper(NoInitialState):
         self.position = position
 
 
+class NegativeDamping(SimulationError):
+    """Modal damping takes more from a mode than the components have: some motion would grow without a load."""
+
+
 class NoEquilibrium(SimulationError):
     """The set of slack droppers does not settle under a static load: the last iterate is not in equilibrium."""
 

@@ -3,9 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from scipy.linalg import eigh
 
 from helpers.lines import Array, complex_roots, simple_line
 from pantocheck.model import DiscretisedLine, Kind, ModalBand, Rayleigh, discretise
+from pantocheck.model.description.failures import NegativeDamping
 from pantocheck.model.dynamics.kernel_arrays import build_kernel_arrays, build_workspace
 from pantocheck.model.dynamics.motion import build_motion, end_of_step
 from pantocheck.model.dynamics.newmark import step
@@ -56,6 +59,22 @@ def test_ratios_hold_to_first_order_where_components_have_other_coefficients() -
         errors.append(np.abs(-roots.real / np.abs(roots) / expected - 1).max())
     assert errors[0] > 1e-5
     assert errors[1] < 0.02 * errors[0]
+
+
+def test_damping_matrix_that_would_be_negative_is_refused() -> None:
+    """A messenger that is damped alone, and a mode of both wires without damping: -0.08 1/s with the full matrix."""
+    damping = dict.fromkeys(Kind, Rayleigh()) | {Kind.MESSENGER_WIRE: Rayleigh(0.3, 1e-3)}
+    line = simple_line(damping=damping)
+    undamped = discretise(replace(line, modal_damping=(replace(BAND, damping_ratio=0.0),)), 4.0)
+    with pytest.raises(NegativeDamping, match="some motion would grow"):
+        build_modal_terms(undamped)
+    kept = discretise(replace(line, modal_damping=(replace(BAND, damping_ratio=0.02),)), 4.0)
+    assert (build_modal_terms(kept).damping > 0).all()
+    assert eigh(full_damping(kept), assemble_matrices(kept).mass.toarray(), eigvals_only=True)[0] > -1e-9
+    uniform = replace(simple_line(damping=UNIFORM), modal_damping=(replace(BAND, damping_ratio=1e-4),))
+    lowered = discretise(uniform, 4.0)
+    assert (build_modal_terms(lowered).damping < 0).all()
+    assert eigh(full_damping(lowered), assemble_matrices(lowered).mass.toarray(), eigvals_only=True)[0] > 0
 
 
 def test_band_includes_its_lower_and_not_its_upper_edge() -> None:
