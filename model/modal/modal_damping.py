@@ -83,8 +83,8 @@ def _check_positive(matrices: GlobalMatrices, damping: Array, weight: Array) -> 
     rest = splu(csc_matrix(matrices.damping + LARGEST_GROWTH_1_S * matrices.mass)).solve(taken.T)
     if np.linalg.eigvalsh(np.eye(taken.shape[0]) - taken @ rest)[0] < 0:
         raise NegativeDamping(
-            "damping.modal: some motion would grow, because a ratio is smaller than that of the components, and these are "
-            "damped differently. Give a higher ratio, or wires with similar coefficients."
+            "damping.modal: some motion would grow, because a ratio is smaller than that of the components, and these "
+            "have other coefficients. Give a higher ratio, or wires with similar coefficients."
         )
 
 
