@@ -148,8 +148,8 @@ Sizes = Annotated[dict[QuantityName, Positive], Field(default_factory=dict)]
 class Effect(InputTable):
     """Effect that the equations leave out, and its size on one line."""
 
-    along_track: Literal["free", "fixed"]
-    """Lines that it concerns: fixed: those with a fixed messenger_support."""
+    along_track: Literal["free", "fixed"] | None = None
+    """Lines that it concerns: fixed: those with a fixed messenger_support; default: all lines."""
     effect: Annotated[str, Field(max_length=200)]
     """Equation of the simulator and effect that it leaves out."""
     compared: Annotated[str, Field(max_length=200)]
@@ -186,4 +186,4 @@ def read_effects() -> tuple[Effect, ...]:
 def list_model_uncertainty(case: Case) -> tuple[str, ...]:
     """Sentences on the effects that the reference simulator leaves out in a passage of a case."""
     along_track = "fixed" if case.line.supports_fixed_along_track else "free"
-    return tuple(effect.sentence for effect in read_effects() if effect.along_track == along_track)
+    return tuple(effect.sentence for effect in read_effects() if effect.along_track in (None, along_track))

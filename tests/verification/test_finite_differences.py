@@ -12,7 +12,6 @@ from scipy.linalg import eigh
 
 from helpers.listed_spans import list_spans
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.toml_file import read_toml
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.line.line_file import LineFile
@@ -25,9 +24,11 @@ from verification.formulations.difference_passage import build_heads, difference
 from verification.formulations.difference_rest import HeldStructure, rows
 from verification.formulations.difference_step import march
 from verification.formulations.difference_strands import Strand, Wire, lay_out
-from verification.formulations.finite_differences import reference_quantities
+from verification.formulations.finite_differences import find_case, reference_quantities
+from verification.formulations.parallel_wires import merge_parallel_wires
 
 AS_BUILT = "AC simple as built"
+IRREGULAR, CURVED = (f"en50318-2018/ac-simple/320+{change}" for change in ("irregular", "curved"))
 CASES = ("en50318-2002/250", "en50318-2018/ac-simple/320", "en50318-2018/ac-stitched/320")
 SPAN_LISTS = {
     "span_list": [
@@ -64,7 +65,7 @@ def case(name: str, spans: int | None = None) -> Case:
         tables["geometry"] |= SPAN_LISTS
         found = replace(base, line=LineFile.model_validate(tables))
     else:
-        found = next(candidate for candidate in select_cases([name]) if candidate.id == name)
+        found = find_case(name)
     if spans is None:
         return found
     geometry = found.line.geometry.shorten(spans)
@@ -151,7 +152,7 @@ def test_formulation_reads_the_case_of_a_program_and_nothing_of_the_reference_si
         assert {name for name in imported if name.startswith("pantocheck")} <= allowed, path.name
 
 
-@pytest.mark.parametrize("name", [*CASES, AS_BUILT])
+@pytest.mark.parametrize("name", [*CASES, AS_BUILT, CURVED])
 def test_derived_values_are_those_of_the_second_statics(name: str) -> None:
     """Forces and lengths that both formulations solve on their own; at 0.25 m the points leave 0.4 N and 0.6 mm."""
     line, values = model(name), message(case(name, 3))["derived"]["line"]
@@ -187,7 +188,9 @@ def test_derived_stiffnesses_are_those_of_the_second_bars(name: str) -> None:
         assert arms["vertical_stiffness_N_m"] == line.line.inputs["steady_arm"]["vertical_stiffness_N_m"]
 
 
-@pytest.mark.parametrize("name", [*CASES, "en50318-2018/ac-simple/320-twin", AS_BUILT, "force-law/300"])
+@pytest.mark.parametrize(
+    "name", [*CASES, "en50318-2018/ac-simple/320-twin", AS_BUILT, "force-law/300", IRREGULAR, CURVED]
+)
 def test_start_of_the_second_formulation_is_that_of_the_derived_values(name: str) -> None:
     """Working height, constant forces and heights of all masses at the start, solved on points 0.25 m apart."""
     sent = message(case(name, 5))
@@ -323,3 +326,21 @@ def test_two_strips_agree_with_the_reference_simulator() -> None:
     reference = reference_quantities(changed, 0.5, 1e-3, (169.0,))
     for key, value in second.items():
         assert value == pytest.approx(reference[key], rel=0.03), key
+
+
+def test_curve_and_irregularity_change_the_state_at_rest() -> None:
+    """A curve of 3000 m adds T L / R = 403 N to every arm; the wire that a head feels has millimetres more."""
+    plain, curved, irregular = (model(name) for name in (CASES[1], CURVED, IRREGULAR))
+    pull = (curved.rest.arm_force - plain.rest.arm_force)[1:-1, 0]
+    assert pull == pytest.approx(-22e3 * 55 / 3000, rel=0.02)
+    assert 1e-4 < np.std(irregular.arrays.rest - irregular.rest.shape) < 0.01
+
+
+def test_merged_parallel_wires_have_the_statics_of_the_line() -> None:
+    """Two contact wires on springs of their own are one wire with twice everything; a program receives six digits."""
+    twin = case("generic/twin-contact/200", 3)
+    merged = merge_parallel_wires(twin)
+    ours, others = (message(each)["derived"]["line"]["droppers"]["vertical_force_N"] for each in (twin, merged))
+    wires = np.concatenate(ours).reshape(-1, 2)
+    assert wires.sum(axis=1) == pytest.approx(np.concatenate(others), rel=1e-5)
+    assert merge_parallel_wires(case(CASES[0], 3)) is case(CASES[0], 3)

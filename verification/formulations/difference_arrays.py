@@ -105,6 +105,14 @@ def build_model(line: Line, spacing: float) -> Model:
     return Model(line, strands, rest, uplift, _arrays(line, strands, rest, bars))
 
 
+def _add_irregularity(line: Line, strands: Strands, rest: Rest) -> Floats:
+    """Shape at rest with the irregularity of the contact wire."""
+    shape, contact = rest.shape.copy(), strands["contact", "z"]
+    x = contact.wire.start + contact.spacing * np.arange(contact.count)
+    shape[contact.first : contact.first + contact.count] += line.irregularity(x)
+    return shape
+
+
 def _held(line: Line, strands: Strands, rest: Rest) -> list[Weights]:
     """Sums of displacements that are zero: at anchors, between tied points, and along the arms."""
     held = []
@@ -182,5 +190,5 @@ def _arrays(line: Line, strands: Strands, rest: Rest, bars: list[Bar]) -> Lines:
         arm_direction=arm_directions(rest) if line.staggered else np.zeros((0, 2)),
         contact=names.index(("contact", "z")),
         excess=strands["contact", "z"].excess,
-        rest=rest.shape,
+        rest=_add_irregularity(line, strands, rest),
     )

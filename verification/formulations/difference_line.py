@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from verification.formulations.difference_strands import Floats, Indices, Wire
 
@@ -60,7 +61,7 @@ class Lines(NamedTuple):
     excess: Floats
     """Excess flexibility of the contact wire, see `difference_strands.excess_flexibility`, (4,) [m/N]."""
     rest: Floats
-    """Shape at rest, (N,) [m]."""
+    """Shape at rest that a head feels, with the irregularity of the contact wire, (N,) [m]."""
 
 
 class Heads(NamedTuple):
@@ -95,10 +96,10 @@ CaseData = dict[str, Any]
 
 FEATURES = frozenset(
     (
-        "applied_forces", "bending_stiffness", "chain", "contact_laws", "dropper_mass", "droppers", "gradients",
-        "head_pitch", "line_at_rest", "listed_spans", "presag", "pushing_steady_arms", "rayleigh_damping",
-        "several_pantographs", "single_supports", "stagger", "steady_arm_dampers", "steady_arm_mass",
-        "steady_arms", "stitch_wire", "support_dampers", "surveyed_wire_heights", "two_strips",
+        "applied_forces", "bending_stiffness", "chain", "contact_laws", "curves", "dropper_mass", "droppers",
+        "gradients", "head_pitch", "irregularity", "line_at_rest", "listed_spans", "presag", "pushing_steady_arms",
+        "rayleigh_damping", "several_pantographs", "single_supports", "stagger", "steady_arm_dampers",
+        "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers", "surveyed_wire_heights", "two_strips",
         "uplift_force_tuning", "wire_height",
     )
 )  # fmt: skip
@@ -166,6 +167,23 @@ class Line:
             )
             heights.append(next(height for height in given if height is not None) + sum(rise))
         return np.array(heights)
+
+    def irregularity(self, x: Floats) -> Floats:
+        """Heights that a head feels in addition to those of the wire at positions (n,) [m]."""
+        points = self.derived["contact_wire"].get("irregularity")
+        if points is None:
+            return np.zeros_like(x)
+        spline = CubicSpline(points["x_m"], points["height_m"], bc_type="clamped")
+        return np.asarray(spline(np.clip(x, points["x_m"][0], points["x_m"][-1])))
+
+    def curvature(self, x: Floats) -> Floats:
+        """Curvature of the track at positions (n,) [1/m]: it rises linearly over the transitions."""
+        total = np.zeros_like(x)
+        for curve in self.derived.get("curves") or []:
+            start, end, ramp = curve["from_m"], curve["to_m"], curve["transition_m"]
+            corners = (start, start + ramp, end - ramp, end)
+            total += curve["curvature_1_m"] * np.interp(x, corners, (0.0, 1.0, 1.0, 0.0), left=0.0, right=0.0)
+        return total
 
     @property
     def _own_supports(self) -> list[CaseData]:

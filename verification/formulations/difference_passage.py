@@ -112,7 +112,7 @@ def build_heads(
         load += part.stiffness @ np.where(part.is_height, free, 0.0)
         shares = part.level_forces(load, force)
         held = [
-            model.lift(x + ahead, model.rest.shape + displacement)
+            model.lift(x + ahead, model.arrays.rest + displacement)
             + share * (1 / stiffness - excess * model.contact.excess_at(x + ahead))
             for ahead, share in zip(part.offset, shares, strict=True)
         ]

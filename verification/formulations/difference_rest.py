@@ -203,5 +203,12 @@ def _plan_view(line: Line, strands: Strands, spring: Floats) -> tuple[Floats, Fl
         values += [y for _, y in stagger]
     held += ties(line, strands, "y")
     values += [0.0] * len(line.clamps)
-    shape, force = _solve_part(sp.csc_array(stiffness), rows(held, n), np.zeros(n), np.array(values))
+    load = np.zeros(n)
+    for wire in line.wires:
+        strand = strands[wire.name, "y"]
+        places = np.arange(strand.first, strand.first + strand.count)
+        x = wire.start + strand.spacing * (places - strand.first)
+        tension = wire.tension + sum(change * ((x > start) & (x < end)) for start, end, change in wire.relief)
+        load[places] = tension * strand.spacing * line.curvature(x)
+    shape, force = _solve_part(sp.csc_array(stiffness), rows(held, n), load, np.array(values))
     return shape, force[1 : 1 + len(line.supports)]

@@ -14,8 +14,9 @@ import numpy as np
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.toml_file import read_model, read_toml, validate_model
 from pantocheck.conformance.line.catenary_model import build_catenary
+from pantocheck.conformance.line.line_file import LineFile
 from pantocheck.conformance.pantograph.pantograph_file import ContactTable, PantographFile
 from pantocheck.conformance.records.record_signals import evaluate_record
 from pantocheck.conformance.runs.case_run import run_passage
@@ -24,6 +25,7 @@ from pantocheck.model import DiscretisedLine, discretise
 from pantocheck.model.statics.elasticity import static_uplift
 from verification.formulations.difference_passage import LINE_QUANTITIES, QUANTITIES, Quantities, difference_quantities
 from verification.formulations.library_passages import PASSAGES
+from verification.formulations.parallel_wires import merge_parallel_wires
 
 FINE_MESH = (0.125, 2.5e-4)
 """Element length [m] and time step [s] of the reference simulator."""
@@ -55,10 +57,10 @@ class Comparison:
 
 def compare(name: str, coarse: float, fine: float, pantograph: PantographFile | None = None) -> Comparison:
     """Run a case with both formulations and the same uplift forces, with its pantographs or with another one."""
-    case = next(candidate for candidate in select_cases([name]) if candidate.id == name)
+    case = find_case(name)
     if pantograph is not None:
         case = replace(case, pantographs=(pantograph,) * len(case.pantographs))
-    forces, message = uplift_forces(case), build_case_message(case)
+    forces, message = uplift_forces(case), build_case_message(merge_parallel_wires(case))
     return Comparison(
         name,
         forces,
@@ -66,6 +68,18 @@ def compare(name: str, coarse: float, fine: float, pantograph: PantographFile | 
         difference_quantities(message, fine, forces),
         reference_quantities(case, *FINE_MESH, forces),
     )
+
+
+def find_case(name: str) -> Case:
+    """Library case by its id; behind a plus sign, the name of a change of its line in changed_lines.toml."""
+    id_, _, change = name.partition("+")
+    case = next(candidate for candidate in select_cases([id_]) if candidate.id == id_)
+    if not change:
+        return case
+    changes = read_toml(Path(__file__).with_name("changed_lines.toml"), "changed lines")[change]
+    tables = case.line.model_dump(mode="json", exclude_unset=True)
+    tables |= {key: tables.get(key, {}) | table for key, table in changes.items()}
+    return replace(case, line=validate_model(tables, LineFile, name))
 
 
 def uplift_forces(case: Case) -> tuple[float, ...]:

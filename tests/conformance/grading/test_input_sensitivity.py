@@ -8,7 +8,12 @@ import pytest
 from helpers.short_cases import change_case
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.input_studies import ResolvingPowerFile, find_resolving_power
+from pantocheck.conformance.cases.input_studies import (
+    ConditionsFile,
+    ResolvingPowerFile,
+    find_resolving_power,
+    read_study,
+)
 from pantocheck.conformance.documents.library_check import compare_with_case
 from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.input_sensitivity import (
@@ -18,6 +23,9 @@ from pantocheck.conformance.grading.input_sensitivity import (
     format_ceiling,
     list_conditions,
 )
+from pantocheck.conformance.grading.reading_grades import list_reading_remarks
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.runs.resolution import read_effects
 
 HEAD = {"name": "mass of the head", "group": "pantograph", "unit": "%"}
 SPRING = {"name": "spring of the base", "group": "pantograph", "unit": "%"}
@@ -63,7 +71,7 @@ def test_studies_of_the_library_case_and_of_changed_ones(case_250: Case) -> None
     own = describe_studies(case_250)
     assert own[0].startswith("Resolving power (computed on ")
     assert own[1].startswith("Not noticed up to")
-    assert len(list_conditions(case_250)) == 9
+    assert len(list_conditions(case_250)) == 11
     unlimited = case_250.without_limits()
     (other,) = describe_studies(unlimited)
     assert "belongs to another version of this case: to other inputs or limits" in other
@@ -88,3 +96,29 @@ def test_certificate_with_other_sentences_differs_from_the_library(case_250: Cas
     ]
     fewer = result.model_copy(update={"conditions": result.conditions[1:]})
     assert list(compare_with_case(case_250, fewer)) == ["the conditions of the values differ from those of the library"]
+
+
+def test_model_uncertainty_of_the_contact_is_the_largest_stored_change() -> None:
+    """Rounded up to two digits, so that no stored change exceeds it, and by less than a tenth."""
+    [effect] = [effect for effect in read_effects() if effect.along_track is None]
+    largest: dict[str, float] = {}
+    for path in (library_folder() / "conditions").rglob("*.toml"):
+        for condition in read_study(path, ConditionsFile).condition:
+            for row in condition.change if condition.name.startswith("contact ") else ():
+                largest[row.quantity] = max(largest.get(row.quantity, 0.0), abs(row.change_pct))
+    assert effect.relative_pct.keys() == largest.keys()
+    for quantity, size in effect.relative_pct.items():
+        assert largest[quantity] <= size <= 1.1 * largest[quantity], quantity
+
+
+def test_value_that_another_contact_moves_over_a_limit_is_marked(case_250: Case) -> None:
+    """26.5 N is 2 % above the lower limit of 26 N; twice the spring takes 4.3 % of it, a constraint 9 % of 29.5 N."""
+    result = grade_case(case_250, Wave().run(case_250), "secondary")
+    [std] = [row for row in result.criteria if row.quantity == "std_force_N"]
+    near = std.model_copy(update={"value": 26.5})
+    remarks = list_reading_remarks(near, [], result.conditions)
+    assert any(text.startswith("with contact stiffness +100 % the value is 25.") for text in remarks)
+    assert all(text.endswith("outside the limits") for text in remarks)
+    assert list_reading_remarks(near.model_copy(update={"value": 29.5}), [], result.conditions) == []
+    others = [row for row in result.conditions if not row.is_contact]
+    assert list_reading_remarks(near, [], others) == []

@@ -90,7 +90,8 @@ def test_reference_simulator_states_the_start_of_the_case_and_its_model_uncertai
     coarse = change_case(case_250, mesh=(5.0, 0.005))
     run = ReferenceSimulator().run_unrefined(coarse)
     assert run.start == StartTable(**START)
-    (effect,) = grade_case(coarse, run, "secondary").model_uncertainty
+    effect, contact = grade_case(coarse, run, "secondary").model_uncertainty
+    assert contact.startswith("Contact of head and wire in place of that of the case (")
     assert effect.startswith("Messenger wire of constant tension")
 
 

@@ -35,7 +35,7 @@ CONDITIONS = [
 def conditioned(passing: dict[str, Any]) -> dict[str, Any]:
     """Results of two pantographs on a case with an untraced contact spring and stored conditions."""
     case = passing["cases"][0]
-    case["inputs"] = [*(group for group in case["inputs"] if not group["group"].endswith("contact")), SPRING]
+    case["inputs"] = [*(group for group in case["inputs"] if not group["group"].endswith("contact")), {**SPRING}]
     case["conditions"], case["input_studies"] = CONDITIONS, ["Resolving power: 5 %."]
     return passing
 
@@ -54,6 +54,23 @@ def test_sentence_states_the_spring_its_source_and_its_effect(conditioned: dict[
     assert describe_condition(model(conditioned)) == (
         "‡ Values from 20 to 50 Hz are conditional on a contact spring of 67.5 kN/m, whose source is secondary "
         "(printed in another publication or public source)."
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "law"),
+    [
+        ({"law": "hertz", "effective_modulus_N_m2": 1.1e10, "effective_radius_m": 0.02}, "contact by the law of Hertz"),
+        ({"law": "constraint"}, "contact by a constraint"),
+    ],
+)
+def test_sentence_names_every_contact_law(conditioned: dict[str, Any], values: dict[str, Any], law: str) -> None:
+    case = conditioned["cases"][0]
+    case["inputs"][-1] |= {"values": values}
+    case["conditions"] = [{"name": "contact by a constraint", "changes": {"1": {"rms_20_50_N": 21.9}}}]
+    assert describe_condition(model(conditioned)) == (
+        f"‡ Values from 20 to 50 Hz are conditional on {law}, which is not traced. They change by +21.9 % with contact "
+        "by a constraint."
     )
 
 
