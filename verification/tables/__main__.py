@@ -97,6 +97,7 @@ PROGRAMS = {
     ),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "contact-findings": Program("tables.contact_findings", ("contact-findings",)),
+    "contact-laws": Program("tables.contact_table", ("contact-laws",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
