@@ -6,12 +6,15 @@ Mesh, mean contact forces and dampings are those of the case; the uplift forces 
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.toml_file import read_model
 from pantocheck.conformance.core.verdicts import judge
 from pantocheck.conformance.grading.criterion_grading import find_value
 from pantocheck.conformance.line.elements.damping import Damping
-from pantocheck.conformance.pantograph.pantograph_file import ContactTable
+from pantocheck.conformance.line.library_folder import library_folder
+from pantocheck.conformance.pantograph.pantograph_file import ContactTable, PantographFile
 from pantocheck.conformance.quantities.evaluation import ValuesByOwner
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.studies.vovan2015.damping_change import compare_damping_runs
@@ -22,9 +25,11 @@ STIFFNESSES_N_M = {"case": 50e3, "25 kN/m": 25e3, "100 kN/m": 100e3}
 
 
 def list_cases() -> dict[str, Case]:
-    """The case with every contact, its own first."""
+    """The case with every contact, its own first, and with a head of two strips."""
     contacts = {name: ContactTable(stiffness_N_m=k) for name, k in STIFFNESSES_N_M.items()} | list_contacts()
-    return {name: change_contact(load_study(), contact) for name, contact in contacts.items()}
+    cases = {name: change_contact(load_study(), contact) for name, contact in contacts.items()}
+    strips = read_model(library_folder() / "pantographs/two-strips.toml", PantographFile, "pantograph")
+    return cases | {"two strips": replace(load_study(), pantographs=(strips,) * len(load_study().pantographs))}
 
 
 def find_changes(case: Case) -> ValuesByOwner:
