@@ -80,7 +80,7 @@ def build_condition_section(case: CaseResult) -> tuple[doc.Section, ...]:
     owners = sorted({owner for condition in case.conditions for owner in condition.changes if owner != "0"})
     columns = (
         doc.Column("Other input", 3),
-        *(doc.Column(f"{quantity_label(name)} [%]", number=True) for name in SHOWN),
+        *(doc.Column(f"{quantity_label(name)} [%]", 1.5, number=True) for name in SHOWN),
     )
     rows = tuple(
         (_name_condition(row), *(_join_changes(row, name, owners) for name in SHOWN)) for row in case.conditions

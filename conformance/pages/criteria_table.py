@@ -165,7 +165,7 @@ def list_limit_sources(criteria: Sequence[Criterion], anchor: str) -> tuple[doc.
     names: dict[str, list[str]] = {}
     for row in criteria:
         names.setdefault(f"{row.trust}: {row.source}" if row.source else "", []).append(criterion_title(row))
-    items = tuple(f"{source} ({', '.join(dict.fromkeys(of))})" for source, of in names.items() if source)
+    items = tuple(f"{source} ({'; '.join(dict.fromkeys(of))})" for source, of in names.items() if source)
     return (doc.NumberedList("Sources of the limits", items, anchor),) if items else ()
 
 
@@ -239,7 +239,7 @@ def count_inside(rows: Iterable[Criterion]) -> str:
     """Sentence on the numbers of values with a limit that counts, and of those inside; empty without such a value."""
     counts = Counter(row.verdict for row in rows)
     counted = sum(counts[verdict] for verdict in ("pass", "undecided", "fail", "skip"))
-    return f"{counts['pass']} of {counted} values with a limit that counts lie inside it." if counted else ""
+    return f"{counts['pass']} of {counted} values inside." if counted else ""
 
 
 def mark_criterion(row: Criterion) -> doc.VerdictMark:

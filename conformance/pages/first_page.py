@@ -30,7 +30,6 @@ from pantocheck.conformance.pages.scope_page import (
     list_dossier_facts,
     list_scope,
     list_step_reasons,
-    name_step,
     shorten_names,
 )
 from pantocheck.conformance.pages.two_verdicts import (
@@ -59,6 +58,9 @@ MOST_GRADED = 20
 
 MOST_SENTENCES = 3
 """Largest number of lines, pantographs or sentences of one kind on page 1."""
+
+MOST_REASONS = 2
+"""Largest number of reasons under one heading on page 1."""
 
 MOST_SPEEDS = 6
 """Largest number of speeds that page 1 lists."""
@@ -156,7 +158,7 @@ def _describe_basis(results: Results, anchors: dict[str, str], first_page: First
         for case in results.cases:
             cases.setdefault(describe_origin(case), []).append(case.id)
         for origin, names in cases.items():
-            facts.append((count_noun(len(names), "case"), f"{origin}: {shorten_names(names)}"))
+            facts.append(("Cases", f"{origin}: {shorten_names(names)}"))
     if first_page.source:
         facts.append(("Limits", f"{results.trust}: {first_page.source}"))
     elif level := read_words()["trust"].get(results.trust):
@@ -205,10 +207,10 @@ def _describe_result(results: Results, first_page: FirstPage) -> Iterator[doc.Bl
     if figures := draw_limited_forces([*first, *others]):
         yield doc.Figures(figures)
     rows: list[GradedValue] = [(case.id, case, row) for case in first for row in list_criteria(case, "criteria")]
-    for step in () if procedure is None else procedure.steps:
+    for number, step in enumerate(() if procedure is None else procedure.steps, 1):
         if (closest := find_closest(step, results.cases)) is not None:
             case, row = closest
-            rows.append((name_step(step) if case is None else case.id, case, row))
+            rows.append((f"step {number}" if case is None else case.id, case, row))
     if rows:
         yield _build_value_table(rows, first_page)
 
@@ -221,7 +223,7 @@ def group_reasons(results: Results) -> tuple[doc.Section, ...]:
 
 def has_more_reasons(results: Results) -> bool:
     """Whether there are more reasons than page 1 states."""
-    return any(len(_read_sentences(section)) > MOST_SENTENCES for section in group_reasons(results))
+    return any(len(_read_sentences(section)) > MOST_REASONS for section in group_reasons(results))
 
 
 def _list_reasons(results: Results, first: Sequence[CaseResult]) -> Iterator[tuple[str, str]]:
@@ -238,8 +240,9 @@ def _list_reasons(results: Results, first: Sequence[CaseResult]) -> Iterator[tup
             yield ("Close to a limit", f"{count_noun(count_close(results), 'value')}, marked in the table.")
             continue
         sentences = _read_sentences(section)
-        more = f" {len(sentences) - MOST_SENTENCES} more under Reasons." if len(sentences) > MOST_SENTENCES else ""
-        yield section.heading, " ".join(sentences[:MOST_SENTENCES]) + more
+        more = f" Under Reasons: {len(sentences) - MOST_REASONS} more." if len(sentences) > MOST_REASONS else ""
+        heading = "Close to a limit" if section.heading == CLOSE_HEADING else section.heading
+        yield heading, " ".join(sentences[:MOST_REASONS]) + more
 
 
 def _read_sentences(section: doc.Section) -> list[str]:

@@ -65,8 +65,9 @@ ABOVE = "above"
 UNCERTAINTY_KEY = (
     "The columns behind the uncertainty show each component alone; one that is zero or not known for all quantities "
     "has no column. Start and section are largest changes with a factor, and the joint sample takes them as "
-    "alternatives, not as a sum: a component can exceed the uncertainty. A dash: it does "
-    "not apply to the quantity, or is not known. A quantity with several values has the largest of its half-widths. "
+    "alternatives, not as a sum: a component can exceed the uncertainty. How often an interval contains the truth is "
+    "stated with its component. A dash: it does not apply to the quantity, or is not known. A quantity with several "
+    "values has the largest of its half-widths. "
     f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step. Shift: largest change "
     "when the analysis section is shifted span by span, no part of the uncertainty."
 )

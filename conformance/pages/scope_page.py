@@ -223,7 +223,7 @@ def find_closest(step: ProcedureStep, cases: Sequence[CaseResult]) -> tuple[Case
 
 def name_claim(claim: ValidityClaim) -> str:
     """Subject of a claim on the range of validity."""
-    return f"{read_words()['claim'][claim.kind]} {claim.name}".strip()
+    return ": ".join(filter(None, (read_words()["claim"][claim.kind], claim.name)))
 
 
 def format_claimed(limits: tuple[float, float] | None, unit: str) -> str:
@@ -236,7 +236,7 @@ def describe_claim(claim: ValidityClaim) -> str:
     return (
         name_claim(claim)
         if claim.claimed is None
-        else f"{name_claim(claim)} {format_claimed(claim.claimed, claim.unit)}"
+        else f"{name_claim(claim)}: {format_claimed(claim.claimed, claim.unit)}"
     )
 
 

@@ -61,7 +61,8 @@ class Entry:
     translation: str
     expression: re.Pattern[str]
     letters: int
-    """Number of letters of the key outside its arguments: the entry with the most is tried first."""
+    """Number of letters of the key outside its arguments: the entry with the most is tried first, of equal ones that
+    with the most arguments."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,7 @@ def _match(text: str, language: str, words: list[str]) -> Translation | None:
     index = _index(language)
     entries = {entry.key: entry for word in words for entry in index.get(word, ())}
     found: list[Translation] = []
-    for entry in sorted(entries.values(), key=lambda entry: -entry.letters):
+    for entry in sorted(entries.values(), key=lambda entry: (-entry.letters, -entry.key.count("{"))):
         if match := entry.expression.fullmatch(text):
             filled = _fill(entry, match, language)
             if not filled.missing:

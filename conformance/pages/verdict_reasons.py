@@ -10,7 +10,14 @@ from pantocheck.conformance.pages.criteria_table import criterion_title, describ
 from pantocheck.conformance.pages.document import BulletList, Section
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
-from pantocheck.conformance.pages.words import format_beside_limits, format_value, name_owner, read_words, replace_minus
+from pantocheck.conformance.pages.words import (
+    format_beside_limits,
+    format_plain,
+    format_value,
+    name_owner,
+    read_words,
+    replace_minus,
+)
 from pantocheck.conformance.quantities.limit_text import format_criterion_margin
 from pantocheck.conformance.results.incomplete_uncertainty import list_missing
 from pantocheck.conformance.results.results_format import CaseConformity, CaseResult, Results
@@ -177,7 +184,7 @@ def describe_chance(results: Results) -> str:
     if results.conformity is None:
         return ""
     pairs = [(case.id, case.conformity) for case in results.cases if case.conformity]
-    shares = [f"{name} {_describe_chances(of)}" for name, of in pairs]
+    shares = [f"{name}: {_describe_chances(of)}" for name, of in pairs]
     return f"{format_probability(results.conformity)} ({'; '.join(shares)})"
 
 
@@ -190,7 +197,7 @@ def _describe_chances(of: CaseConformity) -> str:
 
 UNCERTAINTY_MEANING = (
     "±: half-width around the value that holds 95 % of the draws of the joint sample. The sample can be skewed, so "
-    "that the probability does not follow from ± alone. Its coverage of the truth is stated with each component."
+    "that the probability does not follow from ± alone."
 )
 
 
@@ -208,8 +215,8 @@ def state_incomplete(results: Results) -> str | None:
         return None
     names = " or ".join(name for name in COMPONENT_NAMES if any(name in lacking for lacking in missing))
     return (
-        f"The uncertainty of {count_noun(number, 'value')} with a limit that counts is incomplete ({names} not "
-        "known), so that more of them may lie closer to a limit than stated."
+        f"The uncertainty of {count_noun(number, 'value')} is incomplete ({names} not known): more of them may be "
+        "close to a limit."
     )
 
 
@@ -278,7 +285,7 @@ def _own_limit(pair: CaseCriterion) -> str:
     if row.lower is None or row.upper is None:
         return f"{text}."
     width, middle = (row.upper - row.lower) / 2, abs(row.upper + row.lower) / 2
-    share = f", {format_value(100 * width / middle, 2)} %" if middle else ""
+    share = f", {format_plain(float(f'{100 * width / middle:.2g}'))} %" if middle else ""
     return f"{text}, ± {format_value(width, 2)} {row.unit}".rstrip() + f"{share}."
 
 

@@ -36,12 +36,21 @@ def find_untranslated(results: dict[str, Any]) -> list[str]:
     missing: set[str] = set()
 
     def collect(text: str) -> str:
-        missing.update(translation.translate(text, "de").missing)
+        missing.update(translation.translate(text, "de").missing, list_kept_words(text, "de"))
         return text
 
     for page in build_pages(results, "de"):
         translation._change_parts(page, collect)
     return [text for text in sorted(missing) if text not in data and not VERSIONS.search(text)]
+
+
+def list_kept_words(text: str, language: Language) -> list[str]:
+    """Five words in a row that a translation leaves as they are: an argument has swallowed a text without an entry."""
+    words = [word for word in text.split() if "et al." not in text]
+    runs = (words[n : n + 5] for n in range(len(words) - 4))
+    plain = (" ".join(run) for run in runs if all(re.fullmatch(r"[^\W\d_]+", word) for word in run))
+    translated = translation.translate(text, language).text
+    return [run for run in plain if run in translated]
 
 
 def _list_data(value: Any, key: str = "") -> Iterator[str]:

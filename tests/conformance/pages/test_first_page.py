@@ -8,7 +8,7 @@ from pypdf import PdfReader
 
 from helpers.shown_page import certify, find_facts, print_certificate, shown_certificate
 from pantocheck.conformance.pages.document import Answers, Document, Figures, Section, Table
-from pantocheck.conformance.pages.first_page import MOST_CASES, MOST_GRADED, MOST_SENTENCES
+from pantocheck.conformance.pages.first_page import MOST_CASES, MOST_GRADED, MOST_REASONS
 from pantocheck.conformance.pages.markdown import render_markdown
 
 QUESTIONS = ["What was tested", "Against what", "Result", "Use", "Issued by", "How to check"]
@@ -59,13 +59,13 @@ def test_cases_beyond_the_room_keep_their_tables_and_list(passing: dict[str, Any
 def test_reasons_that_page_1_has_no_room_for_stand_in_a_section(passing: dict[str, Any]) -> None:
     """Page 1 counts the others; the section lists all."""
     rows = passing["cases"][0]["criteria"]
-    for row in rows[: MOST_SENTENCES + 2]:
+    for row in rows[: MOST_REASONS + 2]:
         row |= {"verdict": "fail", "margin": -0.1}
     text = dict(find_facts(certify(passing), "result"))["Failed"]
-    assert text.count(", margin ") == MOST_SENTENCES
-    assert text.endswith("2 more under Reasons.")
+    assert text.count(", margin ") == MOST_REASONS
+    assert text.endswith("Under Reasons: 2 more.")
     markdown = render_markdown(certify(passing))
-    assert markdown[markdown.index("## Reasons") :].count(", margin ") == MOST_SENTENCES + 2
+    assert markdown[markdown.index("## Reasons") :].count(", margin ") == MOST_REASONS + 2
 
 
 @pytest.mark.parametrize("others", [["one"], []])

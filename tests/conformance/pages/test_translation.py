@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from helpers.example_results import example, with_measured_run, with_reference
-from helpers.untranslated import build_pages, find_untranslated
+from helpers.untranslated import build_pages, find_untranslated, list_kept_words
 from pantocheck.conformance.cases.library import find_entries, load_entry, read_bibliography, source_text
 from pantocheck.conformance.core.texts import TEMPLATES
 from pantocheck.conformance.documents.document_reading import parse_html_certificate, parse_pdf_certificate
@@ -66,6 +66,7 @@ def test_texts_of_the_library_have_entries(language: Language) -> None:
     assert len(texts) > 120
     missing = {text: found for text in texts if (found := translation.translate(text, language).missing)}
     assert missing.keys() <= citations
+    assert [text for text in texts.keys() - citations if list_kept_words(text, language)] == []
 
 
 ELSEWHERE = (
