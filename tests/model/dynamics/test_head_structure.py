@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, simple_line
+from helpers.lines import DAMPED, PANTOGRAPH_2002, bare_wire, overlapping_line, simple_line
 from helpers.step_differences import THREE_MASSES, largest_differences
 from pantocheck.model import Irregularity, Passage, build_chain, simulate_passage
 from pantocheck.model.description.head_structure import (
@@ -97,3 +97,15 @@ def test_head_on_a_corrugated_rigid_wire_has_the_force_of_its_receptance(structu
     ahead = np.array([10.0 + strip.offset for strip in model.strips])
     expected = -np.linalg.solve(flexibility, amplitude * np.exp(2j * np.pi * ahead / wave))
     assert np.abs(found - expected).max() < 5e-3 * np.abs(expected).max()
+
+
+def test_strips_leave_a_wire_one_after_the_other() -> None:
+    """At the end of a wire in an overlap the rear strip presses on; the force of the front one is gone at once."""
+    section = simple_line(spans=3, span=40.0, droppers=(5.0, 15.0, 25.0, 35.0), damping=DAMPED)
+    line = discretise(overlapping_line(rise=0.002, section=section, spans=3), 5.0)
+    model = mount_strips(PANTOGRAPH_2002, TWO_STRIPS, Rotation(0.8, 40.0, 3.0))
+    difference, _, contact, _ = largest_differences(line, Passage((model,), (114.0,), 80.0, 0.1, 2e-3), 50, drop=-1.5)
+    front, rear = contact[:, [0, 2]].T  # on the first wire
+    leaves = int(np.flatnonzero(front)[-1])
+    assert min(front[leaves], rear[leaves + 1]) > 100.0
+    assert max(difference.values()) < 1e-9, difference
