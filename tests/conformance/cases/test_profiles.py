@@ -425,7 +425,9 @@ def test_assess_writes_the_same_files_as_run(train: Train, tmp_path: Path) -> No
     assert sorted(path.name for path in out.iterdir()) == [
         "badge.svg", "certificate.html", "junit.xml", "results.json", "summary.md",
     ]  # fmt: skip
-    assert "interval from the fluctuations" in (out / "certificate.html").read_text()
+    page = (out / "certificate.html").read_text()
+    assert 'data-label="Uncertainty"' in page
+    assert "95\N{NO-BREAK SPACE}% interval" not in page
     assert re.search(r"± 0\.\d+", (out / "certificate.html").read_text())
     assert json.loads((out / "results.json").read_text())["cases"][0]["id"] == "acceptance-ac/train"
     assert pantocheck("assess", train(sigma=40.0), "--profile", "acceptance-ac", "--out", out).exit_code == 1
