@@ -177,17 +177,16 @@ def make_record(
     shape, (n, count) = np.array(rows), decay.shape
     signals, ambient = decay, np.zeros(line.poles.size)
     if disturbance.wind:
-        modal = _ambient_motion(line.poles, random, n)
-        scale = noise * disturbance.wind / _band_rms((shape @ modal).T)
-        signals = signals + scale * (shape @ modal).T
+        motion_of_wind, scale = move_by_wind(line.poles, shape, random, n, noise * disturbance.wind)
+        signals = signals + motion_of_wind
         ambient = scale * _force_gain(line.poles)
     if disturbance.clock:
         rates = disturbance.clock * random.standard_normal(count - 1)
         starts = random.uniform(-0.02, 0.02, count - 1)
-        signals = _read_by_clocks(signals, rates, starts)
+        signals = read_by_clocks(signals, np.r_[0.0, rates], np.r_[0.0, starts])
     signals = signals + noise * random.standard_normal(signals.shape)
     if disturbance.coloured:
-        signals = signals + noise * disturbance.coloured * _coloured_noise(random, n, count)
+        signals = signals + make_coloured_noise(random, n, count, noise * disturbance.coloured)
     channels = tuple(DropChannel(f"S{i}_z", i, "z", *place) for i, place in enumerate(layout.sensors, 1))
     drop = DropDescription(layout.mass, *layout.drop, REST)
     record = DropRecord("simulated", "simulated", RATE, signals, channels, drop=drop, line=line.description)
@@ -201,46 +200,60 @@ def _force_gain(poles: ComplexArray) -> RealArray:
     return np.asarray(np.abs(scipy.signal.freqz(*low, worN=np.abs(poles), fs=2 * np.pi * RATE)[1]))
 
 
-def _ambient_motion(poles: ComplexArray, random: np.random.Generator, n: int) -> RealArray:
-    """Acceleration of the modal coordinates under independent forces below 3 Hz, stationary, (m, n)."""
-    total = n + int(RUN_UP * RATE)
-    low = scipy.signal.butter(1, WIND_CORNER, fs=RATE)
-    rows = []
-    for pole in poles:
-        b, _ = scipy.signal.bilinear([1, 0, 0], [1, -2 * pole.real, abs(pole) ** 2], RATE)
+def move_by_wind(
+    poles: ComplexArray, shape: RealArray, random: np.random.Generator, n: int, rms: float, rate: float = RATE
+) -> tuple[RealArray, float]:
+    """Ambient motion of sensors under independent forces on the modes below 3 Hz, stationary.
+
+    Args:
+        poles: Poles of the modes, (m,) [1/s].
+        shape: Deflections of the modes at the sensors, (c, m).
+        random: Generator of the forces.
+        n: Number of samples.
+        rms: RMS in the band from 0.6 to 7.6 Hz over all sensors [m/s2].
+        rate: Samples per second [Hz].
+
+    Returns:
+        Accelerations, (n, c) [m/s2], and standard deviation of the force on each mode per sample before its filter.
+    """
+    total = n + int(RUN_UP * rate)
+    low = scipy.signal.butter(1, WIND_CORNER, fs=rate)
+    moved = np.zeros((n, shape.shape[0]))
+    for pole, deflection in zip(poles, shape.T, strict=True):
+        b, _ = scipy.signal.bilinear([1, 0, 0], [1, -2 * pole.real, abs(pole) ** 2], rate)
         # The bilinear map moves the resonance: the pole of the recursion is that of the mode.
-        q = np.exp(pole / RATE)
+        q = np.exp(pole / rate)
         a = np.array([1.0, -2 * q.real, abs(q) ** 2])
         force = scipy.signal.lfilter(*low, random.standard_normal(total))
-        rows.append(scipy.signal.lfilter(b, a, force)[-n:])
-    return np.array(rows)
+        moved += np.outer(scipy.signal.lfilter(b, a, force)[-n:], deflection)
+    sections = scipy.signal.butter(4, [0.6, 7.6], "band", fs=rate, output="sos")
+    scale = rms / float(np.sqrt(np.mean(scipy.signal.sosfiltfilt(sections, moved, axis=0) ** 2)))
+    return scale * moved, scale
 
 
-def _band_rms(signals: RealArray) -> float:
-    sections = scipy.signal.butter(4, [0.6, 7.6], "band", fs=RATE, output="sos")
-    return float(np.sqrt(np.mean(scipy.signal.sosfiltfilt(sections, signals, axis=0) ** 2)))
-
-
-def coloured_density(n: int) -> RealArray:
+def coloured_density(n: int, rate: float = RATE) -> RealArray:
     """Power of the coloured noise at the spectral lines of n samples, over that of white noise of the same RMS [-]."""
-    power = 1 / (1 + np.fft.rfftfreq(n, 1 / RATE) ** 2)
+    power = 1 / (1 + np.fft.rfftfreq(n, 1 / rate) ** 2)
     return np.asarray(power / power.mean())
 
 
-def _coloured_noise(random: np.random.Generator, n: int, channels: int) -> RealArray:
+def make_coloured_noise(
+    random: np.random.Generator, n: int, channels: int, rms: float, rate: float = RATE
+) -> RealArray:
+    """Noise that falls as 1/f above 1 Hz, (n, channels)."""
     spectrum = np.fft.rfft(random.standard_normal((n, channels)), axis=0)
-    noise = np.fft.irfft(spectrum * np.sqrt(coloured_density(n))[:, None], n, axis=0)
-    return np.asarray(noise / noise.std(axis=0))
+    noise = np.fft.irfft(spectrum * np.sqrt(coloured_density(n, rate))[:, None], n, axis=0)
+    return np.asarray(rms * noise / noise.std(axis=0))
 
 
-def _read_by_clocks(signals: RealArray, rates: RealArray, starts: RealArray) -> RealArray:
-    """Signals, (n, c), as all sensors but the first read them by clocks with other rates [-] and starts [s]."""
+def read_by_clocks(signals: RealArray, rates: RealArray, starts: RealArray, rate: float = RATE) -> RealArray:
+    """Signals, (n, c), as sensors read them by clocks with other rates [-] and starts [s]."""
     n, pad, finer = signals.shape[0], 200, 4
     padded = np.pad(signals, ((pad, pad), (0, 0)), mode="edge")
     dense = scipy.signal.resample(padded, finer * padded.shape[0], axis=0)
-    time = np.arange(dense.shape[0]) / (finer * RATE) - pad / RATE
+    time = np.arange(dense.shape[0]) / (finer * rate) - pad / rate
     read = [
-        scipy.interpolate.CubicSpline(time, column)(np.arange(n) / RATE * (1 + rate) + start)
-        for column, rate, start in zip(dense.T, np.r_[0.0, rates], np.r_[0.0, starts], strict=True)
+        scipy.interpolate.CubicSpline(time, column)(np.arange(n) / rate * (1 + drift) + start)
+        for column, drift, start in zip(dense.T, rates, starts, strict=True)
     ]
     return np.column_stack(read)
