@@ -32,7 +32,9 @@ class Program(NamedTuple):
     files: tuple[str, ...]
     """Names of the files, one for each table in the order of the output; a single name takes the rows of all tables."""
     arguments: str = ""
-    """{docs} is the folder of the pages, {drops} that of the records with known modes (DROPS in the environment)."""
+    """{docs} is the folder of the pages, {drops} that of the records with known modes (DROPS in the environment), and
+    {before} an interpreter with an earlier version (BEFORE in the environment).
+    """
     preparation: str = ""
     """Arguments of `pantocheck` for a run before; {folder} is a temporary folder."""
 
@@ -100,6 +102,14 @@ PROGRAMS = {
     "contact-laws": Program("tables.contact_table", ("contact-laws",)),
     "pantograph-fit": Program("tables.pantograph_fit", ("pantograph-fit",)),
     "identification": Program("tables.identification", ("identification-scores",), "{drops} --made-up 6"),
+    "identification-change": Program(
+        "tables.identification_change", ("identification-change",), "{drops} --before {before}"
+    ),
+    "disturbances": Program(
+        "tables.drop_disturbances", ("disturbances", "disturbances-heavy", "disturbances-tensions"), "{drops}"
+    ),
+    "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
+    "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
     "commands": Program("speed.commands", ("speed-commands",)),
     "installation": Program("speed.installation", ("installation",)),
@@ -147,6 +157,7 @@ def run_program(program: Program) -> None:
     """Run a program with its preparation, and write its tables."""
     with tempfile.TemporaryDirectory() as folder:
         places = {"folder": folder, "docs": str(DOCS), "drops": os.environ.get("DROPS", "")}
+        places["before"] = os.environ.get("BEFORE", "")
         if program.preparation:
             arguments = program.preparation.format(**places).split()
             subprocess.run([sys.executable, "-m", "pantocheck", *arguments], check=False)
