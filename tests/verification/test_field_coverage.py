@@ -71,6 +71,9 @@ def test_the_second_mode_at_a_true_one_and_a_distant_one_are_spurious() -> None:
         (IntervalShare(1000, 929, 1.2), "FAIL"),
         (IntervalShare(1000, 971, 1.2), "FAIL"),
         (IntervalShare(1000, 950, 1.6), "shortfall width"),
+        (IntervalShare(999, 949, 1.2), "too few"),
+        (IntervalShare(100, 89, 1.2), "too few"),
+        (IntervalShare(200, 160, 1.2), "FAIL"),
     ],
 )
 def test_outcome_of_a_row(share: IntervalShare, outcome: str) -> None:
@@ -97,5 +100,5 @@ def test_refused_records_stand_in_their_row(tmp_path: Path) -> None:
     rows = read_rows(tmp_path / "a.csv")
     frequency, ratio, _ = describe_shares(rows, name)
     assert frequency == [name, "2", "1", "frequency", "0", "-", "-", "-", "-", "-"]
-    assert ratio == [name, "2", "1", "damping ratio", "2 | 50.0 | 9.5 to 90.5 | 2.00", "2.1", "FAIL"]
+    assert ratio == [name, "2", "1", "damping ratio", "2 | 50.0 | 9.5 to 90.5 | 2.00", "2.1", "too few"]
     assert describe_modes(rows, name) == [name, "1", "50.0", "2", "1", "1", "0", "3.0"]

@@ -105,11 +105,10 @@ PROGRAMS = {
     "identification-change": Program(
         "tables.identification_change", ("identification-change",), "{drops} --before {before}"
     ),
-    "disturbances": Program(
-        "tables.drop_disturbances", ("disturbances", "disturbances-heavy", "disturbances-tensions"), "{drops}"
-    ),
+    "disturbances": Program("tables.drop_disturbances", ("disturbances", "disturbances-tensions"), "{drops}"),
     "field-coverage": Program("tables.field_coverage", ("field-coverage", "field-modes"), "{docs}/field-records.csv"),
     "line-coverage": Program("tables.line_coverage", ("line-coverage",), "{docs}/line-fits.csv"),
+    "line-hold-out": Program("tables.line_hold_out", ("line-hold-out",), "{docs}/line-hold-out.csv"),
     "speed": Program("speed.speed", ("speed-plane", "speed-length", "speed-refactorised", "speed-engine")),
     "commands": Program("speed.commands", ("speed-commands",)),
     "installation": Program("speed.installation", ("installation",)),

@@ -129,7 +129,7 @@ def measure_record(name: str, number: int) -> dict[str, object]:
     try:
         modes = identify_modes((field.record,), HIGHEST)[0].modes
     except InputError as problem:
-        refused = str(problem)
+        refused = " ".join(str(problem).split())
     seconds = time.process_time() - begin
     poles, widths = field.line.poles, compute_smallest_widths(field, HIGHEST)
     frequency, ratio = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)

@@ -6,6 +6,7 @@ Outcomes of a row, by that share and its 95 % confidence interval (Wilson):
     93 to 97 %       the share is inside, but the confidence interval excludes 95 %
     shortfall width  the median half-width is more than 1.5 times the smallest one with correct coverage
     95 %             none of these
+    too few          fewer than 1,000 intervals, and the confidence interval reaches into 93 % to 97 %
 
 The confidence interval of a correct interval of 95 % excludes 95 % in 5 % of the rows.
 """
@@ -19,6 +20,10 @@ from pantocheck.conformance.campaigns.sample_statistics import wilson_interval
 
 SHARE_COLUMNS = "intervals | contained [%] | confidence [%] | width ratio"
 """Heads of the columns of `IntervalShare.text`."""
+
+
+FEWEST = 1000
+"""Fewest intervals of a row for an outcome other than FAIL."""
 
 
 class IntervalShare(NamedTuple):
@@ -46,6 +51,8 @@ class IntervalShare(NamedTuple):
     def outcome(self) -> str:
         """Outcome by the rule of this module."""
         lower, upper = self.confidence
+        if self.count < FEWEST and lower <= 97 and upper >= 93:
+            return "too few"
         if not 93 <= self.share <= 97:
             return "FAIL"
         if self.width_ratio > 1.5:

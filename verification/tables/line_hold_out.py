@@ -1,6 +1,6 @@
 """Verdict of a held-out passage on lines whose dropper clamps are heavier than the line file says.
 
-python -m verification.tables.line_hold_out RESULTS.csv [--lines 5]
+python -m verification.tables.line_hold_out RESULTS.csv [--lines 3]
 
 EN 50318:2002 on a coarse mesh. The tensions of a built line differ from those stated by 1 % (standard deviation), and
 each lower dropper clamp has a mass that the line file lacks: a wrong form of the model, since no property of a line
@@ -69,7 +69,7 @@ def main() -> None:
     """Judge the lines that the file does not hold, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, metavar="RESULTS.csv")
-    parser.add_argument("--lines", type=int, default=5, help="lines for each mass; default: %(default)s")
+    parser.add_argument("--lines", type=int, default=3, help="lines for each mass; default: %(default)s")
     options = parser.parse_args()
     done = {(float(row["clamp_kg"]), int(row["line"])) for row in read_rows(options.results)}
     for number in range(options.lines):
