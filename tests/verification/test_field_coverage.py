@@ -100,5 +100,5 @@ def test_refused_records_stand_in_their_row(tmp_path: Path) -> None:
     rows = read_rows(tmp_path / "a.csv")
     frequency, ratio, _ = describe_shares(rows, name)
     assert frequency == [name, "2", "1", "frequency", "0", "-", "-", "-", "-", "-"]
-    assert ratio == [name, "2", "1", "damping ratio", "2 | 50.0 | 9.5 to 90.5 | 2.00", "2.1", "too few"]
+    assert ratio == [name, "2", "1", "damping ratio", "2 | 50.0 | 9.5 to 90.5 | 2.00", "2.1", "FAIL"]
     assert describe_modes(rows, name) == [name, "1", "50.0", "2", "1", "1", "0", "3.0"]
