@@ -1,7 +1,7 @@
 """Systems with one deliberate fault each, of a kind that has occurred in practice."""
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -10,6 +10,7 @@ import numpy as np
 
 from pantocheck.conformance.app.self_test.numerical_faults import TRUST, NumericalResult
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
@@ -17,7 +18,7 @@ from pantocheck.conformance.grading.case_grading import grade_case, grade_evalua
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.validity_warnings import WARNING_PREFIX
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.records.record import Record
+from pantocheck.conformance.records.record import STRIP_CHANNELS, Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.case_run import run_passage
@@ -30,7 +31,10 @@ from pantocheck.model import discretise, make_droppers_bilateral
 RunMutant = Callable[[Case, Record], Outcome]
 """Outcome of a faulty system on a case, made from the record of the reference simulator."""
 
-SAMPLE_CHANNELS = ("time", "position", "force", "contact_height", "support_uplift")
+FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
+"""Contact forces, of which the first is the sum of the others if there are strips."""
+
+SAMPLE_CHANNELS = ("time", "position", "contact_height", "support_uplift", *FORCE_CHANNELS)
 
 
 @dataclass(frozen=True)
@@ -56,13 +60,20 @@ def _replace_channels(**changes: Callable[[Case, Record], Any]) -> RunMutant:
     )
 
 
+def _change_channels(record: Record, names: Iterable[str], change: Callable[[RealArray], RealArray]) -> dict[str, Any]:
+    """Changed channels of a record, as far as it has them."""
+    return {name: change(values) for name in names if (values := getattr(record, name)) is not None}
+
+
 def _filter_force(order: int) -> RunMutant:
     """The record states the filter of the case, but its force passed a zero-phase filter of another order."""
 
     def run(case: Case, record: Record) -> Outcome:
         low_pass = case.file.filter.model_copy(update={"order": order})
-        force = np.array([low_pass(force, record.rate) for force in record.force])
-        return Delivered(replace(record, force=force, filter_applied_Hz=low_pass.cutoff_Hz))
+        forces = _change_channels(
+            record, FORCE_CHANNELS, lambda rows: np.array([low_pass(x, record.rate) for x in rows])
+        )
+        return Delivered(replace(record, **forces, filter_applied_Hz=low_pass.cutoff_Hz))
 
     return run
 
@@ -72,25 +83,28 @@ def _filter_force_and_height(cutoff: float) -> RunMutant:
 
     def run(case: Case, record: Record) -> Outcome:
         low_pass = case.file.filter.change_cutoff(cutoff)
-        changes: dict[str, Any] = {
-            name: np.array([low_pass(channel, record.rate) for channel in channels])
-            for name in ("force", "contact_height")
-            if (channels := getattr(record, name)) is not None
-        }
+        names = (*FORCE_CHANNELS, "contact_height")
+        changes = _change_channels(record, names, lambda rows: np.array([low_pass(x, record.rate) for x in rows]))
         return Delivered(replace(record, **changes))
 
     return run
 
 
 def _scale_force(factor: float) -> RunMutant:
-    return _replace_channels(force=lambda _, record: factor * record.force)
-
-
-def _delay_force(seconds: float, **changes: Callable[[Case, Record], Any]) -> RunMutant:
-    """The force is late against all other channels; its last samples move to the start."""
-    return _replace_channels(
-        force=lambda _, record: np.roll(record.force, round(seconds * record.rate), axis=1), **changes
+    return lambda _, record: Delivered(
+        replace(record, **_change_channels(record, FORCE_CHANNELS, lambda forces: factor * forces))
     )
+
+
+def _delay_force(seconds: float, **changes: Any) -> RunMutant:
+    """The force is late against all other channels; its last samples move to the start."""
+
+    def run(case: Case, record: Record) -> Outcome:
+        samples = round(seconds * record.rate)
+        forces = _change_channels(record, FORCE_CHANNELS, lambda forces: np.roll(forces, samples, axis=1))
+        return Delivered(replace(record, **forces, **changes))
+
+    return run
 
 
 def _coarsen_mesh(element: float) -> RunMutant:
@@ -112,8 +126,7 @@ def _run_bilateral_droppers(case: Case, record: Record) -> Outcome:
 def _truncate_record(case: Case, record: Record) -> Outcome:
     """The record ends in the middle of the analysis section."""
     n = int(np.searchsorted(record.position[0], np.mean(case.analysis_section)))
-    channels = {name: getattr(record, name) for name in SAMPLE_CHANNELS}
-    return Delivered(replace(record, **{k: value[..., :n] for k, value in channels.items() if value is not None}))
+    return Delivered(replace(record, **_change_channels(record, SAMPLE_CHANNELS, lambda values: values[..., :n])))
 
 
 def _truncate_file(case: Case, record: Record) -> Outcome:
@@ -174,7 +187,7 @@ MILD: tuple[Mutant, ...] = (
     Mutant(
         "time shift, force alone",
         "The force lags by 0.1 s, and the record has no contact height.",
-        _delay_force(0.1, contact_height=lambda *_: None),
+        _delay_force(0.1, contact_height=None),
         None,
     ),
     Mutant("mesh of 4 m", "Elements are 4 m long.", _coarsen_mesh(4.0), None),

@@ -49,6 +49,21 @@ def test_faults_have_the_size_of_their_name(two_pantograph_case: Case) -> None:
         np.testing.assert_allclose(outcome.record.force, factor * record.force)
 
 
+def test_forces_of_two_strips_take_the_fault_of_their_sum(two_pantograph_case: Case) -> None:
+    """A record whose strips do not add up to the force is refused, so that the fault itself must change them."""
+    record = Wave().record(two_pantograph_case)
+    strips = replace(record, front_strip=0.4 * record.force, rear_strip=0.6 * record.force)
+    names = {"gain 1.05", "units x1000", "filter order 2", "time shift", "truncated record", "filter at 10 Hz"}
+    faults = [mutant for mutant in (*MUTANTS, *MILD) if mutant.name in names]
+    assert len(faults) == len(names)
+    for mutant in faults:
+        outcome = mutant.run(two_pantograph_case, strips)
+        assert isinstance(outcome, Delivered)
+        assert outcome.record is not None
+        # The faults are linear; a filter of order 12 rounds at 1e-9.
+        np.testing.assert_allclose(outcome.record.front_strip, 0.4 * outcome.record.force, rtol=1e-6, atol=1e-6)
+
+
 def test_numerical_faults_are_detected_by_the_verification(self_test: SelfTest) -> None:
     """Only droppers that push change the force below 20 Hz enough to leave the limits of EN 50318:2002."""
     rows = {row.fault.name: row for row in self_test.numerical}
