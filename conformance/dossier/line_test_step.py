@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from pantocheck.conformance.cases.profile_file import Profile, load_profile, own_rules
-from pantocheck.conformance.comparison.force_likeness import REPEATED_CORRELATION, compare_likeness
-from pantocheck.conformance.comparison.measured_run import compare_measured_run
-from pantocheck.conformance.comparison.profile_grading import grade_record
+from pantocheck.conformance.comparison.force_difference import REPEATED_CORRELATION, compare_likeness
+from pantocheck.conformance.comparison.profile_grading import compare_measured_run, grade_record
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
 from pantocheck.conformance.core.decision import parse_decision
 from pantocheck.conformance.core.input_error import InputError

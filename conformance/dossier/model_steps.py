@@ -7,8 +7,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.cases.limits import own_source
 from pantocheck.conformance.comparison.comparison_limits import RESPONSE_BANDS, unit_of_difference
 from pantocheck.conformance.comparison.response_comparison import compare_responses
-from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
-from pantocheck.conformance.comparison.static_differences import CRITERIA
+from pantocheck.conformance.comparison.static_comparison import CRITERIA, build_tolerances, compare_statics
 from pantocheck.conformance.comparison.static_record import STATIC_VALUES, read_static_record
 from pantocheck.conformance.core.criterion import Criterion, Requirement
 from pantocheck.conformance.core.input_error import InputError

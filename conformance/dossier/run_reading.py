@@ -10,8 +10,8 @@ import numpy as np
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.profile_file import Profile
 from pantocheck.conformance.cases.start_and_section import span_length
-from pantocheck.conformance.comparison.force_likeness import COPY_CORRELATION, compare_likeness
-from pantocheck.conformance.comparison.measured_run import list_run_supports
+from pantocheck.conformance.comparison.force_difference import COPY_CORRELATION, compare_likeness
+from pantocheck.conformance.comparison.profile_grading import list_run_supports
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun

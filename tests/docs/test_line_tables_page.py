@@ -11,7 +11,7 @@ from helpers.docs_pages import list_blocks, read_page
 from helpers.line_table_files import change_cell, export_tables
 from helpers.static_records import LINE_PATH, measure_line, read_unequal_line, write_static_record
 from pantocheck.conformance.app.commands.command_list import app
-from pantocheck.conformance.comparison.static_differences import CRITERIA
+from pantocheck.conformance.comparison.static_comparison import CRITERIA
 from pantocheck.conformance.comparison.static_record import COLUMN_UNITS, read_static_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.toml_file import read_model

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pantocheck.conformance.comparison.force_likeness import (
+from pantocheck.conformance.comparison.force_difference import (
     BAND_HZ,
     COPY_CORRELATION,
     REPEATED_CORRELATION,

@@ -16,6 +16,8 @@ from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.comparison.line_update import (
     MeasuredPassage,
     begin_estimate,
+    build_updated_line,
+    describe_update,
     judge_held_out,
     measure_dropper_heights,
     update_by_elasticity,
@@ -23,7 +25,6 @@ from pantocheck.conformance.comparison.line_update import (
     update_by_passage,
 )
 from pantocheck.conformance.comparison.static_record import StaticRecord, read_static_record
-from pantocheck.conformance.comparison.updated_line import build_updated_line, describe_update
 from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.json_file import write_model

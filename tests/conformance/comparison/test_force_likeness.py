@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pantocheck.conformance.comparison.force_likeness import (
+from pantocheck.conformance.comparison.force_difference import (
     COPY_CORRELATION,
     REPEATED_CORRELATION,
     ForceLikeness,

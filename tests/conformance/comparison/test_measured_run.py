@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.comparison.measured_run import compare_measured_run, list_run_supports
-from pantocheck.conformance.comparison.profile_grading import assess_record
+from pantocheck.conformance.comparison.profile_grading import assess_record, compare_measured_run, list_run_supports
 from pantocheck.conformance.core.figure_data import Spectrum
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record

@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.static_records import SPACING, Array, measure_line, read_unequal_line, write_static_record
-from pantocheck.conformance.comparison.static_comparison import build_tolerances, compare_statics
-from pantocheck.conformance.comparison.static_differences import (
+from pantocheck.conformance.comparison.static_comparison import (
     SAME_POSITION_M,
     ValuePair,
+    build_tolerances,
+    compare_statics,
     find_static_gaps,
     grade_static_difference,
 )

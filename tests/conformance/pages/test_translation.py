@@ -72,7 +72,7 @@ def test_texts_of_the_library_have_entries(language: Language) -> None:
 ELSEWHERE = (
     *("app/", "campaigns/", "documents/", "drops/", "line/", "pantograph/", "studies/"),
     *("dossier/dossier_file", "dossier/dossier_reading", "core/", "cases/", "comparison/pantograph_fit"),
-    *("comparison/drop_", "comparison/recorded_drop", "comparison/updated_line", "comparison/comparison_limits"),
+    *("comparison/drop_", "comparison/recorded_drop", "comparison/line_update", "comparison/comparison_limits"),
     *("comparison/static_record", "comparison/run_comparison", "comparison/compared_run", "pages/campaign"),
     *("pages/ci_reports", "pages/comparison_page", "pages/damping_page", "pages/identification", "pages/population"),
     *("pages/pantograph_pages", "pages/record_figures", "pages/run_comparison_page", "pages/site_pages"),
