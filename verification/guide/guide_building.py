@@ -69,6 +69,7 @@ def list_effects() -> list[StoredEffect]:
             absolute=effect.absolute,
         )
         for effect in read_effects()
+        if effect.source == "exact_model"
     ]
 
 
