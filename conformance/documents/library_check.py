@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from pantocheck.conformance.cases.case import Case, CaseOrigin
 from pantocheck.conformance.cases.catalogue import CaseEntry, Catalogue
 from pantocheck.conformance.cases.converged_file import find_converged
-from pantocheck.conformance.cases.library import find_library_case, load_entry, source_text
+from pantocheck.conformance.cases.library import find_library_case, list_library_limits, load_entry, source_text
 from pantocheck.conformance.cases.limits import Limit
 from pantocheck.conformance.cases.profile_file import Profile, list_profiles, load_profile
 from pantocheck.conformance.core.criterion import Criterion, LimitTarget
@@ -60,6 +60,7 @@ def check_library(results: Results) -> list[DocumentCheck]:
     modified copies are named, because nothing shows that their inputs and limits are those of a standard.
     """
     differences = [f"{case.id}, {text}" for case in results.cases for text in _compare_case(case)]
+    differences += [f"{case.id}, {text}" for case in results.cases for text in list_claimed_limits(case)]
     if results.system.kind != "command":  # a program may state notes of its own
         differences += [f"{case.id}, {text}" for case in results.cases for text in _list_foreign_notes(case)]
     others = [f"{case.id}: {text}" for case in results.cases for text in _describe_others(case)]
@@ -287,6 +288,16 @@ def list_own_limits(case: Case, result: CaseResult) -> list[str]:
         for target, row in rows.items()
         if target not in limits or list(_compare_limit(limits[target], row))
     ]
+
+
+def list_claimed_limits(result: CaseResult) -> Iterator[str]:
+    """Limits of a case that are none of the library, but claim another trust than that of a user."""
+    limits = {limit.target: limit for limit in list_library_limits(result.id)}
+    rows = _by_target(row for row in result.criteria if not row.is_drift and result.profile is None)
+    for target, row in rows.items():
+        is_library = target in limits and not list(_compare_limit(limits[target], row))
+        if row.trust != "own" and not is_library:
+            yield f"{criterion_name(row)}: trust '{row.trust}' of a limit that is none of the library; expected 'own'"
 
 
 def compare_verification_limits(case: Case, result: CaseResult) -> Iterator[str]:

@@ -29,6 +29,8 @@ from pantocheck.conformance.documents.document_reading import (
     PdfCertificate,
     list_version_differences,
 )
+from pantocheck.conformance.documents.statement_check import check_date
+from pantocheck.conformance.grading.results_building import TIME_FORMAT
 from pantocheck.conformance.pages.certificate_page import HEADING, build_dated_certificate
 from pantocheck.conformance.pages.document import Document
 from pantocheck.conformance.pages.html import render_html
@@ -215,8 +217,12 @@ def check_pages(document: HtmlCertificate | PdfCertificate) -> DocumentCheck:
     """
     proved = "Texts, figures and metadata are those that the embedded results give, byte for byte."
     contradicted = "The document is not the one that its embedded results give."
+    date = _read_date(document)
+    stated = datetime.fromtimestamp(date, UTC).strftime(TIME_FORMAT)
+    if late := tuple(check_date(stated, "the document is dated")):
+        return DocumentCheck("contradicted", "The document has a date in the future.", late)
     try:
-        found = _compare(document)
+        found = _compare(document, date)
     except (KeyError, IndexError, ValueError, TypeError) as error:
         if isinstance(error, InputError):
             raise
@@ -235,10 +241,19 @@ def check_pages(document: HtmlCertificate | PdfCertificate) -> DocumentCheck:
     return DocumentCheck("incomplete", statement, shorten_details(found.texts))
 
 
-def _compare(document: HtmlCertificate | PdfCertificate) -> PageDifferences:
+def _read_date(document: HtmlCertificate | PdfCertificate) -> int:
+    """Date of a document [s since 1970]; 0 if there is none."""
+    if isinstance(document, HtmlCertificate):
+        return read_html_date(document.text)
+    from pantocheck.conformance.documents.pdf_check import read_date
+
+    return read_date(document.reader, document.name)
+
+
+def _compare(document: HtmlCertificate | PdfCertificate, date: int) -> PageDifferences:
     match document:
         case HtmlCertificate(_, text):
-            page = render_html(_build_certificate(document, read_html_date(text)))
+            page = render_html(_build_certificate(document, date))
             if text == page:
                 return PageDifferences(True)
             return PageDifferences(
@@ -248,15 +263,14 @@ def _compare(document: HtmlCertificate | PdfCertificate) -> PageDifferences:
                 tuple(list_foreign_elements(text)),
             )
         case PdfCertificate():
-            return _compare_pdf(document)
+            return _compare_pdf(document, date)
         case never:
             assert_never(never)
 
 
-def _compare_pdf(document: PdfCertificate) -> PageDifferences:
-    from pantocheck.conformance.documents.pdf_check import compare_pdfs, list_foreign_parts, read_date
+def _compare_pdf(document: PdfCertificate, date: int) -> PageDifferences:
+    from pantocheck.conformance.documents.pdf_check import compare_pdfs, list_foreign_parts
 
-    date = read_date(document.reader, document.name)
     page = render_pdf(_build_certificate(document, date))
     if document.original == page:
         return PageDifferences(True)

@@ -26,8 +26,8 @@ def check_run_statements(results: Results) -> Iterator[str]:
     yield from check_date(results.started)
 
 
-def check_date(started: str | None) -> Iterator[str]:
-    """Contradiction of the start of a run with its format, or with the clock of this machine."""
+def check_date(started: str | None, subject: str = "the run started at") -> Iterator[str]:
+    """Contradiction of the start of a run, or of another date, with its format or with the clock of this machine."""
     now = datetime.now(UTC)
     if started is None:
         return
@@ -37,7 +37,7 @@ def check_date(started: str | None) -> Iterator[str]:
         yield f"the start of the run '{started}' is no time such as {now:{TIME_FORMAT}}"
         return
     if start > now + FAST_CLOCK:
-        yield f"the run started at {started}, in the future: the clock of this machine shows {now:{TIME_FORMAT}}"
+        yield f"{subject} {started}, in the future: the clock of this machine shows {now:{TIME_FORMAT}}"
 
 
 def check_case_statements(case: CaseResult) -> Iterator[str]:

@@ -250,6 +250,7 @@ COVERED = {
     "The document is not the one that its embedded results give.": "pages",
     "The document shows something else than its embedded results.": "pages",
     "The layout of the file was not compared.": "pages",
+    "The document has a date in the future.": "pages",
     "The texts are not those of the installed version.": "pages",
     "All texts are those of the installed version.": "pages",
     "Other versions made this document": "pages",

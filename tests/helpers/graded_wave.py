@@ -1,11 +1,13 @@
 """Genuine documents of this version: the run of a system that is known by hand, and its certificate in every format."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.limits import own_limits
 from pantocheck.conformance.execution.runner import run_cases
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.pages.certificate_page import build_certificate
@@ -33,8 +35,9 @@ def wave_results() -> Results:
 
 @pytest.fixture(scope="session")
 def accepted_wave() -> Results:
-    """The same with limits of a user in place of the two that fail: a PASS that states its limits."""
+    """The same as an own case with own limits, two of which are wider: a PASS of a case that is none of the library."""
     case = load_case(library_folder() / "en50318-2002" / "250.toml")
     bounds = {"max_force_N": {"lower": 150.0}, "min_force_N": {"upper": 85.0}}
     own = [limit.model_copy(update=bounds[limit.quantity]) for limit in case.limits if limit.quantity in bounds]
-    return run_cases([case.with_limits(tuple(own))], Wave())
+    file = case.file.model_copy(update={"id": "own/250"})
+    return run_cases([replace(case, file=file, limits=own_limits(case.with_limits(tuple(own)).limits))], Wave())

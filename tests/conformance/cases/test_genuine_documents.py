@@ -11,6 +11,7 @@ from helpers.command_line import pantocheck
 from helpers.graded_wave import render_document
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import load_case
+from pantocheck.conformance.cases.limits import own_limits
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.execution.runner import run_cases
@@ -53,6 +54,17 @@ def test_date_of_the_environment_is_read_from_the_document(
     assert verify_document(tmp_path / name).consistent
 
 
+@pytest.mark.parametrize("name", FORMATS[:2])
+def test_document_dated_in_the_future_is_found(
+    wave_results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """The date of a PDF stands in its metadata alone; more than a day ahead of the clock, it is wrong."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "4070908800")
+    (tmp_path / name).write_bytes(render_document(wave_results.to_dict(), name))
+    [text] = verify_document(tmp_path / name).discrepancies
+    assert text.startswith("the document is dated 2099-01-01T00:00:00Z, in the future")
+
+
 def test_output_has_eighty_columns(wave_results: Results, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_bytes(wave_results.to_json())
     output = pantocheck("verify", tmp_path / "results.json", "--numbers-only").stdout
@@ -64,8 +76,8 @@ def test_output_has_eighty_columns(wave_results: Results, tmp_path: Path) -> Non
     assert max(map(len, output.splitlines())) <= 80
 
 
-def own_limits(case: Case, _: EditedCase) -> Case:
-    return case.with_limits((case.limits[0].model_copy(update={"upper": 130.0}),))
+def limits_of_a_user(case: Case, _: EditedCase) -> Case:
+    return case.with_limits(own_limits([case.limits[0].model_copy(update={"upper": 130.0})]))
 
 
 def own_case(_: Case, edited_case: EditedCase) -> Case:
@@ -76,7 +88,7 @@ def modified_copy(_: Case, edited_case: EditedCase) -> Case:
     return load_case(edited_case("line.toml", {"contact_wire.tension_N": 21e3}))
 
 
-@pytest.mark.parametrize("change", [own_limits, own_case, modified_copy])
+@pytest.mark.parametrize("change", [limits_of_a_user, own_case, modified_copy])
 def test_other_limits_are_named_and_not_refused(
     case_250: Case, edited_case: EditedCase, wave: Any, tmp_path: Path, change: Callable[[Case, EditedCase], Case]
 ) -> None:

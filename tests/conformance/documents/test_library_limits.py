@@ -14,6 +14,7 @@ from pantocheck.conformance.documents.library_check import (
     compare_limits,
     compare_profile,
     compare_with_case,
+    list_claimed_limits,
     list_own_limits,
 )
 from pantocheck.conformance.grading.case_grading import build_ungraded
@@ -98,3 +99,18 @@ def test_each_fact_of_an_assessment_is_compared(result: CaseResult) -> None:
         assert text in found
     without_rows = {"criteria": [], "limits_digest": "own"}  # the limits of a user replace the rules
     assert list(compare_profile(profile, assessed.model_copy(update=without_rows))) == []
+
+
+@pytest.mark.parametrize("library", ["identical", "modified", "own"])
+def test_limit_of_a_user_with_another_trust_is_found(case_250: Case, result: CaseResult, library: str) -> None:
+    """A limits file, a modified copy and an own case: whatever a limit claims, its trust is that of the user."""
+    stated = result.model_copy(update={"library": library, "id": "own/250" if library == "own" else case_250.id})
+    rows = [widen(result.criteria[0]), *result.criteria[1:]]
+    claimed = list(list_claimed_limits(stated.model_copy(update={"criteria": rows})))
+    assert len(claimed) == (len(rows) if library == "own" else 1)
+    assert claimed[0].startswith(
+        "mean_force_N of pantograph 1: trust 'secondary' of a limit that is none of the library"
+    )
+    own = [row.model_copy(update={"trust": "own"}) for row in rows]
+    assert list(list_claimed_limits(stated.model_copy(update={"criteria": own}))) == []
+    assert library == "own" or list(list_claimed_limits(stated)) == []
