@@ -13,9 +13,9 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.step_log import ShareCallback, build_part_callback, ignore_progress
 from pantocheck.conformance.drops.decay_kernel import LOWEST_FREQUENCY
-from pantocheck.conformance.drops.decay_preparation import MIN_REST, Release, find_release
 from pantocheck.conformance.drops.drop_record import MOTION_ORDER
 from pantocheck.conformance.drops.drop_simulation import decimate
+from pantocheck.conformance.drops.release import MIN_REST, Release, find_release
 from pantocheck.conformance.runs.case_run import integrate_mass_drop
 from pantocheck.model import Catenary
 from pantocheck.model.dynamics.drop_values import MassDropSetup

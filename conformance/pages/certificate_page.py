@@ -11,7 +11,6 @@ from pantocheck.conformance.pages.criteria_table import (
     MARGIN_KEY,
     NO_BASIS,
     Basis,
-    build_findings_section,
     describe_criterion,
     error_name,
     mark_criterion,
@@ -25,6 +24,7 @@ from pantocheck.conformance.pages.document_facts import (
     name_suite,
     name_system,
 )
+from pantocheck.conformance.pages.findings_table import build_findings_section
 from pantocheck.conformance.pages.first_page import (
     MOST_CASES,
     build_answers,

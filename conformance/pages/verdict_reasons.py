@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.decision import describe_decision, parse_decision
 from pantocheck.conformance.core.texts import count_noun
-from pantocheck.conformance.pages.criteria_table import criterion_title, describe_counts, format_probability
+from pantocheck.conformance.pages.criteria_table import criterion_title, format_probability
 from pantocheck.conformance.pages.document import BulletList, Section
+from pantocheck.conformance.pages.findings_table import describe_counts
 from pantocheck.conformance.pages.scope_page import build_procedure_headline, summarise_identity
 from pantocheck.conformance.pages.two_verdicts import count_close, list_criteria, select_criteria, verdict_sentences
 from pantocheck.conformance.pages.words import (

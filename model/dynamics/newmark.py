@@ -23,10 +23,10 @@ from pantocheck.model.dynamics.contact_step import (
     load_contacts,
     predict_train,
     sweep_contacts,
-    sweep_joints,
 )
 from pantocheck.model.dynamics.distributed_step import accelerate_distributed, load_distributed, predict_distributed
 from pantocheck.model.dynamics.extents import active_run
+from pantocheck.model.dynamics.joint_step import sweep_joints
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
 from pantocheck.model.dynamics.kernel_compilation import merged_kernel
 from pantocheck.model.dynamics.motion import Motion, hold_passed_stations

@@ -6,10 +6,11 @@ import numpy as np
 
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand, filter_full_overlap, low_pass_taps
-from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay, Release
+from pantocheck.conformance.drops.decay_preparation import LinearDecay, PreparedDecay
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.line_fit import LineFit, fit_line, group_into_blocks
 from pantocheck.conformance.drops.projection import build_block
+from pantocheck.conformance.drops.release import Release
 from pantocheck.conformance.results.identified_modes import MeasuredLine
 
 RATE, RELEASE = 50.0, 2.0

@@ -7,7 +7,7 @@ python -m verification.tables.study_findings study/results.json
 import argparse
 from pathlib import Path
 
-from pantocheck.conformance.pages.criteria_table import describe_counts, list_findings
+from pantocheck.conformance.pages.findings_table import describe_counts, list_findings
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_format import Results
 from pantocheck.conformance.results.results_reading import read_results

@@ -11,8 +11,9 @@ from helpers.synthetic_drops import SyntheticDrop, drop
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_preparation import find_release, prepare_decay
+from pantocheck.conformance.drops.decay_preparation import prepare_decay
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
+from pantocheck.conformance.drops.release import find_release
 
 RATE = 50.0
 BAND = FrequencyBand.up_to(4.0, RATE)

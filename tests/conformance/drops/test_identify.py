@@ -11,7 +11,7 @@ from helpers.synthetic_drops import SyntheticDrop, drop, span_modes
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
-from pantocheck.conformance.drops.decay_preparation import find_linear_decay, find_release, prepare_decay
+from pantocheck.conformance.drops.decay_preparation import find_linear_decay, prepare_decay
 from pantocheck.conformance.drops.drop_reading import read_drop_records
 from pantocheck.conformance.drops.drop_record import DropChannel, DropDescription, DropRecord
 from pantocheck.conformance.drops.drop_writing import write_drop_csv
@@ -21,6 +21,7 @@ from pantocheck.conformance.drops.line_fit import group_into_blocks
 from pantocheck.conformance.drops.mode_groups import number_groups
 from pantocheck.conformance.drops.pole_refinement import refine_poles
 from pantocheck.conformance.drops.projection import whiten
+from pantocheck.conformance.drops.release import find_release
 from pantocheck.conformance.drops.start_poles import read_poles
 from pantocheck.conformance.results.identified_modes import MeasuredLine, Mode
 

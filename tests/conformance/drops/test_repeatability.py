@@ -8,7 +8,8 @@ import pytest
 from helpers.exact_decays import RATE, RELEASE, build_exact_decay
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.units import MotionQuantity
-from pantocheck.conformance.drops.decay_preparation import PreparedDecay, Release
+from pantocheck.conformance.drops.decay_preparation import PreparedDecay
+from pantocheck.conformance.drops.release import Release
 from pantocheck.conformance.drops.repeatability import compare_records, convert_motion, overlay_records
 
 POLES = 2 * np.pi * np.array([0.9, 1.7, 2.6]) * (-0.002 + 1j)
