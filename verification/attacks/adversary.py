@@ -99,6 +99,8 @@ def measure_distance(tree: Tree) -> tuple[float, Verification | None]:
     failing = [row for row in rows if row.verdict in ("fail", "undecided")]
     beyond = sum(max(0.01, -(row.margin or 0.0)) for row in failing)
     missed = verification.verdict != "pass", verification.state != "consistent"
+    if not any(missed):
+        return 0.0, verification  # values that fail for information do not matter
     return CONTRADICTION * len(verification.discrepancies) + beyond + 0.5 * sum(missed), verification
 
 
