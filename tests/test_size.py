@@ -14,21 +14,22 @@ CODE = {".py", ".js", ".css", ".html", ".typ", ".hpp", ".cpp", ".m"}
 FOREIGN = {"uplot", "pkijs"}
 
 LARGEST = {
-    ("model", "conformance"): 76_290,
-    ("templates",): 3_600,
-    ("verification",): 17_250,
-    ("tests",): 53_600,
+    ("model", "conformance"): 78_950,
+    ("templates",): 3_620,
+    ("verification",): 18_700,
+    ("tests",): 55_650,
 }
 """Largest number of lines by folders. The aim is 56,000 for the product and 42,000 for the tests.
 
-Documents that a stranger can check, the identification in the field, the line as built and the contact laws have
-raised them last; the identification and the line by more than one subject may. A lower number replaces these
+Documents that a stranger can check, the identification in the field with its benchmark, the line as built, contact
+laws, heads with structure, validity frequencies and the speed of commands have raised them last; the identification
+and the line by more than one subject may. A lower number replaces these
 whenever it is reached. A subject that must add lines raises its number in the same
 commit, states the reason there, and adds at most 1,800 lines to the product, 1,500 to the tests and 900 to
 `verification/`.
 """
 
-MOST_WORDS = 70_150
+MOST_WORDS = 73_700
 """Largest number of words in the pages of `docs/`."""
 
 

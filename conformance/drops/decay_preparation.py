@@ -223,8 +223,9 @@ def find_linear_decay(
     search = DecaySearch(filtered.samples, filtered.guard, dt, band, filtered.rest)
     start, end, poles = search.find_linear_part()
     course = search.follow_residual(end, poles)
-    if course.level(max(start, search.begin), end) > CALM and (begin := search.find_late_begin()) is not None:
-        search = replace(search, begin=begin)
+    is_calm = course.level(max(start, search.begin), end) <= CALM
+    if not is_calm and (begin := search.find_late_begin()) is not None:
+        is_calm, search = True, replace(search, begin=begin)
         start, end, poles = search.find_linear_part()
         course = search.follow_residual(end, poles)
     if clipped_until > release.time:
@@ -236,7 +237,8 @@ def find_linear_decay(
             "Repeat the drop in calm weather and without traffic.",
         )
     names = [record.channels[c].name for c in columns]
-    _require_calm(name, course, names, (start, end), dt, band)
+    if not is_calm:
+        _require_calm(name, course, names, (start, end), dt, band)
     warnings = _describe_ends(name, course, names, (start, end), total, dt)
     return _cut_record(record, filtered, (start, end), _build_evidence(course, dt), poles, warnings)
 

@@ -134,12 +134,12 @@ class PantographSignals:
     """Start (included) and end (excluded) of the analysis section [m]."""
     contact_height: RealArray | None = None
     """Height of the contact point, (n,) [m], or None."""
-    front_strip: RealArray | None = None
-    """Contact force of the front strip as delivered, (n,) [N]; the rear one has the rest; None: not recorded."""
     arc_channels: RealArray | None = None
     """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
     shortest_loss_s: float | None = None
     """Shortest duration of a long contact loss [s]; None if it is not stated."""
+    front_strip: RealArray | None = None
+    """Contact force of the front strip as delivered, (n,) [N]; the rear one has the rest; None: not recorded."""
 
     @property
     def rate(self) -> float:

@@ -24,9 +24,6 @@ class RecordSamples:
     """Contact points along the track [m], (p, n), or (1, n) of the first pantograph only."""
     contact_height: RealArray | None = None
     """Height of the contact point, (p, n) [m]."""
-    front_strip: RealArray | None = None
-    rear_strip: RealArray | None = None
-    """Contact forces of both strips, (p, n) [N]."""
     uplift: RealArray | None = None
     """Uplift of the contact wire at the supports, (s, n) [m]."""
     support_position: RealArray | None = None
@@ -40,6 +37,9 @@ class RecordSamples:
     arcing: RealArray | None = None
     loaded: RealArray | None = None
     """Arcs, and time under load, as 1, 0 or NaN, (p, n); all NaN for a pantograph without an arc detector."""
+    front_strip: RealArray | None = None
+    rear_strip: RealArray | None = None
+    """Contact forces of both strips, (p, n) [N]."""
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""

@@ -102,7 +102,7 @@ def test_linear_decay_lies_between_slack_droppers_and_a_disturbance() -> None:
     linear = identification.fit.records[0].decay.linear
     assert 60 < linear.end < 81.5  # the windows have four seconds: a little of the wind may enter
     assert linear.start > synthetic.release + 1.3
-    assert any("used up to" in text and "times the motion at rest" in text for text in identification.warnings)
+    assert any("used up to" in text and "the residual reaches" in text for text in identification.warnings)
 
 
 def test_lateral_channel_identifies_lateral_modes() -> None:
