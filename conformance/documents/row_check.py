@@ -141,7 +141,7 @@ def compare_row(row: CheckRow, computed: RowBasis, share: float) -> Iterator[str
     """
     stated = row.basis
     if isinstance(stated, Measured) and isinstance(computed, Measured):
-        scale = max(*computed.thresholds.values(), abs(computed.number))
+        scale = max((*computed.thresholds.values(), abs(computed.number)))
         near = abs(stated.number - computed.number) <= share * scale
         stated = stated.model_copy(update={"number": computed.number} if near else {})
     if stated != computed:

@@ -1,6 +1,7 @@
-"""Adversary: it finds a planted hole, and its steps reach every field and signal."""
+"""Adversary: it finds a planted hole, its steps reach every field and signal, and its table belongs to its code."""
 
 import copy
+import csv
 import random
 
 import pytest
@@ -10,11 +11,13 @@ from pantocheck.conformance.documents import verification
 from pantocheck.conformance.results.results_format import Results
 from verification.attacks.adversary import (
     REFUSED,
+    STEPS,
     _replace,
     adopt_widths,
     case_of,
     change_field,
     change_samples,
+    code_digest,
     follow_checks,
     follow_signals,
     list_signals,
@@ -25,11 +28,22 @@ from verification.attacks.adversary import (
 )
 from verification.attacks.field_walk import list_places
 from verification.attacks.forged_results import Tree
+from verification.tables.__main__ import TABLES
 
 
 @pytest.fixture(scope="module")
 def tree(wave_results: Results) -> Tree:
     return wave_results.to_dict()
+
+
+def test_table_belongs_to_the_code_and_shows_no_hole() -> None:
+    """Every kind of step, with the code of today; a PASS of `record` is found by its record."""
+    with (TABLES / "adversary.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["steps"] for row in rows} == set(STEPS)
+    assert {row["code"] for row in rows} == {code_digest()}
+    assert all(float(row["smallest distance"]) > 0 or row["steps"] == "record" for row in rows)
+    assert all(row["`--record`"] == "found" for row in rows)
 
 
 def test_distance_is_zero_only_for_a_consistent_pass(tree: Tree, accepted_wave: Results) -> None:

@@ -97,6 +97,7 @@ PROGRAMS = {
     "forgeries": Program(
         "attacks.forgeries", ("forged-results", "forged-pdf", "forged-html", "forged-consistent"), "--jobs 2"
     ),
+    "adversary": Program("attacks.adversary", ("adversary",)),
     "table-sensitivity": Program("tables.table_sensitivity", ("table-sensitivity",)),
     "contact-findings": Program("tables.contact_findings", ("contact-findings",)),
     "contact-laws": Program("tables.contact_table", ("contact-laws",)),
