@@ -28,6 +28,7 @@ class DocumentationPage(Enum):
 
     COMPARE_DROP = "A recorded mass drop beside its simulation"
     IDENTIFICATION = "Identification of damping from mass drops"
+    IDENTIFICATION_COVERAGE = "Coverage of the identification"
     LINE_TABLES = "Line tables"
     LOGGER_FILES = "Files of data loggers"
     PANTOGRAPH_RESPONSE = "The measured frequency response of a pantograph"

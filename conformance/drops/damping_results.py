@@ -335,7 +335,7 @@ def write_damping_toml(results: DampingResults, modal: Sequence[MeasuredBand] = 
             table = TABLE_OF_KIND[Kind(kind)]
             if c.determined:
                 tables.setdefault(table, {})[key] = c.value
-                comments.append(f"{table}.{key}: 95 % interval {c.low_95:.3g} to {c.high_95:.3g}")
+                comments.append(f"{table}.{key}: nominal 95 % interval {c.low_95:.3g} to {c.high_95:.3g}")
             else:
                 comments.append(f"not determined, left out: {table}.{key} = {c.value:g}")
     for other in results.stated:

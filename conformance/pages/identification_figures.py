@@ -116,7 +116,7 @@ def draw_boxes(modes: Sequence[Mode]) -> Figure:
 
 @render_svg
 def draw_damping(modes: Sequence[Mode]) -> Figure:
-    """Damping ratio over frequency with 95 % intervals; open markers: uncertain modes."""
+    """Damping ratio over frequency with nominal 95 % intervals; open markers: uncertain modes."""
     figure, axes = add_panel(FULL, 2.2)
     kinds = (
         ("certain", "o", INK, [mode for mode in modes if mode.certain and not mode.lateral]),

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages import identification_figures as figures
+from pantocheck.conformance.pages.damping_page import NOMINAL_INTERVALS
 from pantocheck.conformance.pages.identification_figures import (
     draw_half_power,
     draw_order_search,
@@ -298,7 +299,7 @@ def _list_sections(line: IdentifiedLine, suffix: str) -> Iterator[doc.Section]:
         yield doc.Section(f"Frequency responses{suffix}", (doc.Figures(response_figures),))
 
 
-def _damping_figures(modes: Sequence[Mode]) -> tuple[doc.Figures, ...]:
+def _damping_figures(modes: Sequence[Mode]) -> tuple[doc.Block, ...]:
     if not modes:
         return ()
     boxes = doc.Figure(
@@ -309,9 +310,9 @@ def _damping_figures(modes: Sequence[Mode]) -> tuple[doc.Figures, ...]:
     ratios = doc.Figure(
         figures.draw_damping(modes),
         "Damping ratio over frequency with error bars; the numbers are in the table of modes.",
-        "Damping ratio of every mode with its interval of uncertainty.",
+        "Damping ratio of every mode with its nominal 95 % interval.",
     )
-    return (doc.Figures((boxes, ratios)),)
+    return (doc.Paragraph(NOMINAL_INTERVALS), doc.Figures((boxes, ratios)))
 
 
 def _group_table(groups: Sequence[ModeGroup], unit: str) -> doc.Table:

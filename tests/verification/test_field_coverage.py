@@ -1,5 +1,6 @@
 """Benchmark of records in the field: its truth, its pairs, its smallest widths and its judgement."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,7 +8,9 @@ import numpy as np
 import pytest
 
 from pantocheck.conformance.drops.identify import identify_modes
+from pantocheck.conformance.pages.damping_page import NOMINAL_INTERVALS
 from pantocheck.conformance.results.identified_modes import Mode
+from verification.tables.__main__ import TABLES
 from verification.tables.field_bound import compute_smallest_widths
 from verification.tables.field_coverage import ROWS, describe_modes, describe_shares, match_true_modes, summarise
 from verification.tables.field_records import LINES, Disturbance, FieldRecord, Layout, build_line, make_record
@@ -102,3 +105,11 @@ def test_refused_records_stand_in_their_row(tmp_path: Path) -> None:
     assert frequency == [name, "2", "1", "frequency", "0", "-", "-", "-", "-", "-"]
     assert ratio == [name, "2", "1", "damping ratio", "2 | 50.0 | 9.5 to 90.5 | 2.00", "2.1", "FAIL"]
     assert describe_modes(rows, name) == [name, "1", "50.0", "2", "1", "1", "0", "3.0"]
+
+
+def test_pages_state_the_range_of_the_measured_coverage() -> None:
+    """The rows up to 60 kg: most of the records of 100 kg are refused, and the page says so."""
+    with (TABLES / "field-coverage.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["disturbance"] != "100 kg"]
+    shares = [float(row["contained [%]"]) for row in rows if row["quantity"] != "coefficients"]
+    assert f"{min(shares):.0f} to {max(shares):.0f} % of the intervals of the modes" in NOMINAL_INTERVALS

@@ -82,7 +82,7 @@ class FittedDamping:
         return found[kind, matrix]
 
     def to_dataframe(self) -> Any:
-        """Coefficients with their 95 % intervals, one per row: a table of pandas, or columns of numpy."""
+        """Coefficients with their nominal 95 % intervals, one per row: a table of pandas, or columns of numpy."""
         return tabulate_rows([row.model_dump(mode="json") for row in self.results.coefficients], COEFFICIENT_COLUMNS)
 
     def models(self) -> Any:
@@ -126,9 +126,9 @@ class FittedDamping:
 def _draw_intervals(
     axes: Any, frequency_Hz: Sequence[float], ratio: Sequence[float], std: Sequence[float], capsize: int = 0
 ) -> None:
-    """Draw identified damping ratios with their 95 % intervals in percent."""
+    """Draw identified damping ratios with their nominal 95 % intervals in percent."""
     values, widths = [100 * value for value in ratio], [196 * value for value in std]
-    label = "identified, 95 % interval"
+    label = "identified, nominal 95 % interval"
     axes.errorbar(frequency_Hz, values, widths, fmt="o", color="0.1", markersize=4, capsize=capsize, label=label)
 
 
@@ -187,7 +187,7 @@ class IdentifiedLines:
         return tabulate_rows([mode.model_dump(mode="json") for mode in self.modes], MODE_KEYS)
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot the damping ratios of the certain modes over their frequency, with 95 % intervals; returns axes.
+        """Plot the damping ratios of the certain modes over their frequency, with nominal 95 % intervals; returns axes.
 
         Args:
             axes: Axes to draw in; None: those of a new figure.

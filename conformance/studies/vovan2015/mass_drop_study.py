@@ -86,7 +86,7 @@ def _coefficient_table(results: DampingResults, line: Catenary) -> TextTable:
     modal = " The case has modal damping; the fit describes it by Rayleigh damping." if line.modal_damping else ""
     return TextTable(
         caption="Rayleigh damping of the wires: simulated, and fitted to the identified modes." + modal,
-        columns=["Coefficient", "Simulated", "Fitted", "95 % interval", "Difference"],
+        columns=["Coefficient", "Simulated", "Fitted", "Nominal 95 % interval", "Difference"],
         rows=rows,
     )
 
@@ -198,8 +198,8 @@ def _draw_frequencies(case: Case, identified: IdentifiedDrops, computed: Compute
         if limit.quantity == "mode_frequency_Hz" and limit.lower is not None and limit.upper is not None
     ]
     return Chart(
-        caption="Damping ratio against frequency: identified from the drops with 95 % intervals, and computed from "
-        "each damping model.",
+        caption="Damping ratio against frequency: identified from the drops with nominal 95 % intervals, and computed "
+        "from each damping model.",
         alternative="Damping ratio over frequency; the medians of the groups are in the table of quantities.",
         x_label="frequency [Hz]",
         y_label="damping ratio [%]",

@@ -134,7 +134,7 @@ def _band_table(bands: FrequencyBands, without: list[float], damped: list[float]
 
 def _draw_damping(modes: Mapping[str, Sequence[Mode]], last: float) -> Chart:
     return Chart(
-        caption="Identified damping ratios without and with a vertical damper at every steady arm, with 95 % "
+        caption="Identified damping ratios without and with a vertical damper at every steady arm, with nominal 95 % "
         "intervals.",
         alternative="Damping ratio over frequency; the medians of the bands are in the table.",
         x_label="frequency [Hz]",

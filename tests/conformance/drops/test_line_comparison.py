@@ -239,7 +239,7 @@ def test_fit_on_the_line_of_the_record_returns_its_damping(measured: tuple[Mode,
     text = write_damping_toml(results)
     comments = [line for line in text.splitlines() if line.startswith("#")]
     assert len(comments) == len(results.coefficients)
-    assert all(": 95 % interval " in line for line in comments)
+    assert all(": nominal 95 % interval " in line for line in comments)
     assert Damping.model_validate(tomllib.loads(text)["damping"]).contact_wire.stiffness_coefficient_s > 0
 
 
