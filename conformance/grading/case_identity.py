@@ -93,8 +93,9 @@ def describe_limit_change(stated: Limit, limit: Limit | None) -> str | None:
     parts = []
     if _is_wider(stated, limit):
         parts.append(f"the limit {bounds} is widened to {format_bounds(limit.lower, limit.upper)}")
-    if limit.trust == "own":
-        parts += [] if stated.trust == "own" else [f"the trust of the limit is own in place of {stated.trust}"]
+    if limit.trust not in LEVELS:  # own, or a word of a forged document
+        others = f"the trust of the limit is {limit.trust} in place of {stated.trust}"
+        parts += [] if stated.trust == limit.trust else [others]
     elif stated.trust not in {limit.trust, "own"}:
         change = "lowered" if LEVELS.index(limit.trust) > LEVELS.index(stated.trust) else "raised"
         parts.append(f"the trust of the limit is {change} from {stated.trust} to {limit.trust}")

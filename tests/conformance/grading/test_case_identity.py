@@ -99,6 +99,7 @@ STATED = Limit(quantity="std_force_N", pantograph=2, lower=26.0, upper=31.0, tru
         ({"upper": 30.0}, None),
         ({"lower": 27.0, "source": "own", "note": "stricter"}, None),
         ({"trust": "own"}, "the trust of the limit is own in place of secondary"),
+        ({"trust": "computed"}, "the trust of the limit is computed in place of secondary"),
         ({"trust": "provisional"}, "the trust of the limit is lowered from secondary to provisional"),
         ({"trust": "primary"}, "the trust of the limit is raised from secondary to primary"),
         ({"upper": 32.0}, "the limit 26 to 31 is widened to 26 to 32"),
