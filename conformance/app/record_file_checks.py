@@ -79,6 +79,7 @@ def _check_response(path: Path) -> str:
 
 
 def check_table(path: Path) -> str:
+    """Summary of a valid table, by the schema of its sidecar; without one, a line table or a mass-drop record."""
     sidecar = path.with_suffix(".toml")
     schema = read_toml(sidecar, "sidecar").get("schema") if sidecar.is_file() else None
     if schema == STATIC_SCHEMA:

@@ -98,7 +98,7 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
         signing_time=datetime.now(UTC).replace(microsecond=0), cades_signed_attrs=build_role_attributes(signer.role)
     )
 
-    def sign() -> Any:
+    def compute_signature() -> Any:
         return asyncio.run(
             build_signer(signer.key).async_sign_general_data(
                 content,
@@ -109,7 +109,7 @@ def sign_detached(content: bytes, signer: Signer, earlier: bytes | None, where: 
             )
         )
 
-    added = run_in_own_thread(sign)
+    added = run_in_own_thread(compute_signature)
     parts = [] if earlier is None else parse_signatures(earlier, where)
     return join_signatures([*parts, added["content"]])
 

@@ -26,8 +26,8 @@ from verification.attacks.adversary import (
     read_place,
     regrade,
 )
+from verification.attacks.consistent_results import Tree
 from verification.attacks.field_walk import list_places
-from verification.attacks.forged_results import Tree
 from verification.tables.__main__ import TABLES
 
 

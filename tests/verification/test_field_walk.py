@@ -8,6 +8,7 @@ import pytest
 
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.results.results_format import Results
+from verification.attacks.consistent_results import Tree
 from verification.attacks.field_walk import (
     ABSENT,
     LISTED,
@@ -19,7 +20,6 @@ from verification.attacks.field_walk import (
     read_place,
     try_change,
 )
-from verification.attacks.forged_results import Tree
 
 SAMPLE = 60
 MEANS = {"rerun", "record", "signature", "none"}

@@ -42,8 +42,7 @@ from pantocheck.conformance.documents.document_reading import ResultsFile
 from pantocheck.conformance.documents.repetition_check import check_record_quantities
 from pantocheck.conformance.documents.verification import Verification, verify_certificate
 from pantocheck.conformance.results.results_format import Results
-from verification.attacks.field_walk import Path_, Place, apply_change, list_places, list_values, read_place
-from verification.attacks.forged_results import (
+from verification.attacks.consistent_results import (
     Tree,
     adopt_widths,
     case_of,
@@ -52,6 +51,7 @@ from verification.attacks.forged_results import (
     follow_signals,
     regrade,
 )
+from verification.attacks.field_walk import Path_, Place, apply_change, list_places, list_values, read_place
 from verification.attacks.forgeries import CASE, find_outcome, grade_record, simulate_failing
 
 CONTRADICTION = 0.1

@@ -25,7 +25,7 @@ from pantocheck.conformance.documents.document_reading import ResultsFile
 from pantocheck.conformance.documents.recomputation import find_discrepancies
 from pantocheck.conformance.documents.verification import verify_certificate
 from pantocheck.conformance.results.results_format import Results
-from verification.attacks.forged_results import Tree, regrade
+from verification.attacks.consistent_results import Tree, regrade
 
 LISTS = tomllib.loads(Path(__file__).with_name("walked_fields.toml").read_text("utf-8"))
 LISTED: dict[str, dict[str, str]] = {field: entry for entry in LISTS["accepted"] for field in entry["fields"]}

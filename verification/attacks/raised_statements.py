@@ -4,7 +4,8 @@ import copy
 import random
 
 from pantocheck.conformance.results.results_format import Results
-from verification.attacks.forged_results import CHANGES, Change, Tree, case_of, failing, of_case, of_results, regrade
+from verification.attacks.consistent_results import Tree, case_of, regrade
+from verification.attacks.forged_results import CHANGES, Change, failing, of_case, of_results
 
 CONFIRMED = "every consistency check that applies confirms the record"
 """Reason of a consistent record."""

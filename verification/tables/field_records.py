@@ -122,6 +122,14 @@ def draw_layout(random: np.random.Generator, name: str, sensors: int, mass: tupl
 
 def build_line(name: str, factors: tuple[float, float], places: tuple[float, ...]) -> BuiltLine:
     """Line whose tensions of contact and messenger wire are the stated ones times factors, with stations [m]."""
+    stated, description = build_stated_line(name)
+    mesh = discretise(scale_line(stated, MECHANICAL[:2], factors), ELEMENT, places)
+    modes = compute_modes_below(mesh, HIGHEST)
+    return BuiltLine(stated, description, mesh, modes, compute_poles(mesh, modes))
+
+
+def build_stated_line(name: str) -> tuple[Catenary, MeasuredLine]:
+    """Line of `LINES` with the stated tensions, and its description in a record."""
     contact, messenger, spans, (b_cw, a_cw, b_mw, a_mw) = LINES[name]
     file = read_model(library_folder() / "mass-drop-line" / "line.toml", LineFile, "line")
     schedules = {58.5: "58.5 m", 54.0: "54 m", 63.0: None}
@@ -134,10 +142,7 @@ def build_line(name: str, factors: tuple[float, float], places: tuple[float, ...
     file = file.model_copy(update={**wires, "geometry": file.geometry.model_copy(update=geometry)})
     stated = build_catenary(file)
     damping = {Kind.CONTACT_WIRE: Rayleigh(b_cw, a_cw), Kind.MESSENGER_WIRE: Rayleigh(b_mw, a_mw)}
-    stated = replace(stated, damping={**stated.damping, **damping})
-    mesh = discretise(scale_line(stated, MECHANICAL[:2], factors), ELEMENT, places)
-    modes = compute_modes_below(mesh, HIGHEST)
-    return BuiltLine(stated, describe_line(file), mesh, modes, compute_poles(mesh, modes))
+    return replace(stated, damping={**stated.damping, **damping}), describe_line(file)
 
 
 def compute_poles(mesh: DiscretisedLine, modes: Modes) -> ComplexArray:

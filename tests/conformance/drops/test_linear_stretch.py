@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.surrogate_drops import LINES, REST, Disturbance, LineModes, build_line_modes, make_record
+from helpers.surrogate_drops import LineModes, build_line_modes, make_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.pages.identification_page import list_record_blocks
+from verification.tables.field_records import LINES, REST, Disturbance
 
 LAST_SLACK = 24.0
 """Last impulse of a dropper after the release [s]."""

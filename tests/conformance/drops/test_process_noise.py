@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from helpers.surrogate_drops import LINES, Disturbance, FieldRecord, build_line_modes, make_record
+from helpers.surrogate_drops import FieldRecord, build_line_modes, make_record
 from pantocheck.conformance.drops.decay_kernel import FrequencyBand
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import Identification, identify_modes
@@ -22,6 +22,7 @@ from pantocheck.conformance.drops.projection import (
     solve_weighted_residues,
     whiten,
 )
+from verification.tables.field_records import LINES, Disturbance
 
 POLES = np.array([-0.03 + 5.5j, -0.035 + 5.9j, -0.04 + 12.0j])
 DT, N, SENSORS = 0.05, 2400, 3

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from helpers.surrogate_drops import LINES, Disturbance, build_line_modes, make_record
+from helpers.surrogate_drops import build_line_modes, make_record
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.drops.drop_record import DropRecord
 from pantocheck.conformance.drops.identification_analysis import analyse_identification
 from pantocheck.conformance.drops.identify import identify_modes
 from pantocheck.conformance.drops.sensor_clocks import interpolate
+from verification.tables.field_records import LINES, Disturbance
 
 
 def test_interpolation_is_exact_below_a_third_of_the_rate() -> None:
