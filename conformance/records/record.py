@@ -23,6 +23,9 @@ SPEED_TOLERANCE = 0.005
 STRIP_CHANNELS = ("front_strip", "rear_strip")
 """Channels of the two strips of a pantograph."""
 
+FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
+"""Contact forces, of which the first is the sum of the others if there are strips."""
+
 STRIP_TOLERANCE_N = 0.1
 """Largest difference of the contact force from the sum of its strips: rounding of three channels [N]."""
 
@@ -97,9 +100,7 @@ class Record:
             value = getattr(self, name)
             if value is not None and value.shape != self.force.shape:
                 raise RecordInvalid(name, f"has the shape {value.shape}, expected {self.force.shape} as for the force")
-        strips = [force for name in STRIP_CHANNELS if (force := getattr(self, name)) is not None]
-        if strips and not (len(strips) == 2 and np.abs(strips[0] + strips[1] - self.force).max() <= STRIP_TOLERANCE_N):
-            raise RecordInvalid(STRIP_CHANNELS[0], "the forces of both strips do not add up to the contact force")
+        check_strip_forces(self.force, self.front_strip, self.rear_strip)
         if (self.support_position is None) != (self.support_uplift is None):
             raise RecordInvalid("support_uplift", "uplift and positions of the supports are needed together")
         if self.support_position is not None and self.support_uplift is not None:
@@ -114,6 +115,29 @@ class Record:
     def pantographs(self) -> int:
         """Number of pantographs."""
         return int(self.force.shape[0])
+
+
+def check_strip_forces(force: RealArray, front: RealArray | None, rear: RealArray | None) -> None:
+    """Refuse forces of two strips that contradict the contact force; NaN marks a missing value.
+
+    Args:
+        force: Contact force, (p, n) [N].
+        front, rear: Contact force of each strip, (p, n) [N]; None: not recorded.
+
+    Raises:
+        RecordInvalid: One strip is missing, or both do not add up to the contact force.
+    """
+    strips = dict(zip(STRIP_CHANNELS, (front, rear), strict=True))
+    if front is None or rear is None:
+        for name, present in strips.items():
+            if present is None and not (front is None and rear is None):
+                raise RecordInvalid(name, "missing; the forces of both strips are needed together")
+        return
+    difference = np.abs(front + rear - force)
+    if (wrong := np.argwhere(difference > STRIP_TOLERANCE_N)).size:
+        row, sample = wrong[0]
+        found = f"by {difference[row, sample]:.3g} N at sample {sample + 1} of pantograph {row + 1}"
+        raise RecordInvalid(STRIP_CHANNELS[0], f"the forces of both strips do not add up to the contact force, {found}")
 
 
 _ARRAYS = frozenset(

@@ -17,7 +17,7 @@ from pantocheck.conformance.quantities.unavailable import SectionNotCovered
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.events import RecordEvent, TooManyEvents, list_events
 from pantocheck.conformance.records.force_checks import detect_filtered, find_outliers
-from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid
+from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid, check_strip_forces
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, analysis_section
 from pantocheck.conformance.records.usable_sections import (
@@ -103,9 +103,10 @@ def prepare_record(
         Signals over the usable sections.
 
     Raises:
-        RecordInvalid: Time or position decreases, no sample has both, the pantographs share no track, or no part is
-            usable.
+        RecordInvalid: Time or position decreases, no sample has both, the pantographs share no track, no part is
+            usable, or the forces of strips contradict the contact force.
     """
+    check_strip_forces(samples.force, samples.front_strip, samples.rear_strip)
     placed = place_samples(samples, sidecar)
     samples, time, position = placed.samples, placed.time, placed.position
     rate = float(f"{1 / float(np.median(np.diff(time))):.6g}")
@@ -163,7 +164,6 @@ def _list_section_events(
 def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) -> tuple[PantographSignals, list[str]]:
     """Signals of one pantograph over the usable part of its record, and warnings."""
     name, force, position = f"pantograph {row + 1}", placed.samples.force[row], placed.position[row]
-    heights = placed.samples.contact_height
     present = np.isfinite(force)
     warnings = []
     if not present.all():
@@ -180,11 +180,19 @@ def _prepare_pantograph(placed: PlacedSamples, row: int, settings: _Settings) ->
             f"the record of {name} has {len(parts)} usable parts between gaps; that from {position[indices[0]]:.1f} m "
             f"to {position[indices[-1]]:.1f} m is evaluated"
         )
-    height = None if heights is None else heights[row][indices]
-    channels = UsableSection(position[indices], force[indices], height, _select_arcs(placed.samples, row, indices))
+    height, front = (
+        None if values is None else values[row][indices]
+        for values in (placed.samples.contact_height, placed.samples.front_strip)
+    )
+    arcs = _select_arcs(placed.samples, row, indices)
+    channels = UsableSection(position[indices], force[indices], height, front, arcs)
     part = resample_section(placed.time[indices], channels, settings.rate)
+    if front is not None and part.front_strip is None:
+        warnings.append(f"forces of the strips of {name} are missing inside of the record; they are not shown")
     channel = ForceChannel(part.force, settings.rate, settings.low_pass, settings.filter_applied_Hz)
-    signals = PantographSignals(part.position, channel, settings.section, part.height, part.arcs)
+    signals = PantographSignals(
+        part.position, channel, settings.section, part.height, part.arcs, front_strip=part.front_strip
+    )
     if _duration(signals):
         signals, remarks = detect_filtered(signals, name)
         warnings += remarks

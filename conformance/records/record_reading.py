@@ -191,6 +191,9 @@ def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, 
         rows, errors = read_mapped_rows(add_time_column(table), sidecar.columns, sidecar_where), []
     if "time" not in rows and (time := _find_own_time(table)) is not None:
         rows["time"] = {1: time}
+    if "force" not in rows and all(name in rows for name in STRIP_CHANNELS):
+        front, rear = (rows[name] for name in STRIP_CHANNELS)
+        rows["force"] = {number: front[number] + rear[number] for number in front if number in rear}
     if not errors:  # a wrong column may be the missing one
         complete_position_rows(rows, table, sidecar, sidecar_where)
         errors += _find_missing_channels(rows, sidecar, where)
@@ -263,7 +266,8 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
         ("time_s or position_m", rows.keys() & {"time", "position"}),
     ):
         if not present:
-            yield InputError(where, f"has no channel {missing}", "Store force_N, and time_s or position_m.")
+            hint = "Store force_N or the forces of both strips, and time_s or position_m."
+            yield InputError(where, f"has no channel {missing}", hint)
     for name, numbered in rows.items():
         if name in MARKS:
             continue

@@ -17,7 +17,7 @@ from pantocheck.conformance.core.table_sidecar import TableName, TableSidecar
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import suggest_key
 from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
-from pantocheck.conformance.records.record import CHANNELS, find_column
+from pantocheck.conformance.records.record import CHANNELS, FORCE_CHANNELS, find_column
 from pantocheck.conformance.records.sidecar_tables import (
     ArcTable,
     EventChannel,
@@ -95,7 +95,8 @@ class RecordSidecar(PassageTable, TableSidecar):
     @cross_check
     def _check_sensors(self) -> Problems:
         for name, source in (self.columns or {}).items():
-            if isinstance(source, SensorSum) and not name.startswith("force_"):
+            meaning = find_column(name, 1)
+            if isinstance(source, SensorSum) and (meaning is None or meaning.channel.name not in FORCE_CHANNELS):
                 yield validation_problem(
                     f"columns.{name[:80]}.sum", "sensors are summed to a force only", "Give column and unit."
                 )

@@ -37,6 +37,8 @@ class UsableSection:
     """Contact force, (n,) [N]."""
     height: RealArray | None
     """Height of the contact point, (n,) [m], or None."""
+    front_strip: RealArray | None = None
+    """Contact force of the front strip, (n,) [N], or None."""
     arcs: RealArray | None = None
     """Arcs, and time under load, as 1, 0 or NaN, (2, n); None without an arc detector."""
 
@@ -76,18 +78,19 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
 
     Args:
         time: Time of the samples, (n,) [s].
-        section: Channels as recorded; a height with missing values is dropped.
+        section: Channels as recorded; a height or a force of a strip with missing values is dropped.
         rate: Sampling rate of the result [Hz].
 
     Returns:
         Section with uniform sampling.
     """
-    height = section.height
-    if height is not None and not np.isfinite(height).all():
-        height = None
+    height, front = (
+        None if values is None or not np.isfinite(values).all() else values
+        for values in (section.height, section.front_strip)
+    )
     uniform = np.linspace(time[0], time[-1], time.size)
     if np.abs(time - uniform).max() <= 0.01 / rate and abs((time.size - 1) / (time[-1] - time[0]) / rate - 1) < 1e-3:
-        return UsableSection(section.position, section.force, height, section.arcs)
+        return UsableSection(section.position, section.force, height, front, section.arcs)
     even = time[0] + np.arange(int(np.floor((time[-1] - time[0]) * rate * (1 + 1e-12))) + 1) / rate
     even[-1] = min(even[-1], time[-1])
 
@@ -99,6 +102,7 @@ def resample_section(time: RealArray, section: UsableSection, rate: float) -> Us
         interpolate(section.position),
         interpolate(section.force),
         None if height is None else interpolate(height),
+        None if front is None else interpolate(front),
         None if section.arcs is None else section.arcs[:, nearest],
     )
 

@@ -18,7 +18,7 @@ from pantocheck.conformance.grading.case_grading import grade_case, grade_evalua
 from pantocheck.conformance.grading.case_verdict import judge_case
 from pantocheck.conformance.grading.validity_warnings import WARNING_PREFIX
 from pantocheck.conformance.line.catenary_model import build_catenary
-from pantocheck.conformance.records.record import STRIP_CHANNELS, Record
+from pantocheck.conformance.records.record import FORCE_CHANNELS, Record
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.case_run import run_passage
@@ -30,9 +30,6 @@ from pantocheck.model import discretise, make_droppers_bilateral
 
 RunMutant = Callable[[Case, Record], Outcome]
 """Outcome of a faulty system on a case, made from the record of the reference simulator."""
-
-FORCE_CHANNELS = ("force", *STRIP_CHANNELS)
-"""Contact forces, of which the first is the sum of the others if there are strips."""
 
 SAMPLE_CHANNELS = ("time", "position", "contact_height", "support_uplift", *FORCE_CHANNELS)
 
