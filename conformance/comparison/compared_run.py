@@ -12,11 +12,13 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.results_part import Number
 from pantocheck.conformance.grading.assessed_record import load_assessed_record
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
+from pantocheck.conformance.grading.supported_frequencies import list_supported_frequencies
 from pantocheck.conformance.quantities.evaluation import LINE, Evaluation, Value, ValuesByOwner
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 from pantocheck.conformance.runs.system import Delivered, System
 
 RECORD_PROFILE = "line-test"
@@ -51,6 +53,8 @@ class ComparedRun:
     """Thinned curves; empty unless the run was read from results."""
     supports: tuple[float, ...] = ()
     """Positions of the supports [m]; empty if they are not known."""
+    supported: tuple[SupportedFrequency, ...] = ()
+    """Highest frequencies that the parts of its model support; empty for a record."""
     unknown_components: tuple[str, ...] = ()
     """Components of the uncertainty that are not part of the half-widths."""
     reason: str = ""
@@ -132,6 +136,7 @@ def describe_delivery(case: Case, system: System, delivered: Delivered) -> Compa
         uncertainty=evaluation.uncertainty.combined,
         signals={} if evaluation.signals is None else evaluation.signals.pantographs,
         supports=case.line.geometry.supports,
+        supported=tuple(list_supported_frequencies(case, delivered)),
         unknown_components=evaluation.uncertainty.unknown_components,
         reason=_find_reason(evaluation.evaluation),
     )
@@ -150,6 +155,7 @@ def _read_case_run(case: CaseResult, results: Results) -> ComparedRun:
         uncertainty=_read_values(case.uncertainty),
         traces={int(owner): traces for owner, traces in case.traces.items()},
         supports=tuple(sorted(supports)),
+        supported=tuple(case.supported),
     )
 
 

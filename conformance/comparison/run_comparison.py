@@ -18,7 +18,7 @@ from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.figure_data import Chart, Mark, Series
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.grading.results_building import build_suite
-from pantocheck.conformance.quantities.bands import amplitude_spectrum
+from pantocheck.conformance.quantities.bands import EXTENDED_BAND, amplitude_spectrum
 from pantocheck.conformance.quantities.evaluation import LINE, Value
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.unavailable import QuantityUnavailable
@@ -32,6 +32,7 @@ from pantocheck.conformance.results.comparison_format import (
     ForceAgreement,
     RunComparison,
 )
+from pantocheck.conformance.results.supported_frequency import find_supported_Hz
 
 # Charts of a comparison of runs: forces, spectra, coherence and differences along the spans.
 
@@ -57,6 +58,12 @@ def build_force_charts(
     """
     forces = [series for name, run in runs.items() if (series := _draw_force(name, run, owner)) is not None]
     spectra = [series for name, run in runs.items() if (series := _draw_spectrum(name, run, owner)) is not None]
+    limits = {name: find_supported_Hz(run.supported, str(owner)) for name, run in runs.items()}
+    unsupported = [
+        Mark(label=f"{name}: not supported", axis="x", low=limit, high=EXTENDED_BAND.high)
+        for name, limit in limits.items()
+        if limit is not None and limit < EXTENDED_BAND.high
+    ]
     charts = [
         _chart("Contact force along the track.", (POSITION_LABEL, FORCE_LABEL), forces),
         _chart(
@@ -64,14 +71,20 @@ def build_force_charts(
             (POSITION_LABEL, "difference [N]"),
             [_line(name, pair.position, pair.difference) for name, pair in pairs.items()],
         ),
-        _chart("Amplitude spectrum of the delivered force.", (FREQUENCY_LABEL, "amplitude [N]"), spectra, wide=False),
-        _build_coherence_chart(pairs),
+        _chart(
+            "Amplitude spectrum of the delivered force.",
+            (FREQUENCY_LABEL, "amplitude [N]"),
+            spectra,
+            unsupported,
+            wide=False,
+        ),
+        _build_coherence_chart(pairs, unsupported),
         *_build_span_charts(pairs, supports),
     ]
     return tuple(chart for chart in charts if chart.series)
 
 
-def _build_coherence_chart(pairs: Mapping[str, PairedForces]) -> Chart:
+def _build_coherence_chart(pairs: Mapping[str, PairedForces], unsupported: Sequence[Mark]) -> Chart:
     found = {name: coherence(pair) for name, pair in pairs.items()}
     levels = [result.chance_level for result in found.values()]
     marks = [Mark(label="independent forces (95 %)", axis="y", low=max(levels))] if levels else []
@@ -80,7 +93,7 @@ def _build_coherence_chart(pairs: Mapping[str, PairedForces]) -> Chart:
         "frequencies.",
         (FREQUENCY_LABEL, "coherence [-]"),
         [_line(name, result.frequency, result.value) for name, result in found.items()],
-        marks,
+        [*marks, *unsupported],
         wide=False,
     )
 
@@ -227,6 +240,7 @@ def _compare_case(case: str, runs: Mapping[str, ComparedRun]) -> ComparedCase:
     return ComparedCase(
         id=case,
         notes=(*reasons, *speeds),
+        supported=tuple(run.supported for run in runs.values()),
         owners=tuple(_compare_owner(owner, runs) for owner in owners),
     )
 

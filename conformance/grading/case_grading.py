@@ -21,7 +21,7 @@ from pantocheck.conformance.grading.derived_facts import list_derived_facts, lis
 from pantocheck.conformance.grading.input_sensitivity import describe_studies, list_conditions
 from pantocheck.conformance.grading.reading_grades import evaluate_readings, mark_readings
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
-from pantocheck.conformance.grading.supported_frequencies import list_case_frequencies
+from pantocheck.conformance.grading.supported_frequencies import list_supported_frequencies
 from pantocheck.conformance.grading.validity_warnings import extended_band_warnings, validity_warnings
 from pantocheck.conformance.records.evaluated_signals import pack_signals
 from pantocheck.conformance.records.record_signals import RecordSignals
@@ -151,7 +151,7 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
             "title": file.title,
             "notes": [*case.notes, *delivered.notes, *notes],
             "model_uncertainty": list(delivered.model_uncertainty),
-            "supported": [*list_case_frequencies(case), *delivered.supported],
+            "supported": list_supported_frequencies(case, delivered),
             "conditions": list_conditions(case),
             "input_studies": describe_studies(case),
             "inputs": _list_inputs(case),

@@ -10,6 +10,7 @@ from pantocheck.conformance.cases.library import source_text
 from pantocheck.conformance.line.elements.wire import ContactWireTable
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency, name_pantograph_part
+from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model.fem.beam import wave_speed
 
 POISSON_RATIO = 0.34
@@ -18,7 +19,12 @@ POISSON_RATIO = 0.34
 BASES = {"measured_response": "comparison with measured responses", "missing_mode": "first missing mode"}
 
 
-def list_case_frequencies(case: Case) -> Iterator[SupportedFrequency]:
+def list_supported_frequencies(case: Case, delivered: Delivered) -> list[SupportedFrequency]:
+    """Frequencies that follow from the files of a case, and those of the system that delivers it."""
+    return [*_list_case_frequencies(case), *delivered.supported]
+
+
+def _list_case_frequencies(case: Case) -> Iterator[SupportedFrequency]:
     """Frequencies that follow from the files of a case, whichever system simulates it; none for a line at rest."""
     if case.is_static or not case.pantographs:
         return

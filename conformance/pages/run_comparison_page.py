@@ -1,6 +1,7 @@
 """Report on a comparison of runs, from comparison.json."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,6 +15,7 @@ from pantocheck.conformance.pages import document as doc
 from pantocheck.conformance.pages.comparison_parts import clean_model
 from pantocheck.conformance.pages.condition_sections import BAND_MARK, CONDITIONED
 from pantocheck.conformance.pages.criteria_table import Basis
+from pantocheck.conformance.pages.frequency_section import mute_cell
 from pantocheck.conformance.pages.study_chart import draw_chart
 from pantocheck.conformance.pages.words import (
     format_plain,
@@ -32,11 +34,19 @@ from pantocheck.conformance.results.case_facts_format import (
 from pantocheck.conformance.results.comparison_format import (
     ComparedOwner,
     ComparedQuantity,
-    ForceAgreement,
     RunComparison,
 )
 from pantocheck.conformance.results.incomplete_uncertainty import describe_half_width, list_unknown
 from pantocheck.conformance.results.results_format import CaseResult
+from pantocheck.conformance.results.supported_frequency import (
+    SupportedFrequency,
+    describe_supported,
+    is_supported,
+    reaches,
+)
+
+Supported = Mapping[str, Sequence[SupportedFrequency]]
+"""Highest frequencies that the parts of the model of each subject support, by its name."""
 
 RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "
@@ -63,13 +73,14 @@ def build_run_comparison(results: RunComparison) -> doc.Document:
     facts |= {"Suite": f"Pantocheck {suite.version}", "Digest of the suite": suite.digest}
     blocks: list[doc.Block] = [doc.Paragraph(RUN_COMPARISON_SCOPE), doc.Facts(tuple(facts.items()))]
     for case in results.cases:
-        owners = [_build_owner(owner, names) for owner in case.owners if owner.quantities]
+        supported = dict(zip(names, case.supported or [()] * len(names), strict=True))
+        owners = [_build_owner(owner, supported) for owner in case.owners if owner.quantities]
         blocks.append(doc.Section(case.id or "Records", (*doc.warn(case.notes), *owners)))
     return doc.Document(header.headline, header, tuple(blocks))
 
 
-def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
-    """Figures, agreement and quantities of a pantograph or of the line."""
+def _build_owner(owner: ComparedOwner, supported: Supported) -> doc.Section:
+    """Figures, agreement and quantities of a pantograph or of the line; grey above the supported frequencies."""
     blocks: list[doc.Block] = []
     if owner.charts:
         figures = (
@@ -79,15 +90,20 @@ def _build_owner(owner: ComparedOwner, names: list[str]) -> doc.Section:
     if owner.reasons:
         blocks.append(doc.BulletList(tuple(owner.reasons)))
     if owner.agreements:
-        blocks.append(_build_agreement_table(owner.agreements, names[0]))
-    blocks.append(_build_quantity_table(owner.quantities, names))
+        blocks.append(_build_agreement_table(owner, supported))
+    blocks.append(_build_quantity_table(owner, supported))
+    texts = [f"{name} {describe_supported(parts, str(owner.number))}" for name, parts in supported.items() if parts]
+    if texts:
+        blocks.append(doc.SmallPrint(f"Highest supported frequency: {'; '.join(texts)}. Grey: not supported."))
     if any(item.name == CONDITIONED for item in owner.quantities):
         blocks.append(doc.SmallPrint(UNKNOWN_CONTACT))
     return doc.Section(name_pantograph(owner.number).capitalize(), tuple(blocks))
 
 
-def _build_agreement_table(agreements: tuple[ForceAgreement, ...], first: str) -> doc.Table:
-    rows = [(agreement, band) for agreement in agreements for band in agreement.bands]
+def _build_agreement_table(owner: ComparedOwner, supported: Supported) -> doc.Table:
+    """RMS values of the bands; those that a force of the row does not support are grey."""
+    first = next(iter(supported))
+    rows = [(agreement, band) for agreement in owner.agreements for band in agreement.bands]
     cells = {
         "Subject": lambda row: row[0].subject,
         "Band [Hz]": lambda row: f"{format_plain(row[1].low_Hz)} to {format_plain(row[1].high_Hz)}",
@@ -96,15 +112,32 @@ def _build_agreement_table(agreements: tuple[ForceAgreement, ...], first: str) -
         "RMS of the difference [N]": lambda row: format_value(row[1].difference_N),
         "Correlation of the whole force": lambda row: format_value(row[0].correlation, 3),
     }
-    return doc.make_grid("Agreement of the forces at the same positions", rows, cells)
+    table = doc.make_grid("Agreement of the forces at the same positions", rows, cells)
+    muted = [
+        cells
+        if all(reaches(supported[name], str(owner.number), band.high_Hz) for name in (first, agreement.subject))
+        else tuple(map(mute_cell, cells))
+        for (agreement, band), cells in zip(rows, table.rows, strict=True)
+    ]
+    return replace(table, rows=tuple(muted))
 
 
-def _build_quantity_table(quantities: tuple[ComparedQuantity, ...], names: list[str]) -> doc.Table:
-    columns = (doc.Column("Quantity", share=1), *(doc.Column(name, number=True) for name in names))
+def _build_quantity_table(owner: ComparedOwner, supported: Supported) -> doc.Table:
+    columns = (doc.Column("Quantity", share=1), *(doc.Column(name, number=True) for name in supported))
     rows = tuple(
-        (_name_quantity(item.name), *(format_compared(item, i) for i in range(len(names)))) for item in quantities
+        (
+            _name_quantity(item.name),
+            *(_build_cell(item, i, owner.number, parts) for i, parts in enumerate(supported.values())),
+        )
+        for item in owner.quantities
     )
     return doc.Table(columns, rows, "Quantities", layout="grid")
+
+
+def _build_cell(item: ComparedQuantity, index: int, owner: int, parts: Sequence[SupportedFrequency]) -> doc.RichText:
+    """Value of a subject, grey if its model does not support it."""
+    text = format_compared(item, index)
+    return text if is_supported(parts, str(owner), item.name) else doc.Muted(text)
 
 
 def _name_quantity(name: str) -> str:

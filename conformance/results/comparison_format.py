@@ -10,6 +10,7 @@ from pantocheck.conformance.core.json_file import Rounded, RoundedModel, round_t
 from pantocheck.conformance.core.results_part import Suite
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.pantograph.response_record import HeadPoint, ResponseKind
+from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 NumberPair = tuple[Rounded, Rounded]
 ComparedValue = Rounded | tuple[Rounded, ...]
@@ -279,6 +280,8 @@ class ComparedCase(RoundedModel):
     id: str
     """Id of the case; empty: the records state none."""
     notes: tuple[str, ...]
+    supported: tuple[tuple[SupportedFrequency, ...], ...] = ()
+    """Highest frequencies that the parts of the model of each subject support; empty for a record."""
     owners: tuple[ComparedOwner, ...]
 
 

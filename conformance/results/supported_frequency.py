@@ -47,8 +47,13 @@ def find_supported_Hz(parts: Sequence[SupportedFrequency], owner: str) -> float 
 def is_supported(parts: Sequence[SupportedFrequency], owner: str, quantity: str) -> bool:
     """Whether a quantity has no content above the supported frequency of its owner, or that is not known."""
     highest = QUANTITIES[quantity].highest_Hz if quantity in QUANTITIES else None
+    return highest is None or reaches(parts, owner, highest)
+
+
+def reaches(parts: Sequence[SupportedFrequency], owner: str, frequency_Hz: float) -> bool:
+    """Whether the supported frequency of an owner is at least a frequency [Hz], or not known."""
     supported = find_supported_Hz(parts, owner)
-    return highest is None or supported is None or highest <= supported
+    return supported is None or frequency_Hz <= supported
 
 
 def describe_supported(parts: Sequence[SupportedFrequency], owner: str) -> str:

@@ -4,14 +4,20 @@ import io
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from pypdf import PdfReader
 
 from helpers.shown_page import print_certificate, shown_certificate, summarise
+from pantocheck.conformance.comparison.compared_run import ComparedRun
+from pantocheck.conformance.comparison.run_comparison import compare_subjects
 from pantocheck.conformance.pages.case_figures import draw_spectrum
 from pantocheck.conformance.pages.html import render_html
+from pantocheck.conformance.pages.run_comparison_page import build_run_comparison
 from pantocheck.conformance.pages.site_pages import build_case_page, order_results
 from pantocheck.conformance.pages.words import format_value
+from pantocheck.conformance.quantities.filters import Filter
+from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.results.supported_frequency import (
     SupportedFrequency,
@@ -97,3 +103,36 @@ def test_spectrum_is_grey_above_the_frequency_alone(passing: dict[str, Any]) -> 
         above = [patch for patch in axes.patches if patch.get_x() == frequency]
         assert len(above) == patches
         assert all(patch.get_x() + patch.get_width() == 50 for patch in above)
+
+
+def test_comparison_greys_the_values_of_the_subject_that_does_not_support_them() -> None:
+    """The first subject is supported to 35 Hz, the second to 60 Hz, a record states nothing."""
+    parts = tuple(SupportedFrequency(**state("pantograph 1", f)) for f in (35.0, 60.0))
+    values = {"std_force_N": 25.0, "rms_20_50_N": 12.5}
+    time = np.arange(0, 10, 0.002)
+    force = ForceChannel(120 + sum(20 * np.sin(2 * np.pi * f * time) for f in (1, 12, 37)), 500.0, Filter(), None)
+    signals = {1: PantographSignals(60 * time, force, (100.0, 500.0))}
+    runs = [
+        ComparedRun("record", name, "", "", "", None, {1: values}, {}, signals, supported=supported)
+        for name, supported in (("low", parts[:1]), ("high", parts[1:]), ("record", ()))
+    ]
+    comparison = compare_subjects([[run] for run in runs], None)
+    page = render_html(build_run_comparison(comparison)).replace("\N{NO-BREAK SPACE}", " ")
+    rows = {
+        cells[0]: cells[1:]
+        for cells in (re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in page.split("<tr"))
+        if cells
+    }
+    muted = {name: ['class="muted"' in cell for cell in cells] for name, cells in rows.items()}
+    assert muted["RMS, 20–50 Hz ‡ [N]"] == [True, False, False]
+    assert not any(muted["Standard deviation, 0–20 Hz [N]"])
+    grey = [row.count('class="muted"') for row in page.split("<tr") if "20 to 50<" in row]
+    assert grey == [6, 6]  # every cell of both subjects beside the first one
+    assert not any('class="muted"' in row for row in page.split("<tr") if "5 to 20" in row)
+    assert "Highest supported frequency: low 35 Hz; high 60 Hz. Grey: not supported." in page
+    charts = {chart.caption[:9]: chart.marks for chart in comparison.cases[0].owners[0].charts}
+    bands = [(mark.label, mark.low, mark.high) for mark in charts["Amplitude"]]
+    assert bands == [("low: not supported", 35.0, 50.0)]
+    assert bands[0] in [(mark.label, mark.low, mark.high) for mark in charts["Coherence"]]
+    plain = compare_subjects([[runs[2]], [runs[2]]], None)
+    assert 'class="muted"' not in render_html(build_run_comparison(plain)).partition("<body")[2]
