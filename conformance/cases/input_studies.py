@@ -19,6 +19,9 @@ from pantocheck.conformance.line.library_folder import library_folder
 
 StudyText = Annotated[str, Field(min_length=1, max_length=1000)]
 
+StudiedPart = Literal["wires", "droppers", "supports", "damping", "pantograph", "contact", "run"]
+"""Part of a case to which an input belongs."""
+
 
 class InputStudyFile(InputTable):
     """Head of a stored study."""
@@ -48,7 +51,7 @@ class InputBounds(InputTable):
     """Errors of one input that pass, upwards and downwards."""
 
     name: StudyText
-    group: StudyText
+    group: StudiedPart
     unit: StudyText
     """Unit of the errors; %: relative to the value of the case."""
     not_applicable: str | None = None
@@ -90,6 +93,7 @@ class ValueCondition(InputTable):
     """Changed input, and its effect."""
 
     name: StudyText
+    group: StudiedPart
     not_applicable: str | None = None
     """Reason why the case does not support this change."""
     change: Annotated[tuple[ValueChange, ...], Field(strict=False, max_length=100)] = ()

@@ -35,7 +35,8 @@ def list_conditions(case: Case) -> list[ConditionFacts]:
         changes: dict[str, dict[str, float]] = {}
         for row in condition.change:
             changes.setdefault(str(row.pantograph), {})[row.quantity] = row.change_pct
-        rows.append(ConditionFacts(name=condition.name, not_applicable=condition.not_applicable, changes=changes))
+        facts = condition.model_dump(include={"name", "group", "not_applicable"})
+        rows.append(ConditionFacts(**facts, changes=changes))
     return rows
 
 

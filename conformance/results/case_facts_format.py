@@ -4,6 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from pantocheck.conformance.cases.input_studies import StudiedPart
 from pantocheck.conformance.core.check_row import CheckRow
 from pantocheck.conformance.core.figure_data import Spectrum, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
@@ -39,6 +40,7 @@ class ConditionFacts(ResultsPart):
     """Input that is not traced or left open, and the changes of the values by another one."""
 
     name: str
+    group: StudiedPart
     not_applicable: str | None = None
     """Reason why the case does not support this change."""
     changes: dict[Owner, dict[str, FiniteNumber]] = {}
@@ -47,7 +49,7 @@ class ConditionFacts(ResultsPart):
     @property
     def is_contact(self) -> bool:
         """Whether the other input is the contact of head and wire."""
-        return self.name.startswith(("contact stiffness", "contact by"))
+        return self.group == "contact"
 
 
 class StoredRange(ResultsPart):

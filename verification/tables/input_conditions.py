@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.input_studies import ValueChange, ValueCondition
+from pantocheck.conformance.cases.input_studies import StudiedPart, ValueChange, ValueCondition
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
@@ -52,21 +52,22 @@ def measure_conditions(case: Case) -> Iterator[ValueCondition]:
             try:
                 varied = load_varied(case, list_changes(case, item, error))
             except (NotApplicable, InputError) as problem:
-                yield ValueCondition(name=name, not_applicable=" ".join(str(problem).split()))
+                yield ValueCondition(name=name, group=item.group, not_applicable=" ".join(str(problem).split()))
                 continue
-            yield compare(name, own, evaluate(varied, simulate_varied(varied)))
+            yield compare(name, item.group, own, evaluate(varied, simulate_varied(varied)))
     for choice in read_variations().choice:
         try:
-            yield compare(choice.name, own, evaluate(case, apply_choice(case, choice)))
+            yield compare(choice.name, choice.group, own, evaluate(case, apply_choice(case, choice)))
         except (NotApplicable, SimulationError) as problem:
-            yield ValueCondition(name=choice.name, not_applicable=" ".join(str(problem).split()))
+            reason = " ".join(str(problem).split())
+            yield ValueCondition(name=choice.name, group=choice.group, not_applicable=reason)
 
 
-def compare(name: str, own: Values, changed: Values) -> ValueCondition:
+def compare(name: str, group: StudiedPart, own: Values, changed: Values) -> ValueCondition:
     """Change of every value relative to that with the inputs of the case."""
     changes = {key: round(100 * (changed[key] - value) / abs(value), 2) for key, value in own.items()}
     rows = (ValueChange(quantity=name, pantograph=owner, change_pct=pct) for (owner, name), pct in changes.items())
-    return ValueCondition(name=name, change=tuple(rows))
+    return ValueCondition(name=name, group=group, change=tuple(rows))
 
 
 def write_file(case: Case, conditions: Sequence[ValueCondition]) -> str:
@@ -80,7 +81,7 @@ def write_file(case: Case, conditions: Sequence[ValueCondition]) -> str:
         f'command = "{COMMAND} {case.id}"',
     ]
     for condition in conditions:
-        lines += ["", "[[condition]]", f"name = {json.dumps(condition.name)}"]
+        lines += ["", "[[condition]]", f"name = {json.dumps(condition.name)}", f'group = "{condition.group}"']
         if condition.not_applicable is not None:
             lines.append(f"not_applicable = {json.dumps(condition.not_applicable)}")
         else:

@@ -15,6 +15,7 @@ from pydantic import Field
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import LIBRARY
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
+from pantocheck.conformance.cases.input_studies import StudiedPart
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
 from pantocheck.conformance.core.input_error import InputError
@@ -43,7 +44,7 @@ class CaseInput(InputTable):
     """Input of a case that a simulator may have wrong."""
 
     name: str
-    group: Literal["wires", "droppers", "supports", "damping", "pantograph", "contact", "run"]
+    group: StudiedPart
     keys: Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
     """Keys that are changed together; those that the case does not state are left out."""
     unit: str = "%"
@@ -66,6 +67,7 @@ class Choice(InputTable):
     """Other reading of an input, without a size."""
 
     name: str
+    group: StudiedPart
     settings: Annotated[dict[str, str | float], Field(default_factory=dict)]
     """Values by key."""
     contact: ContactTable | None = None

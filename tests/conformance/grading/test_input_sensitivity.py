@@ -104,7 +104,7 @@ def test_model_uncertainty_of_the_contact_is_the_largest_stored_change() -> None
     largest: dict[str, float] = {}
     for path in (library_folder() / "conditions").rglob("*.toml"):
         for condition in read_study(path, ConditionsFile).condition:
-            for row in condition.change if condition.name.startswith("contact ") else ():
+            for row in condition.change if condition.group == "contact" else ():
                 largest[row.quantity] = max(largest.get(row.quantity, 0.0), abs(row.change_pct))
     assert effect.relative_pct.keys() == largest.keys()
     for quantity, size in effect.relative_pct.items():

@@ -22,12 +22,18 @@ SPRING = {
     "group": "pantograph 1.contact", "trust": "provisional", "source": "untraced", "values": {"stiffness_N_m": 50000.0}
 }  # fmt: skip
 CONDITIONS = [
-    {"name": "contact stiffness -50 %", "changes": {"1": {"rms_20_50_N": -54.2}, "2": {"rms_20_50_N": -50.0}}},
+    {
+        "name": "half of the spring",
+        "group": "contact",
+        "changes": {"1": {"rms_20_50_N": -54.2}, "2": {"rms_20_50_N": -50.0}},
+    },
     {
         "name": "contact stiffness +100 %",
+        "group": "contact",
         "changes": {"1": {"rms_20_50_N": 31.04}, "0": {"max_uplift_at_support_mm": 1.0}},
     },
-    {"name": "steady arm -0.1 kg", "not_applicable": "the value cannot be below 0 kg"},
+    {"name": "contact stiffness of an arm", "group": "supports", "changes": {"1": {"rms_20_50_N": 9.0}}},
+    {"name": "steady arm -0.1 kg", "group": "supports", "not_applicable": "the value cannot be below 0 kg"},
 ]
 
 
@@ -47,7 +53,7 @@ def model(results: dict[str, Any]) -> CaseResult:
 def test_sentence_states_the_spring_its_source_and_its_effect(conditioned: dict[str, Any]) -> None:
     assert describe_condition(model(conditioned)) == (
         "‡ Values from 20 to 50 Hz are conditional on a contact spring of 50 kN/m, which is not traced. They change by "
-        "−54.2 % and −50 % with contact stiffness −50 %; +31 % with contact stiffness +100 %."
+        "−54.2 % and −50 % with half of the spring; +31 % with contact stiffness +100 %."
     )
     conditioned["cases"][0]["conditions"] = []
     conditioned["cases"][0]["inputs"][-1] |= {"trust": "secondary", "values": {"stiffness_N_m": 67500.0}}
@@ -67,7 +73,9 @@ def test_sentence_states_the_spring_its_source_and_its_effect(conditioned: dict[
 def test_sentence_names_every_contact_law(conditioned: dict[str, Any], values: dict[str, Any], law: str) -> None:
     case = conditioned["cases"][0]
     case["inputs"][-1] |= {"values": values}
-    case["conditions"] = [{"name": "contact by a constraint", "changes": {"1": {"rms_20_50_N": 21.9}}}]
+    case["conditions"] = [
+        {"name": "contact by a constraint", "group": "contact", "changes": {"1": {"rms_20_50_N": 21.9}}}
+    ]
     assert describe_condition(model(conditioned)) == (
         f"‡ Values from 20 to 50 Hz are conditional on {law}, which is not traced. They change by +21.9 % with contact "
         "by a constraint."
@@ -106,10 +114,10 @@ def test_every_row_of_the_band_has_the_mark_and_no_other(conditioned: dict[str, 
 def test_table_lists_changes_of_both_pantographs_and_reasons(conditioned: dict[str, Any]) -> None:
     (section,) = build_condition_section(model(conditioned))
     table, text = section.blocks
-    assert [row[0] for row in table.rows[:2]] == ["contact stiffness −50 %", "contact stiffness +100 %"]
+    assert [row[0] for row in table.rows[:2]] == ["half of the spring", "contact stiffness +100 %"]
     assert table.rows[0][-1] == "−54.2 / −50"
     assert table.rows[1][-1] == "+31 / –"
-    assert table.rows[2][0] == ("steady arm −0.1 kg", Remark("not applicable: the value cannot be below 0 kg"))
+    assert table.rows[3][0] == ("steady arm −0.1 kg", Remark("not applicable: the value cannot be below 0 kg"))
     assert text.text.endswith("Values of pantograph 1 / pantograph 2.")
     conditioned["cases"][0]["conditions"] = []
     assert build_condition_section(model(conditioned)) == ()
