@@ -4,6 +4,7 @@ Unknowns are ordered station by station with the rows interleaved, (w, r) each, 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,14 +20,57 @@ from pantocheck.model.fem.residual_flexibility import residual_flexibility
 
 @dataclass(frozen=True)
 class GlobalMatrices:
-    """Matrices of the free unknowns with every dropper taut and all tensions constant."""
+    """Matrices (n, n) of the free unknowns with every dropper taut and all tensions constant.
 
-    mass: sp.csc_array
-    damping: sp.csc_array
-    stiffness: sp.csc_array
-    """Matrices of the free unknowns, (n, n) [kg, N s/m, N/m; slopes accordingly]."""
-    free: Indices
-    """Indices of the free unknowns among all, (n,)."""
+    Each is assembled when it is read [kg, N s/m, N/m; slopes accordingly].
+    """
+
+    line: DiscretisedLine
+
+    @cached_property
+    def free(self) -> Indices:
+        """Indices of the free unknowns among all, (n,)."""
+        return free_unknowns(self.line)
+
+    @cached_property
+    def mass(self) -> sp.csc_array:
+        """Mass of wires and lumped parts."""
+        beams = self.line.beams
+        return self._assemble(self._masses, beams.lumped_mass, np.zeros_like(self.line.connectors.stiffness))
+
+    @cached_property
+    def damping(self) -> sp.csc_array:
+        """Damping of wires, lumped parts and connectors."""
+        beams = self.line.beams
+        wires = [
+            beams.stiffness_coefficient[row] * stiffness + beams.mass_coefficient[row] * mass
+            for row, (stiffness, mass) in enumerate(zip(self._stiffnesses, self._masses, strict=True))
+        ]
+        return self._assemble(wires, beams.lumped_damping, self.line.connectors.damping)
+
+    @cached_property
+    def stiffness(self) -> sp.csc_array:
+        """Stiffness of wires, lumped parts and connectors."""
+        return self._assemble(self._stiffnesses, self.line.beams.lumped_stiffness, self.line.connectors.stiffness)
+
+    @cached_property
+    def _masses(self) -> list[sp.csr_array]:
+        return [wire_mass(self.line.beams, row) for row in range(self.line.mesh.rows)]
+
+    @cached_property
+    def _stiffnesses(self) -> list[sp.csr_array]:
+        return [wire_stiffness(self.line.beams, row) for row in range(self.line.mesh.rows)]
+
+    @cached_property
+    def _directions(self) -> sp.csr_array:
+        return connector_directions(self.line)[self.free]
+
+    def _assemble(self, wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
+        """Sum of wires, lumped parts and connectors for the free unknowns."""
+        deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
+        order = bandwidth_order(self.line)[self.free]
+        uncoupled = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
+        return sp.csc_array(uncoupled + self._directions @ sp.diags_array(connector) @ self._directions.T)
 
 
 def _unknowns(line: DiscretisedLine, row: int | Indices, station: Indices, slope: int | Indices = 0) -> Indices:
@@ -50,27 +94,8 @@ def free_unknowns(line: DiscretisedLine) -> Indices:
 
 
 def assemble_matrices(line: DiscretisedLine) -> GlobalMatrices:
-    """Assemble mass, damping and stiffness of the line with every dropper taut."""
-    beams, free = line.beams, free_unknowns(line)
-    rows, order, directions = range(line.mesh.rows), bandwidth_order(line), connector_directions(line)
-    stiffness, mass = [wire_stiffness(beams, row) for row in rows], [wire_mass(beams, row) for row in rows]
-    damping = [
-        beams.stiffness_coefficient[row] * stiffness[row] + beams.mass_coefficient[row] * mass[row] for row in rows
-    ]
-
-    def assemble(wires: list[sp.csr_array], lumped: Array, connector: Array) -> sp.csc_array:
-        """Sum of wires, lumped parts and connectors for the free unknowns."""
-        deflections = np.stack([lumped, np.zeros_like(lumped)], axis=-1).ravel()
-        uncoupled = (sp.block_diag(wires, format="csr") + sp.diags_array(deflections))[order][:, order]
-        coupled = uncoupled + directions @ sp.diags_array(connector) @ directions.T
-        return sp.csc_array(coupled[free][:, free])
-
-    return GlobalMatrices(
-        mass=assemble(mass, beams.lumped_mass, np.zeros_like(line.connectors.stiffness)),
-        damping=assemble(damping, beams.lumped_damping, line.connectors.damping),
-        stiffness=assemble(stiffness, beams.lumped_stiffness, line.connectors.stiffness),
-        free=free,
-    )
+    """Mass, damping and stiffness of the line with every dropper taut."""
+    return GlobalMatrices(line)
 
 
 def correct_mass(line: DiscretisedLine, time_step: float) -> sp.csc_array:

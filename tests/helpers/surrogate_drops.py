@@ -6,6 +6,7 @@ The line is linear: droppers that slacken are the subject of the full simulation
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -52,6 +53,7 @@ class FieldRecord:
     ratio: RealArray
 
 
+@cache
 def build_line_modes(name: str) -> LineModes:
     """Modes of a line of `field_records.LINES`."""
     catenary, line = build_stated_line(name)

@@ -80,9 +80,9 @@ def plant_errors(line: Catenary, random: np.random.Generator) -> tuple[Catenary,
     return replace(built, droppers=tuple(droppers)), factors
 
 
-def measure_modes(line: Catenary, random: np.random.Generator) -> tuple[Mode, ...]:
+def measure_modes(line: Catenary, random: np.random.Generator, element: float = ELEMENT) -> tuple[Mode, ...]:
     """Modes of a line with the noise of the measurement and the scatter of the line model."""
-    mesh = discretise(line, ELEMENT, tuple(x for _, x in SENSORS))
+    mesh = discretise(line, element, tuple(x for _, x in SENSORS))
     modes = compute_modes_below(mesh, HIGHEST)
     ratios = damping_ratios(mesh, modes)
     rows = [deflection_at(mesh, modes, mesh.mesh.row_of[WIRES[wire], "z"], x) for wire, x in SENSORS]

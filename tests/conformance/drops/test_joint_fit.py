@@ -13,10 +13,18 @@ from pantocheck.conformance.pages.damping_page import build_damping_document
 from pantocheck.conformance.results.damping_format import DampingResults
 from pantocheck.conformance.results.identified_modes import Mode
 from pantocheck.model import Catenary
-from verification.tables.line_coverage import DAMPING, ELEMENT, TOLERANCES, build_line, list_intervals, measure_modes
+from verification.tables.line_coverage import DAMPING, TOLERANCES, build_line, list_intervals
+from verification.tables.line_coverage import measure_modes as measure_line_modes
 
 SPLIT = (1.02, 0.98)
 """Factors of the tensions of contact and messenger wire on those of the line file."""
+
+ELEMENT = 1.5
+"""Length of the elements of line and fit [m]: both have the same errors of discretisation."""
+
+
+def measure_modes(line: Catenary, random: np.random.Generator) -> tuple[Mode, ...]:
+    return measure_line_modes(line, random, ELEMENT)
 
 
 @pytest.fixture(scope="module")
