@@ -7,6 +7,8 @@ band-pass maps each to two poles. The bilinear transform z = (1 + s) / (1 - s) g
 Schafer, Discrete-Time Signal Processing, chapter on the design of filters).
 """
 
+from functools import lru_cache
+
 import numpy as np
 import scipy  # loads scipy.linalg when it is used: a list of cases does not wait for it
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 
 
+@lru_cache(maxsize=64)
 def design_low_pass(order: int, cutoff: float, rate: float) -> RealArray:
     """Sections of a low-pass.
 
@@ -27,9 +30,10 @@ def design_low_pass(order: int, cutoff: float, rate: float) -> RealArray:
     """
     poles = np.tan(np.pi * cutoff / rate) * _prototype_poles(order)
     pairs = [(pole, pole.conj()) if pole.imag else (pole,) for pole in poles]
-    return np.array([_build_section(pair, 0.0, [-1.0] * len(pair)) for pair in pairs])
+    return _join_sections([_build_section(pair, 0.0, [-1.0] * len(pair)) for pair in pairs])
 
 
+@lru_cache(maxsize=64)
 def design_band_pass(order: int, edges: tuple[float, float], rate: float) -> RealArray:
     """Sections of a band-pass.
 
@@ -47,7 +51,14 @@ def design_band_pass(order: int, edges: tuple[float, float], rate: float) -> Rea
         root = np.sqrt(complex(pole**2 - middle**2))
         split = (pole + root, pole - root)
         pairs += [(each, each.conj()) for each in split] if pole.imag else [split]
-    return np.array([_build_section(pair, 1j * middle, [1.0, -1.0]) for pair in pairs])
+    return _join_sections([_build_section(pair, 1j * middle, [1.0, -1.0]) for pair in pairs])
+
+
+def _join_sections(sections: list[RealArray]) -> RealArray:
+    """Table of sections, which all callers of a design share."""
+    table = np.array(sections)
+    table.flags.writeable = False
+    return table
 
 
 def _prototype_poles(order: int) -> NDArray[np.complex128]:

@@ -203,7 +203,7 @@ def test_one_pantograph_for_both_gives_no_pass(subject: Subject, source: int, ch
     assert_no_pass(subject, lambda record: replace(record, **{name: getattr(record, name)[rows] for name in channels}))
 
 
-@RULE
+@settings(RULE, max_examples=5)
 @given(order=st.permutations(range(11)))
 def test_the_order_of_supports_changes_nothing(subject: Subject, order: list[int]) -> None:
     record = subject.sound
