@@ -173,9 +173,13 @@ def line_figures(case: CaseResult, earlier: tuple[CaseResult, ...]) -> tuple[doc
     numbers = ", ".join(f"{symbol} ({number})" for symbol, number in labelled.items())
     parts = f" With texts: {numbers}." if labelled else ""
     section = case.run.evaluated_m
-    ground = "" if section is None else " Grey ground: analysis section."
-    caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}{ground}"
+    caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}: {views}, heights enlarged.{parts}"
+    caption += _name_ground(section)
     return (doc.Figure(draw_line_shape(shape, section), caption, caption),)
+
+
+def _name_ground(section: tuple[float, float] | None) -> str:
+    return "" if section is None else " Grey ground: analysis section."
 
 
 SKETCHED = 60.0
@@ -194,7 +198,8 @@ def draw_sketch(shape: LineShape, section: tuple[float, float] | None, pantograp
     axes.set_axis_off()
     start, end = shape.supports_m[0], shape.supports_m[-1]
     low, high = section or (start, end)
-    axes.axvspan(low, high, color=PALE, zorder=0)
+    if section is not None:
+        axes.axvspan(low, high, color=PALE, zorder=0)
     _draw_view(axes, shape.side.model_copy(update={"points": []}), {})
     wire = [curve for curve in shape.side.curves if curve.kind == "contact_wire"]
     x, y = [place for curve in wire for place in curve.x_m], [height for curve in wire for height in curve.y_m]
@@ -216,7 +221,8 @@ def draw_line_sketch(case: CaseResult) -> tuple[doc.Figure, ...]:
     number = sum(key != "0" for key in case.quantities) if case.run.speed_km_h else 0
     caption = f"Line at rest, spans {shape.first_span} to {shape.last_span}, without scale."
     alternative = f"{caption} Analysis section on a grey ground, {count_noun(number, 'pantograph')}."
-    return (doc.Figure(draw_sketch(shape, case.run.evaluated_m, number), alternative, caption),)
+    section = case.run.evaluated_m
+    return (doc.Figure(draw_sketch(shape, section, number), alternative, caption + _name_ground(section)),)
 
 
 def name_pantographs(case: CaseResult) -> str:

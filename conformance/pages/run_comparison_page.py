@@ -50,7 +50,7 @@ Supported = Mapping[str, Sequence[SupportedFrequency]]
 
 RUN_COMPARISON_SCOPE = (
     "The comparison judges nothing: it has no limits and no verdict. A number in parentheses is the difference from "
-    "the first subject. An asterisk marks a difference that exceeds the joint 95 % uncertainty of both values. "
+    "the first subject. An asterisk marks a difference that exceeds the joint nominal 95 % uncertainty of both values. "
     "The uncertainty of a record is that of its length; its discretisation error is not known."
 )
 
@@ -215,7 +215,7 @@ def _build_value_table(case: CaseResult, comparison: MeasuredRun) -> doc.Table:
                     quantity_unit(name),
                 )
             )
-    return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their 95 % intervals")
+    return doc.Table(columns, tuple(rows), "Values of both runs, with the half-widths of their nominal 95 % intervals")
 
 
 def _format_width(width: float | None, basis: Basis, quantity: str) -> str:

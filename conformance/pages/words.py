@@ -91,13 +91,15 @@ BOUND_UNITS = (
 
 NUMBER_AND_UNIT = re.compile(rf"(?<=[\d*]) (?=(?:{'|'.join(map(re.escape, BOUND_UNITS))})(?![\w/]))")
 
+RANGE_DASH = re.compile(r"(?<=\d–)(?=\d)")
+
 UNBOUND_KEYS = frozenset({"kind", "title", "anchor", "address", "svg", "code", "curves", "layout"})
 """Keys of a page whose values are markup, addresses, or lines to be copied."""
 
 
 def bind_units(text: str) -> str:
-    """Text with a no-break space between each number and its unit."""
-    return NUMBER_AND_UNIT.sub("\N{NO-BREAK SPACE}", text)
+    """Text with a no-break space between each number and its unit, and a word joiner behind the dash of each range."""
+    return RANGE_DASH.sub("\N{WORD JOINER}", NUMBER_AND_UNIT.sub("\N{NO-BREAK SPACE}", text))
 
 
 def bind_page_units(page: Any) -> Any:

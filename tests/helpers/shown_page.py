@@ -12,9 +12,9 @@ from pantocheck.conformance.results.results_format import Results
 
 
 def shown_certificate(results: dict[str, Any]) -> str:
-    """HTML of a certificate without its data block, with ordinary spaces between numbers and units."""
+    """HTML of a certificate without its data block, with ordinary spaces before units and plain ranges."""
     page = render_html(replace(certify(results), results=None))
-    return page.replace("\N{NO-BREAK SPACE}", " ")
+    return page.replace("\N{NO-BREAK SPACE}", " ").replace("\N{WORD JOINER}", "")
 
 
 def certify(results: dict[str, Any]) -> Document:

@@ -125,4 +125,4 @@ def _list_tables(comparison: RunComparison) -> Iterator[RenderableType]:
                     f"{agreement.rms_difference_N:.3g} N up to {agreement.highest_Hz:g} Hz"
                 )
             yield Text()
-    yield Text("* beyond the joint 95 % uncertainty of both values")
+    yield Text("* beyond the joint nominal 95 % uncertainty of both values")

@@ -1,5 +1,6 @@
 """Page 1: the answers in their order, each number once, on one sheet."""
 
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 
@@ -7,9 +8,13 @@ import pytest
 from pypdf import PdfReader
 
 from helpers.shown_page import certify, find_facts, print_certificate, shown_certificate
-from pantocheck.conformance.pages.document import Answers, Document, Figures, Section, Table
-from pantocheck.conformance.pages.first_page import MOST_CASES, MOST_GRADED, MOST_REASONS
+from pantocheck.conformance.pages.document import Answers, Document, Figures, Section, Table, digest_results
+from pantocheck.conformance.pages.first_page import MOST_CASES, MOST_GRADED, MOST_REASONS, MOST_SENTENCES
 from pantocheck.conformance.pages.markdown import render_markdown
+from pantocheck.conformance.pages.pdf import render_pdf
+from pantocheck.conformance.pages.translation import translate
+from pantocheck.conformance.results.report_files import LANGUAGES, Language
+from pantocheck.conformance.results.results_format import Results
 
 QUESTIONS = ["What was tested", "Against what", "Result", "Use", "Issued by", "How to check"]
 
@@ -30,6 +35,22 @@ def test_answers_stand_in_their_order_on_one_sheet(results: dict[str, Any]) -> N
     assert places == sorted(places)
     facts = dict(find_facts(certify(results), "tested"))
     assert facts["Speed"] == "250, 300, 320 km/h"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_first_sheet_ends_behind_the_digest_in_every_language(results: dict[str, Any], language: Language) -> None:
+    """Long names of cases and long reasons: no name of a quantity is broken, and page 1 is still one sheet."""
+    case, *others = results["cases"]
+    case["id"] = "own/a-long-folder/a-long-name-of-a-case"
+    failed = {"verdict": "fail", "margin": -0.1, "trust": "primary", "source": "other"}
+    rows = [row | failed for row in case["criteria"]]
+    others[0] |= {"id": f"{case['id']}-2", "criteria": rows[: MOST_GRADED - len(rows)]}
+    for case in results["cases"]:
+        case["warnings"] = [f"{number}: {'a long warning of every case, ' * 9}" for number in range(MOST_SENTENCES)]
+    certificate = replace(certify(results), language=language)
+    sheet = PdfReader(BytesIO(render_pdf(certificate))).pages[0].extract_text()
+    assert any(line.startswith(translate("Mean contact force", language).text) for line in sheet.splitlines())
+    assert digest_results(Results.model_validate(results))[-12:] in sheet
 
 
 def test_value_stands_in_one_table(passing: dict[str, Any]) -> None:

@@ -36,7 +36,7 @@ from pantocheck.conformance.results.results_format import Results
 def squeeze_text(content: bytes) -> str:
     """All text without white space and break opportunities."""
     text = "".join(page.extract_text() for page in PdfReader(io.BytesIO(content)).pages)
-    return re.sub(r"[\s\u200b]", "", text)
+    return re.sub(r"[\s\u200b\u2060]", "", text)
 
 
 def test_pdf_does_not_depend_on_the_time_of_the_run(

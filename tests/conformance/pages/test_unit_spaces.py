@@ -1,4 +1,4 @@
-"""Numbers stay on the line of their unit."""
+"""Numbers stay on the line of their unit, ranges on one line."""
 
 from dataclasses import replace
 from typing import Any
@@ -11,6 +11,7 @@ from pantocheck.conformance.pages.html import render_html
 from pantocheck.conformance.pages.words import bind_page_units, bind_units
 
 GAP = "\N{NO-BREAK SPACE}"
+JOINER = "\N{WORD JOINER}"
 
 
 @pytest.mark.parametrize(
@@ -21,6 +22,7 @@ GAP = "\N{NO-BREAK SPACE}"
         ("2 maxima, 3 Newton, 4 m_s, 5 N/x", "2 maxima, 3 Newton, 4 m_s, 5 N/x"),
         ("case 3 supports", "case 3 supports"),
         ("± 3.8* N", f"± 3.8*{GAP}N"),
+        ("0–20 Hz, 5 – 6, a–b", f"0–{JOINER}20{GAP}Hz, 5 – 6, a–b"),
     ],
 )
 def test_only_a_number_before_a_unit_is_bound(text: str, bound: str) -> None:
