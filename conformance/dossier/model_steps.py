@@ -177,7 +177,7 @@ def _build_criterion(
 ) -> Criterion:
     lower, upper = bounds
     requirement = Requirement(
-        quantity=name, pantograph=LINE, unit=unit, lower=lower, upper=upper, trust="primary", source=DECLARED
+        quantity=name, pantograph=LINE, unit=unit, lower=lower, upper=upper, trust="own", source=DECLARED
     )
     return build_criterion(requirement, value, missing, trust)
 

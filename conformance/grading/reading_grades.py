@@ -71,7 +71,10 @@ def list_reading_remarks(
         return []
     judged = judge(criterion.value, criterion.lower, criterion.upper)
     others = [(f"under the reading '{reading.id}'", *judge_reading(criterion, reading)) for reading in readings]
-    others += [(f"with {name}", value, verdict) for name, value, verdict in _judge_contacts(criterion, conditions)]
+    others += [
+        (f"with {name}, by the change of the reference simulator,", value, verdict)
+        for name, value, verdict in _judge_contacts(criterion, conditions)
+    ]
     return [
         f"{name} the value is {format_graded(value, criterion.lower, criterion.upper).value} {criterion.unit}".rstrip()
         + f", {'inside' if verdict == 'pass' else 'outside'} the limits"

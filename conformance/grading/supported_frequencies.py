@@ -21,10 +21,10 @@ BASES = {"measured_response": "comparison with measured responses", "missing_mod
 
 def list_supported_frequencies(case: Case, delivered: Delivered) -> list[SupportedFrequency]:
     """Frequencies that follow from the files of a case, and those of the system that delivers it."""
-    return [*_list_case_frequencies(case), *delivered.supported]
+    return [*list_case_frequencies(case), *delivered.supported]
 
 
-def _list_case_frequencies(case: Case) -> Iterator[SupportedFrequency]:
+def list_case_frequencies(case: Case) -> Iterator[SupportedFrequency]:
     """Frequencies that follow from the files of a case, whichever system simulates it; none for a line at rest."""
     if case.is_static or not case.pantographs:
         return

@@ -95,13 +95,16 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     return doc.Section(case.title, mark_values(case, blocks), anchor=anchor, ruled=True)
 
 
+PLACE_OF_VALUES = "The values, their limits and margins stand in the table of page 1."
+
+
 def _list_criteria_blocks(shown: ShownCase, criteria: Sequence[Criterion]) -> tuple[doc.Block, ...]:
     """Table of the criteria of a case; remarks and sources alone of those whose table stands on page 1."""
     case, anchor, source_anchor = shown.case, shown.anchor, f"{shown.anchor}-source"
     if case.id not in shown.first_page.graded:
         return criteria_blocks(criteria, anchor, source_anchor, case)
     sources = () if shown.first_page.source else list_limit_sources(criteria, source_anchor)
-    return (*list_value_remarks(case, criteria, anchor), *sources)
+    return (doc.SmallPrint(PLACE_OF_VALUES), *list_value_remarks(case, criteria, anchor), *sources)
 
 
 def _list_details(shown: ShownCase) -> Iterator[doc.Section]:

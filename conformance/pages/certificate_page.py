@@ -33,7 +33,7 @@ from pantocheck.conformance.pages.first_page import (
     has_more_reasons,
     plan_first_page,
 )
-from pantocheck.conformance.pages.quantity_tables import UNCERTAINTY_KEY, list_definitions
+from pantocheck.conformance.pages.quantity_tables import SHIFT_KEY, UNCERTAINTY_KEY, list_definitions
 from pantocheck.conformance.pages.scope_page import (
     PROCEDURE_KEY,
     build_step_table,
@@ -56,6 +56,7 @@ from pantocheck.conformance.pages.two_verdicts import (
     mark_results,
 )
 from pantocheck.conformance.pages.verdict_reasons import (
+    CHANCE_KEY,
     build_headline,
     describe_record,
     describe_rule,
@@ -153,11 +154,13 @@ def _explanation_blocks(results: Results) -> tuple[doc.Block, ...]:
     verdicts = build_verdict_section(results) if results.procedure is None else ()
     return (
         doc.SmallPrint(f"Decision rule: {describe_rule(results)}."),
+        *((doc.SmallPrint(CHANCE_KEY),) if results.conformity is not None else ()),
         *(block for section in verdicts for block in section.blocks[1:]),
         *((doc.SmallPrint(states),) if (states := explain_states(results)) else ()),
         *((doc.SmallPrint(PROCEDURE_KEY),) if results.procedure is not None else ()),
         *((doc.SmallPrint(MARGIN_KEY),) if graded else ()),
         *((doc.SmallPrint(UNCERTAINTY_KEY),) if uncertain else ()),
+        *((doc.SmallPrint(SHIFT_KEY),) if any(any(case.spread.values()) for case in results.cases) else ()),
         doc.Section("Levels of trust", (levels,)),
         *((doc.Section("Definitions", (doc.BulletList(definitions),)),) if definitions else ()),
     )

@@ -154,7 +154,7 @@ def list_value_remarks(case: CaseResult, criteria: Sequence[Criterion], anchor: 
         texts, place = describe_criterion(row, case.uncertainty_basis), _link_place(case, row, anchor)
         if place or texts.remarks:
             remarks = f": {'; '.join(texts.remarks)}" if texts.remarks else ""
-            items.append((f"{texts.label}, {name_owner(row)}", *place, remarks))
+            items.append((f"{texts.label} ", doc.Code(row.quantity), f", {name_owner(row)}", *place, remarks))
     listed = (doc.BulletList(tuple(items)),) if items else ()
     return (*state_causes(criteria), *listed)
 

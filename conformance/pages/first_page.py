@@ -117,19 +117,45 @@ def build_answers(
 
 
 def _describe_object(results: Results) -> Iterator[doc.Block]:
-    """System, speed, line and pantographs, with a sketch of the first line that is known."""
+    """System, record, speed, line and pantographs; without a procedure, a sketch of the first line that is known."""
     cases = results.cases
-    shapes = [case.line_shape.title for case in cases if case.line_shape is not None]
+    lines = _list_lines(results)
     facts = {
         "System": name_system(results),
+        "Record": _join_names(_describe_records(results)),
         "Speed": _name_speeds(cases),
-        "Line": _join_names(shapes),
+        "Line": _join_names(lines),
         "Pantographs": _join_names(filter(None, map(name_pantographs, cases))),
     }
     yield doc.select_facts(facts)
     moving = sorted(cases, key=lambda case: case.run.speed_km_h is None)
-    if drawn := next((figure for case in moving for figure in draw_line_sketch(case)), None):
+    drawn = next((figure for case in moving for figure in draw_line_sketch(case)), None)
+    if drawn is not None and results.procedure is None:
         yield doc.Figures((drawn,))
+
+
+def _list_lines(results: Results) -> list[str]:
+    """Names of the lines, those of a claim first; of a line that is not drawn, its spans."""
+    if (procedure := results.procedure) is not None:
+        claimed = [claim.name for claim in procedure.claims if claim.kind == "line"]
+        return [*claimed, *(item.line for item in procedure.evidence)]
+    return list(filter(None, map(_name_line, results.cases)))
+
+
+def _name_line(case: CaseResult) -> str:
+    if case.line_shape is not None:
+        return case.line_shape.title
+    geometry = next((group.values for group in case.inputs if group.group == "line.geometry"), {})
+    spans, span = geometry.get("spans"), geometry.get("span_m")
+    if not isinstance(spans, float) or not isinstance(span, float):
+        return ""
+    return f"{format_plain(spans)} spans of {format_plain(span)} m"
+
+
+def _describe_records(results: Results) -> Iterator[str]:
+    """State and reason of the records of a system that is not built in."""
+    if results.system.kind != "builtin" and results.procedure is None:
+        yield from (f"{case.record.state}: {case.record.reason}" for case in results.cases if case.record is not None)
 
 
 def _name_speeds(cases: Sequence[CaseResult]) -> str:
@@ -162,7 +188,7 @@ def _describe_basis(results: Results, anchors: dict[str, str], first_page: First
     if first_page.source:
         facts.append(("Limits", f"{results.trust}: {first_page.source}"))
     elif level := read_words()["trust"].get(results.trust):
-        facts.append(("Lowest trust", f"{results.trust} ({level['meaning']})"))
+        facts.append(("Lowest trust of the limits that count", f"{results.trust} ({level['meaning']})"))
     yield doc.Facts(tuple(facts))
 
 
@@ -234,7 +260,7 @@ def _list_reasons(results: Results, first: Sequence[CaseResult]) -> Iterator[tup
             row for case in results.cases for name in ("criteria", "verification") for row in list_criteria(case, name)
         ]
         graded = any(row.verdict == "pass" for row in rows)
-        yield ("Remarks", "No value is close to a limit." if graded else "Nothing was graded.")
+        yield ("Remarks", "No value with a limit that counts is close to it." if graded else "Nothing was graded.")
     for section in sections:
         if section.heading == CLOSE_HEADING and len(first) == len(results.cases):
             yield ("Close to a limit", f"{count_noun(count_close(results), 'value')}, marked in the table.")
@@ -293,7 +319,9 @@ def _describe_use(results: Results, first_page: FirstPage) -> Iterator[doc.Block
     """Covered steps of the procedure or claimed range of validity, common warnings, and the nature of the report."""
     yield doc.select_facts(list_scope(results) if results.procedure is None else _list_claims(results.procedure))
     nature = f"This is a {results.statement}. It is not a certification by a third party."
-    yield doc.BulletList((nature, *first_page.warnings))
+    others = sum(text not in first_page.warnings for case in results.cases for text in case.warnings)
+    more = [f"{count_noun(others, 'warning')} in the sections of the cases."] if others else []
+    yield doc.BulletList((nature, *first_page.warnings, *more))
 
 
 def _list_claims(procedure: Procedure) -> dict[str, str]:

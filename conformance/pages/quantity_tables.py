@@ -68,10 +68,12 @@ UNCERTAINTY_KEY = (
     "alternatives, not as a sum: a component can exceed the uncertainty. How often an interval contains the truth is "
     "stated with its component. A dash: it does not apply to the quantity, or is not known. A quantity with several "
     "values has the largest of its half-widths. "
-    f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step. Shift: largest change "
-    "when the analysis section is shifted span by span, no part of the uncertainty."
+    f"'{ABOVE}': in the table of criteria. 'exact': a closed form, without mesh and time step."
 )
 """Meaning of the uncertainties by component of all cases."""
+
+SHIFT_KEY = "Shift: largest change when the analysis section is shifted span by span, no part of the uncertainty."
+"""Meaning of the column of shifts."""
 
 
 def list_uncertainty_basis(case: CaseResult) -> tuple[str, ...]:

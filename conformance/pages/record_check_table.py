@@ -9,6 +9,9 @@ from pantocheck.conformance.results.results_format import CaseResult
 
 CHECK_HEADINGS = ("Check", "Number", "Value", "Threshold", "Outcome")
 CHECK_DIGITS = 3
+CHECK_KEY = (
+    "A check confirms the record if its number is not beyond its threshold. A number below an allowance is negative."
+)
 
 
 def describe_row(row: CheckRow) -> tuple[str, str, str, str, str]:
@@ -17,10 +20,10 @@ def describe_row(row: CheckRow) -> tuple[str, str, str, str, str]:
     if isinstance(basis, NotMeasured):
         return row.check, basis.cause, "–", "–", row.outcome
     limits = [(outcome, basis.thresholds[outcome]) for outcome in reversed(MISGIVINGS) if outcome in basis.thresholds]
-    threshold = ", ".join(f"{outcome} {basis.side} {format_plain(limit)}" for outcome, limit in limits)
+    bounds = [f"{outcome} {basis.side} {format_plain(limit)} {basis.unit}".rstrip() for outcome, limit in limits]
     number = f"{basis.measure} ({basis.part})" if basis.part else basis.measure
     value = f"{format_value(basis.number, CHECK_DIGITS)} {basis.unit}".rstrip()
-    return row.check, number, value, threshold, row.outcome
+    return row.check, number, value, ", ".join(bounds), row.outcome
 
 
 def build_check_section(case: CaseResult) -> Iterator[doc.Section]:
@@ -29,4 +32,4 @@ def build_check_section(case: CaseResult) -> Iterator[doc.Section]:
         shares = (0.0, 3.0, 0.0, 2.0, 0.0)
         columns = tuple(doc.Column(heading, share) for heading, share in zip(CHECK_HEADINGS, shares, strict=True))
         table = doc.Table(columns, tuple(map(describe_row, case.record.checks)))
-        yield doc.Section("Consistency checks of the record", (table,), folded=True)
+        yield doc.Section("Consistency checks of the record", (doc.SmallPrint(CHECK_KEY), table), folded=True)

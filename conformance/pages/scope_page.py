@@ -151,8 +151,9 @@ def explain_states(results: Results) -> str:
 
 # Procedure on page 1 of a certificate: its steps with verdict, margin and uncertainty, and the headline.
 PROCEDURE_KEY = (
-    "Page 1 has the value with the smallest margin of each step. Steps that are not required are for information and "
-    "have no part in the verdict. The steps follow the style of EN 50318; the text of the standard is not reproduced."
+    "Page 1 has the value with the smallest margin of each step; a declared value that equals its bound has none. "
+    "Steps that are not required are for information and have no part in the verdict. The steps follow the style of "
+    "EN 50318; the text of the standard is not reproduced."
 )
 
 

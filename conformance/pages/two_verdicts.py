@@ -141,6 +141,8 @@ def _describe_basis(results: Results, name: str) -> Iterator[str]:
         return
     if text := count_inside(row for case in cases for row in list_criteria(case, name)):
         yield text
+    if name == "verification" and results.system.kind == "builtin":
+        yield "The converged values are those of the same simulator."
 
 
 def verdict_sentences(results: Results) -> list[str]:

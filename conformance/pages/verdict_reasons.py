@@ -1,7 +1,7 @@
 """Reasons of a verdict: failed and missing criteria, close values and the smallest margins."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from pantocheck.conformance.core.criterion import COMPONENT_NAMES, Criterion
 from pantocheck.conformance.core.decision import describe_decision, parse_decision
@@ -86,6 +86,8 @@ def build_headline(results: Results) -> str:
                 outside = _list_failures(grades["fail"], counted, [pair for pair in pairs if pair[1].is_drift])
                 parts.append(f"{count_noun(number, one, many)}{outside if verdict == 'fail' else ''}")
         sentences = [f"{', '.join(parts)}."]
+    if counted and _is_static_only(pairs):
+        sentences.append("No value of a passage has a limit that counts.")
     if accepted:
         sentences.append(f"Accepted by the user: unconfirmed records of {results.system.name}.")
     if shown := results.information:
@@ -93,8 +95,15 @@ def build_headline(results: Results) -> str:
         sentences.append(f"For information, not part of the verdict: {', '.join(shown[:NAMES_SHOWN])}{more}.")
     if number := sum(row.depends_on_reading for _, row in pairs):
         values = count_noun(number, "value lies", "values lie")
-        sentences.append(f"{values} on the other side of a limit under another documented reading or contact.")
+        other = "another documented reading of the evaluation or another contact"
+        sentences.append(f"{values} on the other side of a limit under {other}.")
     return " ".join([*sentences, *verdict_sentences(results), *describe_counts(results), *summarise_identity(results)])
+
+
+def _is_static_only(pairs: Sequence[CaseCriterion]) -> bool:
+    """Whether there are passages, and only values of lines at rest have a limit that counts."""
+    moving = [row.verdict for case, row in pairs if case.run.speed_km_h is not None]
+    return bool(moving) and set(moving) == {"info"}
 
 
 def name_limits(pairs: Iterable[CaseCriterion]) -> str:
@@ -109,6 +118,8 @@ def _name_limit(case: CaseResult, row: Criterion) -> str:
         return "limits of the user" if row.trust == "own" else "the limits of the converged solution"
     authors = row.source.partition(":")[0].split(", ")
     printed = f" as printed by {authors[0].removesuffix(' et al.')} et al." if len(authors) > 2 else ""
+    if not printed and row.source and row.trust != "primary":
+        printed = f" as given by {row.source.partition(':')[0]}"
     return f"the limits of {case.edition or case.profile or 'the case'}{printed} ({row.trust} source)"
 
 
@@ -195,6 +206,12 @@ def _describe_chances(of: CaseConformity) -> str:
     readings = [f"{format_probability(share)} under the reading '{name}'" for name, share in of.readings.items()]
     return ", ".join([format_probability(of.probability), *starts, *readings])
 
+
+CHANCE_KEY = (
+    "Probability: share of the joint sample of the known uncertainties in which all values of a case lie inside the "
+    "limits that count. It says nothing about errors of the model. Runs with another start are counted beside it."
+)
+"""Meaning of the probability of page 1."""
 
 UNCERTAINTY_MEANING = (
     "±: half-width around the value that holds 95 % of the draws of the joint sample. The sample can be skewed, so "

@@ -23,7 +23,8 @@ def list_missing(basis: Mapping[Any, str], uncertainty: float | None, trust: str
 
     A comparison with the converged solution needs the discretisation only: both have the same start and section.
     """
-    return () if uncertainty is None or trust == "computed" else list_unknown(basis)
+    unknown = () if uncertainty is None else list_unknown(basis)
+    return tuple(name for name in unknown if name == "discretisation") if trust == "computed" else unknown
 
 
 def describe_half_width(width: float, number: str, missing: Sequence[str], quantity: str) -> str:

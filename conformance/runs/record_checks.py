@@ -152,7 +152,7 @@ ROLL_OFF = Check(
 # the height z_0 at which its base spring is unstretched. Readings of z_0 differ: static height of the head or of the
 # frame, or nominal height of the wire. They lie within twice the lift of the wire, which the largest uplift and the
 # range of the contact height measure. The other checks compare changes of the force; this one bounds its constant part.
-FORCE_DIFFERENCE = Measure("difference of the mean force beside base spring and momentum", "", {"doubt": 0.03})
+FORCE_DIFFERENCE = Measure("mean force beyond the allowance for base spring and momentum", "", {"doubt": 0.03})
 """Difference beyond the other tolerances, over the expected force; its threshold is the accepted error of the gain."""
 
 LIFTS = 2.0

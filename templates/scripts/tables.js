@@ -92,7 +92,7 @@ function addFilter(table, rows) {
 
 for (const table of document.querySelectorAll("table")) {
   const rows = [...table.tBodies[0].rows];
-  if (rows.length < (table.classList.contains("cards") ? 2 : MANY_ROWS)) continue;
+  if (rows.length < (table.matches(".cards, .values") ? 2 : MANY_ROWS)) continue;
   addSorting(table, rows);
   addFilter(table, rows);
 }

@@ -39,10 +39,10 @@ function findPlace(shownCase, owner, quantity) {
   return shownCase.places?.[owner]?.[quantity] ?? places.find((owned) => quantity in owned)?.[quantity];
 }
 
-/** Show the place of an extreme when its link in a row of criteria is followed, and give its plot the keys. */
+/** Show the place of an extreme when its link in a row or item of criteria is followed, and give its plot the keys. */
 function followPlace(link) {
   const figure = document.getElementById(link.hash.slice(1));
-  const quantity = link.closest("tr").querySelector("code").textContent;
+  const quantity = link.closest("tr, li").querySelector("code").textContent;
   const place = findPlace(caseOf(figure), figure.dataset.owner, quantity);
   const view = views.get(figure.id);
   location.hash = link.hash;
@@ -56,7 +56,7 @@ function followPlace(link) {
 for (const figure of document.querySelectorAll("figure[data-curves]")) {
   addView(figure);
   nearScreen.observe(figure);
-  for (const link of document.querySelectorAll(`td a[href="#${figure.id}"], th a[href="#${figure.id}"]`)) {
+  for (const link of document.querySelectorAll(`:is(td, th, li) a[href="#${figure.id}"]`)) {
     link.addEventListener("click", (event) => {
       event.preventDefault();
       followPlace(link);

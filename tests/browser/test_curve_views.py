@@ -212,7 +212,7 @@ def test_criterion_leads_to_the_place_of_its_extreme(
 ) -> None:
     """The stretch shows the place, the status tells it, and the cursor stands on the extreme itself."""
     place = example()["cases"][0]["places"]["1"][quantity]["position_m"]
-    row = page.locator("table.cards").first.locator("tr", has_text=quantity).first
+    row = page.locator("li", has_text=quantity).first
     row.get_by_role("link", name=re.compile("^at ")).click()
     assert read_status(page) == f"{quantity} at {place:.1f}\N{NO-BREAK SPACE}m"
     start, end = read_stretch(page)
@@ -224,7 +224,7 @@ def test_criterion_leads_to_the_place_of_its_extreme(
 
 
 def test_uplift_leads_to_its_support_and_time(page: Any) -> None:
-    row = page.locator("table.cards").first.locator("tr", has_text="max_uplift_at_support_mm").first
+    row = page.locator("li", has_text="max_uplift_at_support_mm").first
     row.get_by_role("link", name="at 300 m").click()
     assert read_status(page, 0, "#case-1-uplift") == "max_uplift_at_support_mm at 300\N{NO-BREAK SPACE}m"
     values = page.locator("#case-1-uplift .legend label", has_text="support at 300 m").inner_text()

@@ -9,7 +9,8 @@ from helpers.example_results import example
 
 pytestmark = pytest.mark.thorough
 
-CRITERIA = "table.cards"
+CRITERIA = "table:is(.values, .cards)"
+"""Graded values: those of the first case stand on page 1, those of the second in its section."""
 ROWS = "tbody tr:not(.filtered)"
 
 

@@ -117,7 +117,10 @@ def test_value_that_another_contact_moves_over_a_limit_is_marked(case_250: Case)
     [std] = [row for row in result.criteria if row.quantity == "std_force_N"]
     near = std.model_copy(update={"value": 26.5})
     remarks = list_reading_remarks(near, [], result.conditions)
-    assert any(text.startswith("with contact stiffness +100 % the value is 25.") for text in remarks)
+    assert any(
+        text.startswith("with contact stiffness +100 %, by the change of the reference simulator, the value is 25.")
+        for text in remarks
+    )
     assert all(text.endswith("outside the limits") for text in remarks)
     assert list_reading_remarks(near.model_copy(update={"value": 29.5}), [], result.conditions) == []
     others = [row for row in result.conditions if not row.is_contact]

@@ -116,7 +116,8 @@ def test_page_one_and_summary_name_the_reading(results: Results) -> None:
     number = sum(row.depends_on_reading for row in results.cases[0].criteria)
     for text in texts:
         assert re.search(
-            rf"{number} values? lies? on the other side of a limit under another documented reading or contact", text
+            rf"{number} values? lies? on the other side of a limit under another documented reading of the evaluation",
+            text,
         )
         assert "Another documented reading or contact reverses the verdict" in text
         assert "under the reading" in text

@@ -113,7 +113,7 @@ def test_margin_beside_a_limit_of_zero_is_a_distance(passing: dict[str, Any]) ->
     row |= {"value": 0.004, "lower": 0.0, "upper": None, "margin": 0.004, "close": [], "unit": "N"}
     assert describe_criterion(Criterion.model_validate(row)).margin == "+0.004 N"
     assert list_reasons(Results.model_validate(passing)) == ()
-    assert "No value is close to a limit." in shown_certificate(passing)
+    assert "No value with a limit that counts is close to it." in shown_certificate(passing)
 
 
 def test_reasons_begin_with_the_worst(results: dict[str, Any]) -> None:

@@ -107,7 +107,7 @@ def test_criteria_show_trust_verdict_bar_and_the_places_of_their_extremes(
     outline = Outline(page_text)
     place = results["cases"][0]["places"]["1"]["max_force_N"]["position_m"]
     link = f'<a href="#case-1-force-1">at {round(place, 1):g}\N{NO-BREAK SPACE}m</a>'
-    assert f"force, pantograph 1 {link}" in page_text
+    assert f"</code>, pantograph 1 {link}" in page_text
     assert '<a href="#case-1-uplift">at 300\N{NO-BREAK SPACE}m</a>' in page_text
     figures = [attrs for tag, attrs in outline.tags if tag == "figure" and "data-curves" in attrs]
     assert [(attrs["id"], attrs["data-curves"], attrs["data-case"], attrs["data-owner"]) for attrs in figures] == [
