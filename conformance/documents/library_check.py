@@ -28,10 +28,12 @@ from pantocheck.conformance.grading.case_verification import (
 )
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.input_sensitivity import list_possible_sentences
+from pantocheck.conformance.grading.supported_frequencies import list_case_frequencies
 from pantocheck.conformance.grading.validity_warnings import validity_warnings, warn_of_unvalidated_band
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.quantities.limit_text import format_bounds
 from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.runs.resolution import list_mesh_frequencies
 from pantocheck.conformance.runs.system import note_case_version
 
 STATED_FACTS = {
@@ -63,6 +65,7 @@ def check_library(results: Results) -> list[DocumentCheck]:
     differences += [f"{case.id}, {text}" for case in results.cases for text in list_claimed_limits(case)]
     if results.system.kind != "command":  # a program may state notes of its own
         differences += [f"{case.id}, {text}" for case in results.cases for text in _list_foreign_notes(case)]
+    differences += [f"{case.id}, {text}" for case in results.cases for text in _compare_supported(case)]
     others = [f"{case.id}: {text}" for case in results.cases for text in _describe_others(case)]
     checks = []
     if differences and list_suite_differences(results):
@@ -127,6 +130,17 @@ def compare_with_case(case: Case, result: CaseResult) -> Iterator[str]:
     yield from compare_limits(case, result)
     yield from compare_verification_limits(case, result)
     yield from _compare_warnings(case, result)
+
+
+def _compare_supported(result: CaseResult) -> Iterator[str]:
+    """Difference of the supported frequencies from those of the library case; a simulator may state its mesh, too."""
+    case = find_library_case(result.id)
+    if case is None or result.library != "identical" or result.profile is not None:
+        return
+    rows = list(list_case_frequencies(case))
+    mesh = [] if case.is_static else list(list_mesh_frequencies(case, case.file.discretisation))
+    if result.supported not in (rows, rows + mesh):
+        yield "the supported frequencies differ from those of the library"
 
 
 def _list_foreign_notes(result: CaseResult) -> Iterator[str]:

@@ -33,7 +33,7 @@ const RECORD_CHECKS = {
     "largest error of the force up to 50 Hz": ["", "above", {"doubt": 0.3}]
   }],
   "mean force": [["does not apply", "named by another check"], {
-    "difference of the mean force beside base spring and momentum": ["", "above", {"doubt": 0.03}]
+    "mean force beyond the allowance for base spring and momentum": ["", "above", {"doubt": 0.03}]
   }],
   "content": [["not possible", "does not apply", "named by another check"], {
     "content of the force over that of kinks": ["", "below", {"doubt": 0.08}]

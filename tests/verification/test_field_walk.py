@@ -60,8 +60,8 @@ def test_sampled_fields_are_found_or_listed(tree: Tree, changes: Changes) -> Non
 def test_every_field_is_found_or_listed(tree: Tree, changes: Changes) -> None:
     """The list only shrinks: a listed field whose changes are all found fails, too."""
     accepted = {field for field, tried in changes.items() if find_accepted(tree, tried)}
-    assert sorted(accepted - LISTED.keys()) == []
-    assert sorted(LISTED.keys() - accepted) == []
+    assert sorted(accepted - LISTED.keys()) == [], "\n".join(sorted(accepted - LISTED.keys()))
+    assert sorted(LISTED.keys() - accepted) == [], "\n".join(sorted(LISTED.keys() - accepted))
 
 
 def test_every_field_of_the_format_is_walked_or_absent(wave_results: Results) -> None:
