@@ -119,7 +119,7 @@ def test_comparison_greys_the_values_of_the_subject_that_does_not_support_them()
     comparison = compare_subjects([[run] for run in runs], None)
     page = render_html(build_run_comparison(comparison)).replace("\N{NO-BREAK SPACE}", " ")
     rows = {
-        cells[0]: cells[1:]
+        re.sub("<[^>]+>|\N{WORD JOINER}", "", cells[0]): cells[1:]
         for cells in (re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in page.split("<tr"))
         if cells
     }
