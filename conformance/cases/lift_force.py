@@ -1,8 +1,8 @@
 """Lift force of a pantograph in a case: applied forces, or a mean contact force to which the uplift force is tuned."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from pantocheck.conformance.cases.case_file import PantographByLaw, PantographUse
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.sourced_table import NO_TRUST
 from pantocheck.conformance.pantograph.force_law import (
@@ -13,6 +13,9 @@ from pantocheck.conformance.pantograph.force_law import (
     MeanForceRule,
 )
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
+
+if TYPE_CHECKING:
+    from pantocheck.conformance.cases.case_file import PantographByLaw, PantographUse
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ LiftForce = AppliedForces | TunedForce
 """Lift force of a pantograph in a case."""
 
 
-def resolve_lift_force(use: PantographUse | PantographByLaw, file: PantographFile, speed_km_h: float) -> LiftForce:
+def resolve_lift_force(use: "PantographUse | PantographByLaw", file: PantographFile, speed_km_h: float) -> LiftForce:
     """Lift force of a pantograph, stated in the case or from the force law of the pantograph.
 
     Args:
@@ -78,6 +81,8 @@ def resolve_lift_force(use: PantographUse | PantographByLaw, file: PantographFil
     Raises:
         LawInvalid: The pantograph has no force law, or its law gives no force at this speed.
     """
+    from pantocheck.conformance.cases.case_file import PantographUse
+
     if isinstance(use, PantographUse):
         if use.target_mean_force_N is not None:
             return TunedForce(use.target_mean_force_N, use.uplift_force_N)

@@ -5,12 +5,12 @@ from typing import Annotated
 
 import typer
 
-from pantocheck.conformance.cases.case_source import list_library
-from pantocheck.conformance.line.library_folder import library_folder
-
 
 def complete_case(incomplete: str) -> list[str]:
     """Ids of the library that begin with the typed text; the shell completes paths of case files."""
+    from pantocheck.conformance.cases.case_source import list_library
+    from pantocheck.conformance.line.library_folder import library_folder
+
     return [name for name in list_library(library_folder()) if name.startswith(incomplete)]
 
 
