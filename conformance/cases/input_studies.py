@@ -15,12 +15,10 @@ from pydantic import Field
 from pantocheck.conformance.cases.limits import QuantityName
 from pantocheck.conformance.core.sourced_table import InputTable, NonNegative
 from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.trust import StudiedPart
 from pantocheck.conformance.line.library_folder import library_folder
 
 StudyText = Annotated[str, Field(min_length=1, max_length=1000)]
-
-StudiedPart = Literal["wires", "droppers", "supports", "damping", "pantograph", "contact", "run"]
-"""Part of a case to which an input belongs."""
 
 
 class InputStudyFile(InputTable):

@@ -29,3 +29,7 @@ def decides_verdict(trust: LimitTrust | Computed | None, lowest: Trust | Compute
     if trust == "computed" or lowest == "computed":
         return trust == lowest
     return LEVELS.index(trust) <= LEVELS.index(lowest)
+
+
+StudiedPart = Literal["wires", "droppers", "supports", "damping", "pantograph", "contact", "run"]
+"""Part of a case to which an input belongs."""

@@ -4,11 +4,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from pantocheck.conformance.cases.input_studies import StudiedPart
 from pantocheck.conformance.core.check_row import CheckRow
 from pantocheck.conformance.core.figure_data import Spectrum, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
-from pantocheck.conformance.core.trust import Trust
+from pantocheck.conformance.core.trust import StudiedPart, Trust
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.quantities.filters import Filter
 

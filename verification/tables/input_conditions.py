@@ -13,10 +13,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pantocheck.conformance.cases.case import Case
-from pantocheck.conformance.cases.input_studies import StudiedPart, ValueChange, ValueCondition
+from pantocheck.conformance.cases.input_studies import ValueChange, ValueCondition
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.files import write_atomically
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.trust import StudiedPart
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import PassageRun
 from pantocheck.model.description.failures import SimulationError

@@ -15,13 +15,13 @@ from pydantic import Field
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import LIBRARY
 from pantocheck.conformance.cases.input_changes import InputChange, build_change
-from pantocheck.conformance.cases.input_studies import StudiedPart
 from pantocheck.conformance.cases.library import load_case
 from pantocheck.conformance.core.criterion import Criterion, judge_criteria
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.key_paths import KeyPath
 from pantocheck.conformance.core.sourced_table import InputTable, Positive
 from pantocheck.conformance.core.toml_file import read_model
+from pantocheck.conformance.core.trust import StudiedPart
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.grading.case_evaluation import CaseEvaluation
 from pantocheck.conformance.grading.case_verdict import judge_case
