@@ -57,15 +57,15 @@ def uniform_load(h: Array, load_per_length: Array) -> Array:
     return np.asarray((load_per_length * h / 12)[..., None] * lever)
 
 
-def shape(s: float, h: float) -> Array:
+def shape(s: float | Array, h: float | Array) -> Array:
     """Hermite shape functions: the deflection at a point is their product with (w1, r1, w2, r2).
 
     Args:
-        s: Position within the element as a share of its length, 0 to 1 [-].
-        h: Length of the element [m].
+        s: Position within the element as a share of its length, 0 to 1, or n of them [-].
+        h: Length of the element, or of each of n elements [m].
 
     Returns:
-        Values of the four functions, (4,) [-, m, -, m].
+        Values of the four functions, (4,) or (4, n) [-, m, -, m].
     """
     return np.array([(1 + 2 * s) * (1 - s) ** 2, h * s * (1 - s) ** 2, s**2 * (3 - 2 * s), h * s**2 * (s - 1)])
 

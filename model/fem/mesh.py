@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pantocheck.model.description.arrays import Array
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.catenary import Catenary, Kind, Wire
 
 
@@ -52,6 +52,13 @@ class Mesh:
 def find_element(stations: Array, position: float) -> tuple[int, float, float]:
     """Index and length [m] of the element at a position [m], and the position within it as a share of its length."""
     element = min(max(int(np.searchsorted(stations, position)) - 1, 0), stations.size - 2)
+    length = stations[element + 1] - stations[element]
+    return element, length, (position - stations[element]) / length
+
+
+def find_elements(stations: Array, position: Array) -> tuple[Indices, Array, Array]:
+    """As `find_element`, for many positions, (n,) each."""
+    element = np.clip(np.searchsorted(stations, position) - 1, 0, stations.size - 2)
     length = stations[element + 1] - stations[element]
     return element, length, (position - stations[element]) / length
 

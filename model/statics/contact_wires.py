@@ -3,12 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pantocheck.model.description.arrays import Indices
+from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.failures import ImpossiblePassage
-from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.mesh import find_element
+from pantocheck.model.fem.mesh import find_elements
 
 
 class ContactWires(NamedTuple):
@@ -20,6 +21,7 @@ class ContactWires(NamedTuple):
     """Row, first and last station of each wire, (W,)."""
 
 
+@keep_with_line
 def locate_contact_wires(line: DiscretisedLine) -> ContactWires:
     """Locate the contact wires of a line on its mesh."""
     mesh, wires = line.mesh, line.catenary.contact_wires
@@ -27,31 +29,42 @@ def locate_contact_wires(line: DiscretisedLine) -> ContactWires:
     return ContactWires(*np.array(places, dtype=np.int64).reshape(-1, 3).T.copy())
 
 
-def touched_wires(line: DiscretisedLine, position: float) -> Indices:
-    """Indices of the contact wires that a head at rest touches at a position: the lowest one and those parallel to it.
+def mark_touched_wires(line: DiscretisedLine, position: Array) -> NDArray[np.bool_]:
+    """Mark the contact wires that a head at rest touches at positions: the lowest one and those parallel to it.
 
     Parallel wires have the same ends; they share a static force equally. A wire of the other section in an overlap does
     not count, although a large force may lift the lowest wire up to it.
 
     Args:
         line: Discretised line.
-        position: Position along the track [m].
+        position: Positions along the track, (n,) [m].
 
     Returns:
-        Indices in the order of the line, at least one, (n,).
+        Marks in the order of the line, at least one for each position, (n, W).
 
     Raises:
-        ImpossiblePassage: There is no contact wire at the position.
+        ImpossiblePassage: There is no contact wire at a position.
     """
     wires = locate_contact_wires(line)
-    element, length, s = find_element(line.mesh.position, position)
-    above = np.flatnonzero((wires.first <= element) & (element < wires.last))
-    if above.size == 0:
-        raise ImpossiblePassage(f"there is no contact wire at {position:g} m, where a pantograph needs one")
-    height = line.state.deflection[wires.row[above], element : element + 2].reshape(-1, 4) @ beam.shape(s, length)
-    lowest = above[height.argmin()]
-    parallel = (wires.first == wires.first[lowest]) & (wires.last == wires.last[lowest])
-    return np.flatnonzero(parallel)
+    element = find_elements(line.mesh.position, position)[0][:, None]
+    above = (wires.first <= element) & (element < wires.last)
+    if not above.any(axis=1).all():
+        missing = position[~above.any(axis=1)][0]
+        raise ImpossiblePassage(f"there is no contact wire at {missing:g} m, where a pantograph needs one")
+    lowest = np.where(above, wire_heights(line, position), np.inf).argmin(axis=1)[:, None]
+    return np.asarray((wires.first == wires.first[lowest]) & (wires.last == wires.last[lowest]))
+
+
+def wire_heights(line: DiscretisedLine, position: Array) -> Array:
+    """Heights of the rows of all contact wires at rest, (n, W) [m]; positions along the track, (n,) [m]."""
+    element, length, s = find_elements(line.mesh.position, position)
+    ends = line.state.deflection[:, element[:, None] + np.arange(2)].reshape(line.mesh.rows, position.size, 4)
+    return np.asarray(np.einsum("wni,in->nw", ends[locate_contact_wires(line).row], beam.shape(s, length)))
+
+
+def touched_wires(line: DiscretisedLine, position: float) -> Indices:
+    """Indices of the contact wires that a head at rest touches at a position [m], as in `mark_touched_wires`, (m,)."""
+    return np.flatnonzero(mark_touched_wires(line, np.array([position]))[0])
 
 
 def touched_rows(line: DiscretisedLine, position: float) -> Indices:

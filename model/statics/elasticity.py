@@ -6,10 +6,15 @@ from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.description.irregularity_spline import NO_IRREGULARITY, irregularity_height
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, keep_with_line
 from pantocheck.model.fem import beam
-from pantocheck.model.fem.mesh import find_element
+from pantocheck.model.fem.mesh import find_element, find_elements
 from pantocheck.model.fem.residual_flexibility import residual_flexibility
 from pantocheck.model.statics.assembly import point_load
-from pantocheck.model.statics.contact_wires import touched_rows, touched_wires
+from pantocheck.model.statics.contact_wires import (
+    locate_contact_wires,
+    mark_touched_wires,
+    touched_rows,
+    wire_heights,
+)
 from pantocheck.model.statics.static_solver import point_product, static_solver
 from pantocheck.model.statics.unit_responses import UnitResponses, compute_unit_responses, invert_blocks
 
@@ -40,15 +45,15 @@ def static_uplift(line: DiscretisedLine, position: Array, force: float) -> Array
 @keep_with_line
 def _point_responses(line: DiscretisedLine, positions: tuple[float, ...]) -> tuple[UnitResponses, Array]:
     """Responses to a unit force that the touched contact wires share, and their residual flexibility, (n,) [m/N]."""
-    element, share = np.zeros(len(positions), dtype=np.int64), np.zeros((len(positions), 2, line.mesh.rows, 2))
-    residual = np.zeros(len(positions))
-    for n, x in enumerate(positions):
-        rows = touched_rows(line, x)
-        element[n], length, s = find_element(line.mesh.position, x)
-        share[n][:, rows] = beam.shape(s, length).reshape(2, 1, 2) / len(rows)
-        residual[n] = np.mean([residual_flexibility(line.beams.flexibility[row, element[n]], s) for row in rows]) / len(
-            rows
-        )
+    touched = mark_touched_wires(line, np.array(positions))
+    element, length, s = find_elements(line.mesh.position, np.array(positions))
+    shapes = (beam.shape(s, length) / touched.sum(axis=1)).T.reshape(-1, 2, 2)
+    share, residual = np.zeros((len(positions), 2, line.mesh.rows, 2)), np.zeros(len(positions))
+    for row, under in zip(locate_contact_wires(line).row, touched.T, strict=True):
+        share[under, :, row] = shapes[under]
+        coefficients = line.beams.flexibility[row, element[under]]
+        residual[under] += np.polynomial.polynomial.polyval(s[under], coefficients.T, tensor=False)
+    residual /= touched.sum(axis=1) ** 2
     return compute_unit_responses(invert_blocks(line), element, share.reshape(len(positions), 2, -1)), residual
 
 
@@ -62,12 +67,8 @@ def rest_height(line: DiscretisedLine, position: Array) -> Array:
     Returns:
         Height above the datum of the line, mean over the contact wires that a head touches there, (n,) [m].
     """
-    deflection = line.state.deflection.transpose(1, 0, 2).ravel()
-    heights = [
-        np.mean([point_product(point_load(line, row, x), deflection) for row in touched_rows(line, x)])
-        for x in position
-    ]
-    return np.asarray(np.array(heights) + _mean_irregularity(line, position))
+    touched = mark_touched_wires(line, position)
+    return np.average(wire_heights(line, position), axis=1, weights=touched) + _mean_irregularity(line, position)
 
 
 def height_under_forces(line: DiscretisedLine, position: Array, force: Array) -> Array:
@@ -106,8 +107,7 @@ def _mean_irregularity(line: DiscretisedLine, position: Array) -> Array:
     """Irregularity at positions, mean over the contact wires that a head touches there [m]."""
     wires = line.catenary.contact_wires
     heights = [irregularity_height(wire.irregularity or NO_IRREGULARITY, position) for wire in wires]
-    touched = [touched_wires(line, float(x)) for x in position]
-    return np.array([np.mean([heights[wire][n] for wire in under]) for n, under in enumerate(touched)])
+    return np.asarray(np.average(heights, axis=0, weights=mark_touched_wires(line, position).T))
 
 
 def non_uniformity(elasticity: Array) -> float:
