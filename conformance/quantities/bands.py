@@ -50,7 +50,11 @@ def band_rms(force: RealArray, rate: float, low: float, high: float, filter_appl
         AlreadyFiltered: The force was filtered below the upper edge before delivery.
     """
     check_band(force.size / rate, rate, low, high, filter_applied_Hz)
-    frequency, power = _power(force, rate)
+    return sum_lines(*compute_power(force, rate), low, high)
+
+
+def sum_lines(frequency: RealArray, power: RealArray, low: float, high: float) -> float:
+    """RMS in a band ]low, high] [Hz] from spectral lines of `compute_power` [N]."""
     return float(np.sqrt(power[(frequency > low) & (frequency <= high)].sum()))
 
 
@@ -97,12 +101,12 @@ def amplitude_spectrum(force: RealArray, rate: float, highest: float) -> tuple[R
         frequency: Frequencies ]0, highest] [Hz].
         amplitude: Amplitudes [N].
     """
-    frequency, power = _power(force, rate)
+    frequency, power = compute_power(force, rate)
     inside = (frequency > 0) & (frequency <= highest)
     return frequency[inside], np.sqrt(2 * power[inside])
 
 
-def _power(force: RealArray, rate: float) -> tuple[RealArray, RealArray]:
+def compute_power(force: RealArray, rate: float) -> tuple[RealArray, RealArray]:
     """Frequencies [Hz] and contribution of each spectral line to the variance [N2].
 
     Each line includes its mirror image. The line at half the rate has none, but lies above every band.

@@ -8,7 +8,14 @@ from typing import Protocol
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.quantities.bands import BANDS, EXTENDED_BAND, band_part, band_rms, check_band
+from pantocheck.conformance.quantities.bands import (
+    BANDS,
+    EXTENDED_BAND,
+    band_part,
+    check_band,
+    compute_power,
+    sum_lines,
+)
 from pantocheck.conformance.quantities.filters import HIGHEST_SHARE_OF_RATE, Filter, needs_filter
 from pantocheck.conformance.quantities.unavailable import (
     AlreadyFiltered,
@@ -216,10 +223,15 @@ class PantographSignals:
 
     def band(self, low: float, high: float) -> float:
         """RMS of the contact force in the band ]low, high] Hz, over the analysis section [N]."""
-        if self.force.low_pass.bands == "spectral lines":
-            return band_rms(self.delivered, self.force.rate, low, high, self.filter_applied_Hz)
         check_band(self.delivered.size / self.force.rate, self.force.rate, low, high, self.filter_applied_Hz)
+        if self.force.low_pass.bands == "spectral lines":
+            return sum_lines(*self._lines, low, high)
         return float(self.band_part(low, high).std())
+
+    @cached_property
+    def _lines(self) -> tuple[RealArray, RealArray]:
+        """Frequencies [Hz] and powers [N2] of the spectral lines over the analysis section, for all bands."""
+        return compute_power(self.delivered, self.force.rate)
 
     def band_part(self, low: float, high: float) -> RealArray:
         """Contact force in the band ]low, high] Hz, over the analysis section, without its mean [N]."""
