@@ -70,29 +70,30 @@ def test_planted_hole_is_found(tree: Tree, monkeypatch: pytest.MonkeyPatch) -> N
     assert (trials, distance, found.verdict, found.state) == (1, 0.0, "pass", "consistent")
 
 
-def test_steps_change_any_field_and_any_signal(tree: Tree) -> None:
+@pytest.mark.parametrize("share", [0.3, pytest.param(1.0, marks=pytest.mark.thorough)])
+def test_steps_change_any_field_and_any_signal(tree: Tree, share: float) -> None:
     """Every part of the results is drawn, and every channel of the signals, at single samples and as a whole."""
     results = Results.model_validate(tree)
     fields = {place.field: place.path for place in list_places(results, [Results])}
     chance, changed = random.Random(1), set()
-    for _ in range(40):
+    for _ in range(round(40 * share)):
         try:
             forged = change_field(tree, chance)
         except (ValueError, TypeError, KeyError, ArithmeticError):
             continue
         changed |= {field for field, path in fields.items() if _differs(forged, tree, path)}
-    assert len(changed) > 40
+    assert len(changed) > 40 * share
     signals = list(list_signals(case_of(tree)["signals"]))
     assert {path[-1] for path in signals} >= {"position_m", "force_N", "contact_height_m", "uplift_m", "time_s"}
     moved = set()
-    for _ in range(60):
+    for _ in range(round(60 * share)):
         try:
             other = case_of(change_samples(tree, chance))
         except (ValueError, TypeError, KeyError, ArithmeticError, IndexError):
             continue  # results that the format refuses
         parts = other.get("signals") or {}
         moved |= {path for path in signals if parts and _differs(parts, case_of(tree)["signals"], path)}
-    assert len(moved) >= len(signals) - 2
+    assert len(moved) >= share * (len(signals) - 2)
 
 
 def _differs(tree: Tree, other: Tree, path: tuple[str | int, ...]) -> bool:

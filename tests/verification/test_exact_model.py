@@ -72,6 +72,7 @@ def track(line: ExactLine, motion: ExactMotion, dt: float, steps: int) -> tuple[
     return np.array(positions), np.array(velocities)
 
 
+@pytest.mark.thorough
 def test_bar_rotates_as_a_pendulum() -> None:
     """Released from the horizontal, a pendulum needs K(sin^2 45 deg) sqrt(L/g) to its lowest point."""
     # The bar stretches by 3 m g / k = 3e-5 at most, the step is 1/60 of the period of this stretching: 1e-4 is allowed.
@@ -83,6 +84,7 @@ def test_bar_rotates_as_a_pendulum() -> None:
     assert np.linalg.norm(positions[:, :, 1], axis=1) == pytest.approx(np.ones(7000), abs=1e-4)
 
 
+@pytest.mark.thorough
 def test_double_pendulum_keeps_its_energy() -> None:
     """Large rotations in space: central differences keep the energy to (w dt)^2 / 24, here 1e-3 of the elastic part."""
     line, position = build_pendulum(2)
@@ -96,6 +98,7 @@ def test_double_pendulum_keeps_its_energy() -> None:
     assert np.ptp(energy[1:]) < 2e-3 * np.ptp(kinetic)
 
 
+@pytest.mark.thorough
 def test_plucked_wire_keeps_its_energy_and_damping_takes_it() -> None:
     """A wire plucked by 0.5 m, in z and y: without damping the energy stays, with damping it decreases."""
     spread: dict[float, tuple[float, float, float]] = {}
@@ -118,6 +121,7 @@ def test_plucked_wire_keeps_its_energy_and_damping_takes_it() -> None:
     assert spread[1e-3][1] > 2 * conserved
 
 
+@pytest.mark.thorough
 def test_cable_hangs_in_a_catenary() -> None:
     """Deep sag of a tenth of the span; a chain of 100 links deviates from the catenary by (1 / 100)^2 of 5 m."""
     # The tension m g a cosh(x / a) of the catenary stretches the cable; the stretch of 3 mm would add 5 mm to the sag.

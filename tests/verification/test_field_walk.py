@@ -21,7 +21,7 @@ from verification.attacks.field_walk import (
     try_change,
 )
 
-SAMPLE = 60
+SAMPLE = 25
 MEANS = {"rerun", "record", "signature", "none"}
 """Means that finds a change; none: no verdict rises by it."""
 

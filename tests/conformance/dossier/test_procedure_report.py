@@ -91,7 +91,9 @@ def test_page_1_answers_in_the_order_of_a_certificate(content: dict[str, Any]) -
     assert "Speed" in claimed["Shown by runs"]
 
 
-@pytest.mark.parametrize("language", ["de", "fr", "it", "es"])
+@pytest.mark.parametrize(
+    "language", ["de", *(pytest.param(name, marks=pytest.mark.thorough) for name in ("fr", "it", "es"))]
+)
 def test_dossier_is_verified_in_its_language_without_english_texts(content: dict[str, Any], language: Language) -> None:
     assert find_untranslated(content) == []
     certificate, _ = build_pages(content, language)

@@ -30,7 +30,7 @@ from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from pantocheck.conformance.runs.system import Delivered
 
-RULE = settings(max_examples=20)
+RULE = settings(max_examples=10)
 
 FAULTS = ("force of pantograph 2", "uplift of one support")
 
@@ -213,7 +213,7 @@ def test_the_order_of_supports_changes_nothing(subject: Subject, order: list[int
     assert _numbers(subject.grade(permuted)) == _numbers(subject.grade(record))
 
 
-@settings(RULE, max_examples=10)
+@RULE
 @given(
     chance=st.randoms(use_true_random=False),
     units=st.tuples(
