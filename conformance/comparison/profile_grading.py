@@ -29,6 +29,7 @@ from pantocheck.conformance.grading.results_building import (
     utc_now,
 )
 from pantocheck.conformance.grading.rule_grading import RuleGrading
+from pantocheck.conformance.grading.source_facts import build_source_facts
 from pantocheck.conformance.grading.validity_warnings import warn_of_unvalidated_band
 from pantocheck.conformance.quantities.line_signals import supports_inside
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
@@ -196,6 +197,7 @@ def grade_record(
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,
+        sources=[] if subject.prepared is None else build_source_facts(subject.prepared),
         contact_losses=None if subject.prepared is None else build_contact_losses(subject.prepared.pantographs),
         traces={}
         if subject.prepared is None

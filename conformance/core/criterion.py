@@ -14,9 +14,9 @@ from pantocheck.conformance.core.verdicts import Verdict, judge_parts, worst_ver
 BASELINE = "baseline"
 """Quantity of a criterion that states why a comparison with a baseline is impossible."""
 
-ComponentName = Literal["discretisation", "start", "section", "length", "sampling", "resolution", "line"]
+ComponentName = Literal["discretisation", "start", "section", "length", "sampling", "resolution", "line", "alignment"]
 """Component of an uncertainty: mesh and time step; start and run-in; place of the analysis section; length, sampling
-rate and resolution of the record; line as measured.
+rate and resolution of the record; line as measured; clocks of the sources of a record, missing for a single one.
 """
 
 COMPONENT_NAMES: tuple[ComponentName, ...] = get_args(ComponentName)

@@ -11,7 +11,7 @@ from typing import Annotated
 from pydantic import Field
 
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.near_limit import LimitPair, ValueErrors
+from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS, LimitPair, ValueErrors
 from pantocheck.conformance.core.verdicts import Verdict, judge
 
 DECISION_PATTERN = r"^(simple|guarded|shared-risk:0\.[0-9]{1,4})$"
@@ -96,10 +96,10 @@ def judge_by_rule(
     """
     if judge(value, *limits) == "fail":
         return "fail", None
-    if "sampling" in errors.unknown or "resolution" in errors.unknown:
-        return "undecided", "the effect of the sampling rate or resolution of the record is not known"
+    if any(name in errors.unknown for name in BOUNDED_COMPONENTS):
+        return "undecided", "the effect of the sampling rate, resolution or clocks of the record is not known"
     if errors.record_bound and not _contains(limits, value, errors.record_bound):
-        return "undecided", "sampling rate and resolution of the record may have moved it inside the limit"
+        return "undecided", "sampling rate, resolution or clocks of the record may have moved it inside the limit"
     match rule:
         case SimpleAcceptance():
             return "pass", None

@@ -16,6 +16,9 @@ INTERVAL_SHARE = 0.95
 QUANTILE_95 = 1.959964
 """Half-width of a 95 % interval in standard deviations."""
 
+BOUNDED_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution", "alignment")
+"""Components that bound what a record with fewer samples or digits, or with several clocks, hides."""
+
 LimitPair = tuple[float | None, float | None]
 """Lower and upper limit; None: none on this side."""
 
@@ -28,6 +31,7 @@ REMEDIES: Mapping[str, str] = MappingProxyType(
         "sampling": "a higher sampling rate",
         "resolution": "a finer resolution",
         "line": "a line that is known better",
+        "alignment": "a better join of the clocks",
         "limit": "another record behind the limit",
     }
 )
@@ -79,8 +83,8 @@ class ValueErrors:
 
     @property
     def record_bound(self) -> float:
-        """Largest change of the value by sampling rate and resolution of its record."""
-        return self.components.get("sampling", 0.0) + self.components.get("resolution", 0.0)
+        """Largest change of the value by sampling rate, resolution and clocks of its record."""
+        return sum(self.components.get(name, 0.0) for name in BOUNDED_COMPONENTS)
 
 
 NO_ERRORS = ValueErrors()

@@ -119,8 +119,14 @@ class SupportSamples(ResultsPart):
 
     support_m: float
     first: Annotated[int, Field(ge=0)]
-    """Index of the first sample in `time_s` and `last_position_m`."""
+    """Index of the first sample in `time_s` and `last_position_m`; 0 with positions of its own."""
     uplift_m: PackedSamples
+    last_position_m: Annotated[PackedSamples | None, Field(exclude_if=lambda value: value is None)] = None
+    """Positions of the last pantograph at the samples of a source with its own times; missing: those of the record."""
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        return self if self.last_position_m is None else _check_lengths(self, [self.uplift_m, self.last_position_m])
 
 
 TrackStretch = tuple[float, float]
@@ -139,7 +145,7 @@ class SignalSamples(ResultsPart):
     time_s: PackedSamples | None
     """Times of the samples of the record; null: not known, or no uplift."""
     last_position_m: PackedSamples | None
-    """Positions of the last pantograph at these times; null: no uplift."""
+    """Positions of the last pantograph at these times; null: no uplift, or every support has its own."""
     line_supports_m: list[float] | None
     """Positions of all supports of the line; null: not known."""
     overlaps_m: Annotated[list[TrackStretch], Field(strict=False)] = []
@@ -151,10 +157,11 @@ class SignalSamples(ResultsPart):
 
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
-        if self.uplift and self.last_position_m is None:
+        common = [support for support in self.uplift if support.last_position_m is None]
+        if common and (self.last_position_m is None or len(common) < len(self.uplift)):
             raise ValueError("uplift without the positions of the last pantograph")
         samples = 0 if self.last_position_m is None else self.last_position_m.samples
-        if any(support.first + support.uplift_m.samples > samples for support in self.uplift):
+        if any(support.first + support.uplift_m.samples > samples for support in common):
             raise ValueError("uplift beyond the end of the record")
         return _check_lengths(self, [part for part in (self.time_s, self.last_position_m) if part is not None])
 

@@ -100,9 +100,9 @@ def locate_table(sidecar_path: Path, name: str, digest: str | None) -> Path:
     return table
 
 
-def record_digest(sidecar_path: Path, table: Path | None = None) -> str:
-    """SHA-256 of the sidecar and the table of a record, or of a summary alone."""
-    paths = [sidecar_path.with_suffix(".toml"), *([] if table is None else [table])]
+def record_digest(sidecar_path: Path, *tables: Path) -> str:
+    """SHA-256 of the sidecar and the tables of a record, or of a summary alone."""
+    paths = [sidecar_path.with_suffix(".toml"), *tables]
     return "sha256:" + hashlib.sha256("\n".join(map(file_digest, paths)).encode()).hexdigest()
 
 

@@ -12,7 +12,7 @@ from pantocheck.conformance.core.criterion import (
 )
 from pantocheck.conformance.core.decision import SIMPLE, DecisionRule, judge_by_rule, parse_decision
 from pantocheck.conformance.core.findings import count_findings, judge_finding, lower_imposed_verdict
-from pantocheck.conformance.core.near_limit import ValueErrors, near_limit_remarks
+from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS, ValueErrors, near_limit_remarks
 from pantocheck.conformance.core.results_part import Number, select_item
 from pantocheck.conformance.core.trust import Computed, Trust, decides_verdict
 from pantocheck.conformance.core.verdicts import Verdict, margin
@@ -33,7 +33,7 @@ from pantocheck.conformance.grading.reading_grades import list_reading_remarks
 from pantocheck.conformance.grading.start_agreement import list_verification_components
 from pantocheck.conformance.quantities.registry import QUANTITIES
 from pantocheck.conformance.quantities.statistics import coefficient_of_variation, statistical_extremes
-from pantocheck.conformance.quantities.uncertainty import ABSENT_BASIS, BOUNDED_COMPONENTS, UNKNOWN_BASIS
+from pantocheck.conformance.quantities.uncertainty import ABSENT_BASIS, UNKNOWN_BASIS
 from pantocheck.conformance.results.case_facts_format import RecordFacts
 from pantocheck.conformance.results.procedure_format import STEP_NAMES, Procedure
 from pantocheck.conformance.results.results_format import STATEMENT, CaseResult, Results, UncertaintyComponents

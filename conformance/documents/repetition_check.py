@@ -33,7 +33,7 @@ from pantocheck.conformance.grading.case_grading import grade_case
 from pantocheck.conformance.grading.criterion_grading import criterion_name
 from pantocheck.conformance.grading.results_building import key_by_owner, list_components, select_finite
 from pantocheck.conformance.quantities.registry import QUANTITIES
-from pantocheck.conformance.records.record_reading import open_record
+from pantocheck.conformance.records.record_reading import list_tables, open_record
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.sidecar_tables import LineTable
 from pantocheck.conformance.results.results_format import CaseResult, Quantities, Results, UncertaintyComponents
@@ -41,7 +41,7 @@ from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
 
-RECORD_COMPONENTS: tuple[ComponentName, ...] = ("section", "length")
+RECORD_COMPONENTS: tuple[ComponentName, ...] = ("section", "length", "alignment")
 """Components of the uncertainty that follow from the record alone; the others need further runs."""
 
 RECORD_TOLERANCE = 1e-6
@@ -74,12 +74,12 @@ def check_record_quantities(results: Results, path: Path, catalogue: Catalogue =
     opened = open_record(path)
     result = _find_result(results, opened.case, path)
     sidecar = path.with_suffix(".toml")
-    files = (sidecar, sidecar.parent / opened.file) if isinstance(opened, RecordSidecar) else (sidecar,)
+    tables = list_tables(sidecar, opened) if isinstance(opened, RecordSidecar) else ()
     computed = _compute(result, results, sidecar, catalogue)
     return [
         *_compare(results, result, computed, path.name),
         *_name_others(result, computed),
-        _check_digest(result, record_digest(*files), path),
+        _check_digest(result, record_digest(sidecar, *tables), path),
     ]
 
 

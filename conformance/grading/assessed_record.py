@@ -20,7 +20,7 @@ from pantocheck.conformance.quantities.uncertainty import Uncertainty
 from pantocheck.conformance.records.events import RecordEvent, covered_share
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_preparation import PreparedRecord, prepare_record
-from pantocheck.conformance.records.record_reading import build_record_error, open_record, read_samples
+from pantocheck.conformance.records.record_reading import build_record_error, list_tables, open_record, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples
@@ -111,7 +111,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
     except RecordInvalid as error:
         raise build_record_error(table, error) from None
     supports = list_line_supports(sidecar.support_position_m or (), known_line.span_m, prepared.section)
-    prepared = replace(prepared, line=replace(prepared.line, line_supports=supports))
+    prepared = prepared.with_supports(supports)
     excluded, events, exclusion_warnings = apply_exclusions(prepared.events, prepared.section, profile.exclusion)
     prepared = replace(
         prepared,
@@ -121,7 +121,9 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
             for number, signals in prepared.pantographs.items()
         },
     )
-    digest = join_digests(file_digest(path.with_suffix(".toml")), file_digest(table), known_line.model_dump_json())
+    tables = list_tables(path, sidecar)
+    files = map(file_digest, (path.with_suffix(".toml"), *tables))
+    digest = join_digests(*files, known_line.model_dump_json())
     force_digest = _force_digest(samples)
     missing = find_missing_statement(samples, sidecar)
     evaluation = prepared.evaluation if missing is None else build_empty_evaluation(missing, prepared.pantographs)
@@ -130,7 +132,7 @@ def load_assessed_record(path: Path, profile: Profile, line: LineTable) -> Asses
         header=sidecar,
         line=known_line,
         digest=digest,
-        record_digest=record_digest(path, table),
+        record_digest=record_digest(path, *tables),
         force_digest=force_digest,
         values=_add_line_quantities(evaluation, known_line, sidecar.speed_km_h),
         uncertainty=assess_uncertainty(prepared, _span_length(known_line, sidecar), force_digest),

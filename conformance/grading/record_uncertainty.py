@@ -7,12 +7,13 @@ import numpy as np
 from pantocheck.conformance.cases.start_and_section import shift_section
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.core.criterion import ComponentName
-from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, ValuesByOwner
+from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS
+from pantocheck.conformance.quantities.evaluation import LINE, ChannelSignals, Value, ValuesByOwner, evaluate_signals
 from pantocheck.conformance.quantities.joint_sample import DRAWS, SampleParts, draw_sample
 from pantocheck.conformance.quantities.line_signals import LineSignals
 from pantocheck.conformance.quantities.pantograph_signals import PantographSignals
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
-from pantocheck.conformance.quantities.uncertainty import BOUNDED_COMPONENTS, Component, Uncertainty
+from pantocheck.conformance.quantities.uncertainty import Component, Uncertainty
 from pantocheck.conformance.records.length_uncertainty import (
     FEWEST_SPANS,
     FEWEST_SPANS_INTERVAL,
@@ -55,6 +56,8 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
         "resolution": resolution_component(record),
         "line": Component("does not apply: there is no line file"),
     }
+    if record.alignments or record.place_uncertainty:
+        components["alignment"] = alignment_component(record)
     parts = SampleParts(
         record.evaluation.values,
         [record.evaluate_section(section).values for section in sections],
@@ -64,11 +67,28 @@ def assess_uncertainty(record: PreparedRecord, span_m: float, digest: str) -> Un
     return Uncertainty(components, record.evaluation.values, draw_sample(parts, digest))
 
 
+def alignment_component(record: PreparedRecord) -> Component:
+    """Uncertainty from the clocks of several sources: the largest change inside their 95 % intervals."""
+    values, (start, end), distance = record.evaluation.values, record.section, record.place_uncertainty
+    others = [evaluate_signals({}, line).values for line in record.shifted_lines]
+    if distance:
+        others += [record.evaluate_section((start + d, end + d)).values for d in (-distance, distance)]
+    widths: dict[int, dict[str, Value]] = {}
+    for owner, quantities in values.items():
+        depends = bool(distance) or owner == LINE
+        for name, value in quantities.items():
+            found = [other.get(owner, {}).get(name) for other in others if owner in other] if depends else []
+            if isinstance(value, float) and all(isinstance(x, float) for x in found):
+                changes = (abs(x - value) for x in found if isinstance(x, float))
+                widths.setdefault(owner, {})[name] = max(changes, default=0.0)
+    return Component("clocks of the sources at either end of their 95 % intervals", widths)
+
+
 def add_bounds(components: Mapping[ComponentName, Component]) -> dict[int, dict[str, float]]:
-    """Largest changes by sampling rate and resolution together."""
+    """Largest changes by sampling rate, resolution and clocks together."""
     bounds: dict[int, dict[str, float]] = {}
-    for name in BOUNDED_COMPONENTS:
-        for owner, quantities in components[name].half_widths.items():
+    for component in (components[name] for name in BOUNDED_COMPONENTS if name in components):
+        for owner, quantities in component.half_widths.items():
             for quantity, width in quantities.items():
                 if not isinstance(width, tuple):
                     part = bounds.setdefault(owner, {})

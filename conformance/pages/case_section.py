@@ -30,6 +30,7 @@ from pantocheck.conformance.pages.quantity_tables import (
 from pantocheck.conformance.pages.record_check_table import build_check_section
 from pantocheck.conformance.pages.run_comparison_page import comparison_blocks
 from pantocheck.conformance.pages.scope_page import describe_changes
+from pantocheck.conformance.pages.source_section import build_source_section
 from pantocheck.conformance.pages.two_verdicts import baseline_blocks, list_criteria, mark_case, verification_blocks
 from pantocheck.conformance.pages.verdict_reasons import describe_record, summarise_case
 from pantocheck.conformance.pages.words import format_plain, format_value, name_pantograph, replace_minus
@@ -89,6 +90,7 @@ def build_case_section(shown: ShownCase) -> doc.Section:
     blocks += verification_blocks(case, anchor)
     blocks += baseline_blocks(case, anchor)
     blocks += comparison_blocks(case, shown.number, anchor)
+    blocks += build_source_section(case.sources)
     blocks += (*_build_place_section(case.events or []), *_build_loss_section(case.contact_losses or {}))
     blocks += [doc.Section(table.caption, (_study_table(case, table),)) for table in _select_tables(case)]
     blocks += _list_details(shown)

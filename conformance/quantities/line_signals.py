@@ -1,5 +1,6 @@
 """Uplift of the contact wire at the supports, from which quantities are computed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -40,7 +41,9 @@ class LineSignals:
     line_supports: tuple[float, ...] | None = None
     """Positions of all supports of the line [m]; None if they are not known."""
     last_position: RealArray | None = None
-    """Positions of the last pantograph, (n,) [m]; None if they are not known."""
+    """Positions of the last pantograph, (n,) [m], or (s, n) if every support has its own times; None if unknown."""
+    fault: str | None = None
+    """Reason why no uplift counts; None: it counts."""
 
     @property
     def supports(self) -> RealArray:
@@ -75,8 +78,9 @@ class LineSignals:
 
     @property
     def _counted_uplift(self) -> RealArray:
-        counted = counted_samples(self.supports, self.uplift, self.last_position)
-        return np.where(counted, self.uplift, -np.inf)
+        supports, uplift, last_position = self._at_supports
+        counted = counted_samples(supports, uplift, last_position)
+        return np.where(counted, uplift, -np.inf)
 
     def check_supports(self) -> None:
         """Check that every support of the analysis section has an uplift.
@@ -101,15 +105,22 @@ class LineSignals:
                 f"the record has no uplift at {missing.size} of {expected.size} supports of the analysis section: "
                 f"{places}{', ...' if missing.size > 5 else ''}"
             )
-        end = np.inf if self.last_position is None else float(self.last_position[-1])
-        if not end >= measured.max() + RUN_OUT_M:
+        positions = self._at_supports[2]
+        if positions is None:
+            return
+        ends = np.max(positions, axis=-1, where=np.isfinite(positions), initial=-np.inf)
+        pairs = zip(np.broadcast_to(ends, measured.shape), measured, strict=True)
+        end, place = max(pairs, key=lambda pair: float(pair[1] - pair[0]))
+        if not end >= place + RUN_OUT_M:
             raise SupportsMissing(
-                f"the record ends at {end:.6g} m; for the largest uplift of the support at {measured.max():g} m "
-                f"it must extend to {measured.max() + RUN_OUT_M:g} m"
+                f"the record ends at {end:.6g} m; for the largest uplift of the support at {place:g} m "
+                f"it must extend to {place + RUN_OUT_M:g} m"
             )
 
     @cached_property
-    def _at_supports(self) -> tuple[RealArray, RealArray]:
+    def _at_supports(self) -> tuple[RealArray, RealArray, RealArray | None]:
+        if self.fault is not None:
+            raise SupportsMissing(self.fault)
         if self.support_position is None or self.support_uplift is None:
             raise ChannelMissing("the record has no uplift at supports")
         # A passing pantograph lifts the wire at every support; an exactly constant channel is that of a dead sensor.
@@ -121,7 +132,9 @@ class LineSignals:
             start, end = self.section
             raise ChannelMissing(f"the record has no uplift at a support between {start:g} m and {end:g} m")
         supports, uplift = self.support_position[inside], self.support_uplift[inside]
-        gaps = has_gaps(supports, uplift, self.last_position)
+        own = self.last_position is not None and self.last_position.ndim == 2
+        last_position = self.last_position[inside] if own and self.last_position is not None else self.last_position
+        gaps = has_gaps(supports, uplift, last_position)
         if gaps.any():
             places = ", ".join(f"{position:g} m" for position in supports[gaps][:5])
             raise SupportsMissing(
@@ -129,7 +142,7 @@ class LineSignals:
                 f"{places}{', ...' if gaps.sum() > 5 else ''}; it must be known until the last pantograph is "
                 f"{UPLIFT_STRETCH_M:g} m past the support"
             )
-        return supports, uplift
+        return supports, uplift, last_position
 
 
 def counted_samples(supports: RealArray, uplift: RealArray, last_position: RealArray | None) -> NDArray[np.bool_]:
@@ -138,7 +151,7 @@ def counted_samples(supports: RealArray, uplift: RealArray, last_position: RealA
     Args:
         supports: Positions of the supports, (s,) [m].
         uplift: Uplift at the supports, (s, n) [m].
-        last_position: Positions of the last pantograph, (n,) [m]; None: every sample counts.
+        last_position: Positions of the last pantograph, (n,) or (s, n) [m]; None: every sample counts.
     """
     if last_position is None:
         return np.ones(uplift.shape, dtype=np.bool_)
@@ -154,3 +167,18 @@ def supports_inside(supports: RealArray, section: tuple[float, float]) -> NDArra
     """Whether each support lies inside a section, both ends included; positions [m]."""
     start, end = section
     return (supports >= start - SUPPORT_TOLERANCE_M) & (supports <= end + SUPPORT_TOLERANCE_M)
+
+
+def stack_supports(rows: Sequence[tuple[RealArray, RealArray]]) -> tuple[RealArray, RealArray]:
+    """Uplift and positions of the last pantograph at supports with their own times, (s, n) [m] each.
+
+    Shorter rows end with samples that are missing and do not count.
+
+    Args:
+        rows: Uplift, and positions of the last pantograph, of each support, (n,) [m].
+    """
+    shape = (len(rows), max(uplift.size for uplift, _ in rows))
+    together, positions = np.full(shape, np.nan), np.full(shape, np.inf)
+    for number, (uplift, last) in enumerate(rows):
+        together[number, : uplift.size], positions[number, : uplift.size] = uplift, last
+    return together, positions

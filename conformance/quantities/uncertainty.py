@@ -8,11 +8,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from pantocheck.conformance.core.criterion import ComponentName
-from pantocheck.conformance.core.near_limit import interval_half_width
+from pantocheck.conformance.core.near_limit import BOUNDED_COMPONENTS, interval_half_width
 from pantocheck.conformance.quantities.evaluation import Value, ValuesByOwner
-
-BOUNDED_COMPONENTS: tuple[ComponentName, ...] = ("sampling", "resolution")
-"""Components that bound what a record with fewer samples or digits hides."""
 
 ABSENT_BASIS = "does not apply"
 """Beginning of the basis of a component that a case cannot have."""

@@ -18,7 +18,12 @@ from pantocheck.conformance.core.packed_samples import (
 from pantocheck.conformance.quantities.bands import BANDS
 from pantocheck.conformance.quantities.evaluation import Evaluation, evaluate_signals
 from pantocheck.conformance.quantities.filters import Filter
-from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M, LineSignals, supports_inside
+from pantocheck.conformance.quantities.line_signals import (
+    UPLIFT_STRETCH_M,
+    LineSignals,
+    stack_supports,
+    supports_inside,
+)
 from pantocheck.conformance.quantities.pantograph_signals import (
     EXTENDED_CUTOFF_HZ,
     ForceChannel,
@@ -95,7 +100,7 @@ def pack_signals(
     first, starts = next(iter(pantographs.values())), [float(part.position[0]) for part in pantographs.values()]
     sections = [first.section, *(section for _, section in readings)]
     uplift = _pack_uplift(line, sections, max(starts) - min(starts))
-    last_position = line.last_position if uplift else None
+    last_position = line.last_position if uplift and uplift[0].last_position_m is None else None
     return SignalSamples(
         rate_Hz=first.rate,
         evaluated_m=first.section,
@@ -126,10 +131,16 @@ def _find_window(signals: PantographSignals, readings: Sequence[FilterAndSection
 def _pack_uplift(line: LineSignals, sections: Sequence[Stretch], train_m: float) -> list[SupportSamples]:
     """Uplift at the supports of the sections: around the passage of a train of this length, and at its maximum."""
     positions, supports, uplift = line.last_position, line.support_position, line.support_uplift
-    if supports is None or uplift is None or positions is None or positions.size > MOST_SAMPLES:
+    if supports is None or uplift is None or positions is None or line.fault or positions.shape[-1] > MOST_SAMPLES:
         return []
     packed = []
     inside = np.any([supports_inside(supports, section) for section in sections], axis=0)
+    if positions.ndim == 2:
+        for x, row, own in zip(supports[inside], uplift[inside], positions[inside], strict=True):
+            kept = np.isfinite(own)
+            last = pack_samples(own[kept])
+            packed.append(SupportSamples(support_m=x, first=0, uplift_m=pack_samples(row[kept]), last_position_m=last))
+        return packed
     for x, row in zip(supports[inside], uplift[inside], strict=True):
         counted = np.flatnonzero(positions <= x + UPLIFT_STRETCH_M)
         if not counted.size:
@@ -199,11 +210,16 @@ def unpack_signals(samples: SignalSamples, low_pass: Filter, section: Stretch | 
         for number, part in samples.pantographs.items()
     }
     supports, positions, uplift = samples.line_supports_m, samples.last_position_m, samples.uplift
-    last = np.array([]) if positions is None else _unpack_finite(positions)
+    own = [(part.uplift_m.unpack(), _unpack_finite(part.last_position_m)) for part in uplift if part.last_position_m]
+    if own:
+        rows, last = stack_supports(own)
+    else:
+        last = np.array([]) if positions is None else _unpack_finite(positions)
+        rows = np.array([_spread_uplift(part, last.size) for part in uplift])
     line = LineSignals(
         section=evaluated,
         support_position=np.array([part.support_m for part in uplift]) if uplift else None,
-        support_uplift=np.array([_spread_uplift(part, last.size) for part in uplift]) if uplift else None,
+        support_uplift=rows if uplift else None,
         line_supports=None if supports is None else tuple(supports),
         last_position=last if uplift else None,
     )

@@ -14,12 +14,20 @@ from pantocheck.conformance.quantities.line_signals import LineSignals, has_gaps
 from pantocheck.conformance.quantities.pantograph_signals import ForceChannel, PantographSignals, edge_warnings
 from pantocheck.conformance.quantities.stated_quantities import SignalsOutside
 from pantocheck.conformance.quantities.unavailable import SectionNotCovered
+from pantocheck.conformance.records.clock_join import Clock
 from pantocheck.conformance.records.column_values import list_sensor_warnings
 from pantocheck.conformance.records.events import RecordEvent, TooManyEvents, list_events
 from pantocheck.conformance.records.force_checks import detect_filtered, find_outliers
 from pantocheck.conformance.records.record import MAX_SAMPLES, RecordInvalid, check_strip_forces
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, analysis_section
+from pantocheck.conformance.records.source_alignment import (
+    Alignment,
+    align_source,
+    extend_train,
+    join_uplift,
+    list_drift_warnings,
+)
 from pantocheck.conformance.records.usable_sections import (
     SHORTEST_S,
     PlacedSamples,
@@ -59,6 +67,14 @@ class PreparedRecord(SectionEvaluations):
     """Events of the analysis section."""
     excluded: tuple[tuple[float, float], ...] = ()
     """Stretches that are left out of the statistics of the pantographs [m, m]."""
+    alignments: tuple[Alignment, ...] = ()
+    """Sources with their own times."""
+    shifted_lines: tuple[LineSignals, ...] = ()
+    """Uplift with all clocks of sources at either end of their intervals."""
+    place_clocks: tuple[tuple[str, str, Clock], ...] = ()
+    """Name, kind of the join and clock of the sources of speed and position."""
+    place_uncertainty: float = 0.0
+    """Half-width of the 95 % interval of the place of all samples, by the clock of a source [m]."""
 
     @cached_property
     def evaluation(self) -> Evaluation:
@@ -75,6 +91,11 @@ class PreparedRecord(SectionEvaluations):
     def evaluate_channels(self, pantographs: Mapping[int, PantographSignals], line: LineSignals) -> Evaluation:
         """Evaluate the quantities of other channels over the analysis section."""
         return replace(self, pantographs=dict(pantographs), line=line).evaluation
+
+    def with_supports(self, supports: tuple[float, ...] | None) -> "PreparedRecord":
+        """Same record with the positions of all supports of the line [m]; None: they are not known."""
+        line, *shifted = (replace(line, line_supports=supports) for line in (self.line, *self.shifted_lines))
+        return replace(self, line=line, shifted_lines=tuple(shifted))
 
 
 @dataclass(frozen=True)
@@ -132,6 +153,11 @@ def prepare_record(
         pantographs[row + 1], remarks = _prepare_pantograph(placed, row, settings)
         warnings += remarks
     line, remarks = _prepare_line(samples, section, position.min(axis=0))
+    train = extend_train(time, position, nominal)
+    alignments = tuple(align_source(source, train) for source in samples.sources.uplift)
+    lines = [join_uplift(line, alignments, train, side) for side in (0, -1, 1)]
+    warnings += [part.describe() for part in alignments if part.state != "confirmed"]
+    warnings += list_drift_warnings(samples.sources, alignments)
     mean_speed = float(recorded[-1][steady].mean())
     # A section that nobody stated is the whole track: every record ends at its limits.
     edges = [] if sidecar.evaluated_m is None else edge_warnings(pantographs, mean_speed)
@@ -139,7 +165,7 @@ def prepare_record(
     length = f"Evaluated: {seconds:.4g} s, about {seconds * nominal / 1000:.3g} km of line."
     return PreparedRecord(
         pantographs=pantographs,
-        line=line,
+        line=lines[0],
         rate=rate,
         speed=mean_speed,
         section=section,
@@ -147,6 +173,10 @@ def prepare_record(
         notes=(*_resampling_notes(placed, rate), *_ignored_notes(samples), *([length] if seconds else [])),
         warnings=(*warnings, *edges, *remarks),
         events=_list_section_events(sidecar, position[0], samples.event_level, section),
+        alignments=alignments,
+        shifted_lines=tuple(lines[1:]) if alignments else (),
+        place_clocks=samples.sources.clocks,
+        place_uncertainty=nominal * samples.sources.place_uncertainty_s,
     )
 
 

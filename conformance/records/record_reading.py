@@ -1,45 +1,37 @@
 """Reading of records: tables of samples with a sidecar, and summaries."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.channel_names import find_factor
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file
-from pantocheck.conformance.core.input_error import InputError, join_errors, suggest_names
+from pantocheck.conformance.core.input_error import InputError, join_errors
 from pantocheck.conformance.core.measured_table import (
-    EVERY_CHANNEL,
-    MDF,
-    ChannelNames,
     MeasuredTable,
     TableColumn,
-    read_tables,
 )
 from pantocheck.conformance.core.table_sidecar import read_sidecar
 from pantocheck.conformance.core.texts import DocumentationPage, count_noun
 from pantocheck.conformance.core.toml_file import read_model, read_toml
-from pantocheck.conformance.core.units import find_key_units, suggest_key
 from pantocheck.conformance.records.column_values import (
-    add_time_column,
     list_left_out_sensors,
-    read_mapped_rows,
 )
 from pantocheck.conformance.records.record import (
     CHANNELS,
-    LARGEST_NUMBER,
-    MAX_SAMPLES,
     STRIP_CHANNELS,
     ChannelRows,
     Record,
-    RecordColumn,
     RecordInvalid,
-    find_column,
 )
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.record_summary import RecordSummary
 from pantocheck.conformance.records.samples import RecordSamples, build_record
+from pantocheck.conformance.records.source_alignment import RecordSources
+from pantocheck.conformance.records.source_reading import read_sources
+from pantocheck.conformance.records.table_rows import find_impossible_values, read_rows, read_single_table
 from pantocheck.conformance.records.track_position import (
     ARCING,
     EVENTS,
@@ -101,6 +93,11 @@ def read_record(
             time is not uniform.
     """
     samples, sidecar, table = read_samples(path)
+    if sidecar.source:
+        hint = "Assess it by a profile; the run of a case is one table with one time."
+        raise InputError(
+            f"sidecar '{path.with_suffix('.toml').name}', key source", "the record has several clocks", hint
+        )
     try:
         record = build_record(samples, sidecar, evaluated, case_start)
     except RecordInvalid as error:
@@ -121,8 +118,13 @@ def read_samples(path: Path) -> tuple[RecordSamples, RecordSidecar, Path]:
         InputError: A file is missing or damaged, or table and sidecar contradict each other.
     """
     sidecar, table = read_sidecar(path, RecordSidecar)
-    rows, unused = read_channel_rows(table, sidecar)
-    return _build_samples(rows, sidecar, unused), sidecar, table
+    rows, unused, sources = _read_channel_rows(table, sidecar, path.with_suffix(".toml"))
+    return replace(_build_samples(rows, sidecar, unused), sources=sources), sidecar, table
+
+
+def list_tables(path: Path, sidecar: RecordSidecar) -> tuple[Path, ...]:
+    """Tables of a record in the folder of its path, each once: the first file, and those of its further sources."""
+    return tuple(dict.fromkeys(path.parent / source.file for source in (sidecar, *sidecar.source)))
 
 
 def build_record_error(table: Path, error: RecordInvalid) -> InputError:
@@ -146,7 +148,8 @@ def _build_samples(rows: ChannelRows, sidecar: RecordSidecar, unused: tuple[Tabl
         speed=channels.get("speed"),
         position=channels.get("position"),
         contact_height=channels.get("contact_height"),
-        **{name: channels[name] for name in STRIP_CHANNELS if name in channels},
+        front_strip=channels.get("front_strip"),
+        rear_strip=channels.get("rear_strip"),
         uplift=channels.get("uplift"),
         support_position=np.array(supports) if supports else None,
         ignored=tuple(column.label for column in unused),
@@ -165,98 +168,43 @@ def _fill_rows(rows: dict[int, RealArray], force: RealArray) -> RealArray | None
     return np.vstack([rows.get(number, missing) for number in range(1, force.shape[0] + 1)])
 
 
-# Channels of a contact-force record from a measured table: rows of samples in SI units.
-def read_channel_rows(path: Path, sidecar: RecordSidecar) -> tuple[ChannelRows, tuple[TableColumn, ...]]:
-    """Read the table of a record.
+def _read_channel_rows(
+    path: Path, sidecar: RecordSidecar, sidecar_path: Path
+) -> tuple[ChannelRows, tuple[TableColumn, ...], RecordSources]:
+    """Read the tables of a record.
 
     Returns:
-        rows: Rows of each channel by number from 1.
-        unused: Columns that the sidecar does not use.
+        rows: Rows of each channel by number from 1, at the times of the first file.
+        unused: Columns of the first file that the sidecar does not use.
+        sources: Channels with their own times, and clocks.
 
     Raises:
-        InputError: The table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error
+        InputError: A table is damaged, has an unknown column, lacks a channel, or contradicts its sidecar. The error
             lists all such columns and channels.
     """
-    where, sidecar_where = f"record '{path.name}'", f"sidecar '{path.with_suffix('.toml').name}'"
-    # Groups of an MDF file have their own times: the named channels decide which group is read.
-    named = sidecar.columns is not None and path.suffix.lower() in MDF.suffixes
-    names: ChannelNames = list_used_channels(sidecar) if named else EVERY_CHANNEL
-    tables = read_tables(path, names, MAX_SAMPLES, layout=sidecar.table)
-    if len(tables) > 1:
-        raise InputError(where, f"holds {len(tables)} runs", "Write one file per run.")
-    table = tables[0]
-    if sidecar.columns is None:
-        rows, errors = _read_own_rows(table, sidecar)
-    else:
-        rows, errors = read_mapped_rows(add_time_column(table), sidecar.columns, sidecar_where), []
-    if "time" not in rows and (time := _find_own_time(table)) is not None:
-        rows["time"] = {1: time}
+    where, sidecar_where = f"record '{path.name}'", f"sidecar '{sidecar_path.name}'"
+    table = read_single_table(path, sidecar, list_used_channels(sidecar))
+    rows, errors = read_rows(table, sidecar, sidecar, list_further_columns(sidecar), sidecar_where)
+    sources = RecordSources()
     if "force" not in rows and all(name in rows for name in STRIP_CHANNELS):
         front, rear = (rows[name] for name in STRIP_CHANNELS)
         rows["force"] = {number: front[number] + rear[number] for number in front if number in rear}
     if not errors:  # a wrong column may be the missing one
         complete_position_rows(rows, table, sidecar, sidecar_where)
+        sources = read_sources(sidecar_path, sidecar, table, rows)
+        for name, added in sources.rows.items():
+            rows[name] = {**rows.get(name, {}), **added}
         errors += _find_missing_channels(rows, sidecar, where)
     for name in rows.keys() - MARKS:
-        errors += _find_impossible_values(name, rows[name], where)
+        errors += find_impossible_values(name, rows[name], where)
     if errors:
         raise join_errors(errors)
-    return rows, () if sidecar.columns is None else _list_unused(table, sidecar)
+    return rows, () if sidecar.columns is None else _list_unused(table, sidecar), sources
 
 
 def _list_unused(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[TableColumn, ...]:
     used = list_used_channels(sidecar)
     return tuple(column for column in table.columns if column.label and column.label not in used)
-
-
-def _read_own_rows(table: MeasuredTable, sidecar: RecordSidecar) -> tuple[ChannelRows, list[InputError]]:
-    """Rows of a file that uses the names of the channels, and an error for each wrong column."""
-    where, rows, errors = table.where, ChannelRows(), list[InputError]()
-    used = list_further_columns(sidecar)
-    for column, values in zip(table.columns, table.values.T, strict=True):
-        if column.label in used:
-            continue
-        try:
-            meaning = _find_meaning(column, sidecar, where)
-        except InputError as error:
-            errors.append(error)
-            continue
-        channel = rows.setdefault(meaning.channel.name, {})
-        if meaning.number in channel:
-            place = f"{where}, column {str(column.name)[:80]!r}"
-            errors.append(InputError(place, "repeats the channel of another column", "Store each channel once."))
-            continue
-        with np.errstate(invalid="ignore", over="ignore"):  # numbers too large are reported below
-            channel[meaning.number] = meaning.factor * values
-    return rows, errors
-
-
-def _find_own_time(table: MeasuredTable) -> RealArray | None:
-    """Time beside the channels, or from the rate that the file states [s]; None without both."""
-    if table.time is not None:
-        return table.time
-    return None if table.rate is None else np.arange(table.values.shape[0]) / table.rate
-
-
-def _find_meaning(column: TableColumn, sidecar: RecordSidecar, where: str) -> RecordColumn:
-    """Channel and number of a column, checked against the numbers of pantographs and supports in the sidecar."""
-    if column.name is None:
-        raise InputError(where, "has no head line", "Write the names of the columns in the first line.")
-    place = f"{where}, column {column.name[:80]!r}"
-    meaning = find_column(column.name, column.row)
-    if meaning is None:
-        known = [channel.column(i + 1) for channel in CHANNELS.values() for i in range(sidecar.rows(channel.per))]
-        hint = suggest_key(column.name, None, known) or suggest_names(column.name, known)
-        raise InputError(place, "unknown column", hint)
-    stated = None if column.unit is None else find_factor(column.unit, find_key_units(meaning.channel.unit))
-    if column.unit is not None and stated != meaning.factor:
-        hint = f"Correct the wrong one, or map the columns ([columns]). See {DocumentationPage.LOGGER_FILES}."
-        raise InputError(place, f"has the unit {column.unit!r} in the file, which is not that of its name", hint)
-    allowed = sidecar.rows(meaning.channel.per)
-    if meaning.number > allowed:
-        hint = f"It has {allowed}: correct the sidecar, or remove the column."
-        raise InputError(place, f"the sidecar has no {meaning.channel.per} {meaning.number}", hint)
-    return meaning
 
 
 def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str) -> Iterator[InputError]:
@@ -281,16 +229,3 @@ def _find_missing_channels(rows: ChannelRows, sidecar: RecordSidecar, where: str
                 distances = count_noun(expected - 1, "distance")
                 hint = f"Give spacing_m, {distances} between pantographs, or one row per pantograph."
             yield InputError(where, found, hint)
-
-
-def _find_impossible_values(name: str, rows: dict[int, RealArray], where: str) -> Iterator[InputError]:
-    """Channels with infinite or impossibly large values; NaN marks a missing value."""
-    for number, values in rows.items():
-        impossible = np.abs(values) > LARGEST_NUMBER
-        if impossible.any():
-            sample = int(np.argmax(impossible))
-            yield InputError(
-                f"{where}, {CHANNELS[name].column(number)}",
-                f"sample {sample + 1} has the impossible value {values[sample]:.3g}",
-                "Correct the value, or write nan for a missing value.",
-            )

@@ -1,5 +1,6 @@
 """Sidecar of a contact-force record: the TOML file beside its table of samples."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -13,7 +14,6 @@ from pantocheck.conformance.core.sourced_table import (
     cross_check,
     validation_problem,
 )
-from pantocheck.conformance.core.table_sidecar import TableName, TableSidecar
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.core.units import suggest_key
 from pantocheck.conformance.records.column_values import ColumnSource, SensorSum
@@ -27,20 +27,20 @@ from pantocheck.conformance.records.sidecar_tables import (
     PassageTable,
     PositionTable,
 )
+from pantocheck.conformance.records.source_tables import ColumnFile, SourceTable
 
 RECORD_SCHEMA = "pantocheck.record/1"
 
 
-class RecordSidecar(PassageTable, TableSidecar):
+class RecordSidecar(PassageTable, ColumnFile):
     """Sidecar of a table of samples."""
 
-    file: TableName
     schema_: Annotated[Literal["pantocheck.record/1"], Field(alias="schema")]
     """Version of the format: "pantocheck.record/1"."""
     changes: Annotated[tuple[str, ...], Field(strict=False, max_length=100)] = ()
     """Inputs of the case that were changed with --set."""
-    columns: Annotated[dict[str, ColumnSource] | None, Field(min_length=1, max_length=200)] = None
-    """Columns of the file by channel, such as force_1_N; default: the file uses these names itself."""
+    source: Annotated[tuple[SourceTable, ...], Field(strict=False, max_length=200)] = ()
+    """Further files of the record, or columns of a file with another rate, each with its own clock."""
     track: KilometreTable | None = None
     """Kilometres of the line, if the positions are kilometres."""
     position: PositionTable | None = None
@@ -79,15 +79,20 @@ class RecordSidecar(PassageTable, TableSidecar):
 
     @cross_check
     def _check_columns(self) -> Problems:
-        for name in self.columns or ():
+        yield from self._find_column_problems("", self.columns)
+        for number, source in enumerate(self.source, 1):
+            yield from self._find_column_problems(f"source[{number}].", source.columns)
+
+    def _find_column_problems(self, table: str, columns: Mapping[str, ColumnSource] | None) -> Problems:
+        for name in columns or ():
             meaning = find_column(name, 1)
             known = [channel.column(1) for channel in CHANNELS.values()]
             if meaning is None or meaning.factor != 1 or meaning.channel.column(meaning.number) != name:
                 hint = suggest_key(name, None, known) or suggest_names(name, known)
-                yield validation_problem(f"columns.{name[:80]}", "not a channel of a record in SI units", hint)
+                yield validation_problem(f"{table}columns.{name[:80]}", "not a channel of a record in SI units", hint)
             elif meaning.number > self.rows(meaning.channel.per):
                 yield validation_problem(
-                    f"columns.{name}",
+                    f"{table}columns.{name}",
                     f"the sidecar has no {meaning.channel.per} {meaning.number}",
                     "Correct pantographs or support_position_m, or remove the channel.",
                 )

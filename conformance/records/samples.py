@@ -1,6 +1,6 @@
 """Samples of a table in SI units, before time and position are completed; NaN marks a missing value."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.records.record import SPEED_TOLERANCE, STRIP_CHANNELS, Record, RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
+from pantocheck.conformance.records.source_alignment import RecordSources
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ class RecordSamples:
     front_strip: RealArray | None = None
     rear_strip: RealArray | None = None
     """Contact forces of both strips, (p, n) [N]."""
+    sources: RecordSources = field(default_factory=RecordSources)
+    """Further sources with their own times."""
 
     def select(self, mask: NDArray[np.bool_]) -> "RecordSamples":
         """Samples inside a mask."""

@@ -15,6 +15,7 @@ from pantocheck.conformance.records.sidecar_tables import (
     MarkPosition,
     PulsePosition,
 )
+from pantocheck.conformance.records.source_tables import PulseJoin
 
 FEWEST_PULSES = 2
 """Smallest number of pulses that gives a speed."""
@@ -61,11 +62,20 @@ def count_distance(count: RealArray, metres_per_pulse: float) -> RealArray:
 def pulse_distance(signal: RealArray, metres_per_pulse: float) -> RealArray:
     """Distance from the first sample, from the rising edges of a pulse train; parameters as in `count_distance`.
 
-    The time of an edge is interpolated between two samples.
+    Raises:
+        PulsesUnusable: As `find_rising_edges`; or there is more than one edge in two samples.
+    """
+    crossing = find_rising_edges(signal)
+    if np.median(np.diff(crossing)) <= 2:
+        raise PulsesUnusable("the pulse train has about one edge in two samples: pulses may be lost")
+    return _interpolate_from_start(crossing, np.arange(crossing.size, dtype=np.float64) * metres_per_pulse, signal.size)
+
+
+def find_rising_edges(signal: RealArray) -> RealArray:
+    """Samples at which a pulse train rises, (k,), interpolated between two samples.
 
     Raises:
-        PulsesUnusable: The signal is missing or constant, has fewer than two edges, or more than one edge in two
-            samples.
+        PulsesUnusable: The signal is missing or constant, or has fewer than two edges.
     """
     if not np.isfinite(signal).all():
         raise PulsesUnusable("values of the pulse train are missing")
@@ -77,11 +87,8 @@ def pulse_distance(signal: RealArray, metres_per_pulse: float) -> RealArray:
     edges = known[1:][(state[known[1:]] == 1) & (state[known[:-1]] == 0)]
     if edges.size < FEWEST_PULSES:
         raise PulsesUnusable(f"the pulse train has {edges.size} rising edges; at least {FEWEST_PULSES} are needed")
-    if np.median(np.diff(edges)) <= 2:
-        raise PulsesUnusable("the pulse train has about one edge in two samples: pulses may be lost")
     before, after = level[edges - 1], level[edges]
-    crossing = edges - (after - RISING) / np.maximum(after - before, 1e-12)
-    return _interpolate_from_start(crossing, np.arange(edges.size) * metres_per_pulse, signal.size)
+    return np.asarray(edges - (after - RISING) / np.maximum(after - before, 1e-12))
 
 
 def _interpolate_from_start(index: RealArray, travelled: RealArray, size: int) -> RealArray:
@@ -124,7 +131,8 @@ def list_further_columns(sidecar: RecordSidecar) -> tuple[str, ...]:
     pulses = () if sidecar.position is None or sidecar.position.kind == "marks" else (sidecar.position.column,)
     currents = (arc.current.column for arc in sidecar.arc if arc.current is not None)
     events = (channel.column for channel in sidecar.event_channel)
-    return (*pulses, *events, *(arc.detector for arc in sidecar.arc), *currents)
+    seconds = (join.record_column for source in sidecar.source if isinstance(join := source.join, PulseJoin))
+    return (*pulses, *events, *(arc.detector for arc in sidecar.arc), *currents, *seconds)
 
 
 def list_used_channels(sidecar: RecordSidecar) -> tuple[str, ...]:
@@ -159,10 +167,15 @@ def complete_position_rows(rows: ChannelRows, table: MeasuredTable, sidecar: Rec
         rows.setdefault(ARCING, {})[arc.pantograph], rows.setdefault(LOADED, {})[arc.pantograph] = _read_arc(
             arc, FileColumns(table, where)
         )
-    if sidecar.position is None and sidecar.track is not None and "position" in rows:
-        zero = 1000 * sidecar.track.zero_km
-        for number, values in rows["position"].items():
-            rows["position"][number] = sidecar.track.direction * (values - zero)
+    if sidecar.position is None:
+        convert_kilometres(rows, sidecar.track)
+
+
+def convert_kilometres(rows: ChannelRows, track: KilometreTable | None) -> None:
+    """Convert positions that are kilometres of the line to positions in running direction [m], in place."""
+    if track is not None:
+        for number, values in rows.get("position", {}).items():
+            rows["position"][number] = track.direction * (values - 1000 * track.zero_km)
 
 
 def _read_arc(arc: ArcTable, file: FileColumns) -> tuple[RealArray, RealArray]:

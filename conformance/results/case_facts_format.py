@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from pantocheck.conformance.core.check_row import CheckRow
-from pantocheck.conformance.core.figure_data import Spectrum, check_lengths
+from pantocheck.conformance.core.figure_data import Chart, Spectrum, check_lengths
 from pantocheck.conformance.core.results_part import FiniteNumber, Number, Owner, ResultsPart
 from pantocheck.conformance.core.trust import StudiedPart, Trust
 from pantocheck.conformance.core.verdicts import Verdict
@@ -21,6 +21,41 @@ class ContactLossFacts(ResultsPart):
     """Time from the start of the analysis section [s]."""
     duration_s: float
     lowest_force_N: float
+
+
+class SupportPassage(ResultsPart):
+    """Passage of a pantograph at a support of a source."""
+
+    support_m: FiniteNumber
+    pantograph: int
+    passing_s: FiniteNumber
+    """Time of the record at which the pantograph passes, by its position [s]."""
+    pulse_s: FiniteNumber | None
+    """Time of the pulse of the uplift by the clock of the source [s]; null: none was found."""
+
+
+class SourceFacts(ResultsPart):
+    """Further source of a record, and its clock: time of the record = time of the source + offset + drift."""
+
+    name: str
+    """Name of the file, with the number of the source if several have the same."""
+    join: Literal["time", "pps", "marks", "passage"]
+    rate_Hz: FiniteNumber | None
+    """Sampling rate of the uplift; null: the source gives position or speed."""
+    state: Literal["confirmed", "unconfirmed", "contradicted"]
+    """Comparison of the clock with the pulses of the uplift."""
+    finding: str
+    """This comparison in words."""
+    offset_s: FiniteNumber
+    uncertainty_s: FiniteNumber
+    """Half-width of the 95 % interval of a time; of a passage that was not found, the range of the search."""
+    drift_ppm: FiniteNumber
+    """Drift that was corrected; 0: it is not significant."""
+    drift_uncertainty_ppm: FiniteNumber | None
+    """Half-width of the 95 % interval of the drift; null: not known."""
+    passages: list[SupportPassage] = []
+    chart: Annotated[Chart | None, Field(exclude_if=lambda chart: chart is None)] = None
+    """Uplift around the passages; missing: the source has no uplift."""
 
 
 class DerivedFact(ResultsPart):

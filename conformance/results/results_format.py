@@ -46,6 +46,7 @@ from pantocheck.conformance.results.case_facts_format import (
     ReadingFacts,
     RecordFacts,
     ReferenceValues,
+    SourceFacts,
     StoredValues,
 )
 from pantocheck.conformance.results.procedure_format import Procedure
@@ -248,6 +249,8 @@ class CaseResult(ResultsPart):
     tables: list[TextTable] = []
     events: Annotated[list[EventFacts] | None, Field(exclude_if=is_absent)] = None
     """Events of the line in the analysis section; missing: none is stated."""
+    sources: Annotated[list[SourceFacts], Field(exclude_if=is_empty)] = []
+    """Further sources of the record with their clocks; missing: it has one file with one time."""
     contact_losses: Annotated[dict[Owner, list[ContactLossFacts]] | None, Field(exclude_if=is_absent)] = None
     """Contact losses of each pantograph, the longest 200; missing: none, or the force was filtered."""
     comparison: Annotated[MeasuredRun | None, Field(exclude_if=is_absent)] = None

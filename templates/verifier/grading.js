@@ -1,11 +1,12 @@
 // Grades: a value against its limits, its uncertainty, the decision rule, and the verdicts of cases and of the run.
 const WORST_FIRST = ["error", "fail", "undecided", "skip", "info", "unconfirmed", "pass"];
 const TRUSTS = ["primary", "secondary", "provisional"], QUANTILE_95 = 1.959964;
-const COMPONENTS = ["discretisation", "start", "section", "length", "sampling", "resolution", "line"];
+const COMPONENTS = ["discretisation", "start", "section", "length", "sampling", "resolution", "line", "alignment"];
+const BOUNDED = ["sampling", "resolution", "alignment"];
 const REMEDIES = {
   discretisation: "a finer mesh and time step", start: "another start or run-in", section: "another analysis section",
   length: "a longer record", sampling: "a higher sampling rate", resolution: "a finer resolution",
-  line: "a line that is known better",
+  line: "a line that is known better", alignment: "a better join of the clocks",
   limit: "another record behind the limit",
 };
 
@@ -60,7 +61,7 @@ function findErrors(row, unknown) {
   return {
     unknown, limit: row.limit_uncertainty, halfWidth: of,
     expanded: (value) => Math.hypot(of(value) ?? 0, row.limit_uncertainty ?? 0),
-    recordBound: (components.sampling ?? 0) + (components.resolution ?? 0),
+    recordBound: BOUNDED.reduce((sum, name) => sum + (components[name] ?? 0), 0),
     conformity: () => {
       if (!draws.length) return null;
       const [lower, upper] = [row.lower ?? -Infinity, row.upper ?? Infinity];
@@ -74,7 +75,7 @@ function findErrors(row, unknown) {
 function judgeByRule(value, row, errors, rule) {
   const contains = (width) => [value - width, value + width].every((x) => judge(x, row.lower, row.upper) === "pass");
   if (judge(value, row.lower, row.upper) === "fail") return "fail";
-  if (errors.unknown.includes("sampling") || errors.unknown.includes("resolution")) return "undecided";
+  if (BOUNDED.some((name) => errors.unknown.includes(name))) return "undecided";
   if (errors.recordBound && !contains(errors.recordBound)) return "undecided";
   if (rule === "simple") return "pass";
   if (errors.unknown.length || errors.limit === null) return "undecided";
@@ -146,7 +147,7 @@ function unknownComponents(result, row, names) {
   const basis = result.uncertainty_basis ?? {}, reported = result.uncertainty_components?.[row.pantograph]?.[row.quantity];
   const absent = (name) => (basis[name] ?? "does not apply").startsWith("does not apply");
   const lacks = (name) => names.includes(name) && reported && !(name in reported) && !absent(name);
-  return [...names.filter((name) => basis[name]?.startsWith("not known")), ...["sampling", "resolution"].filter(lacks)];
+  return [...names.filter((name) => basis[name]?.startsWith("not known")), ...BOUNDED.filter(lacks)];
 }
 
 function checkCriteria(result, criteria, trust, rule) {

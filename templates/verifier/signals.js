@@ -323,22 +323,25 @@ async function unpackSignals(samples) {
       arcs: await optional(part.arcs), loaded: await optional(part.loaded), applied: part.filter_applied_Hz,
     };
   }
-  const supports = [];
-  for (const part of samples.uplift) supports.push({ x: part.support_m, first: part.first, uplift: await unpack(part.uplift_m) });
-  return { pantographs, supports, time: await optional(samples.time_s), last: await optional(samples.last_position_m) };
+  const supports = [], last = await optional(samples.last_position_m);
+  for (const part of samples.uplift) {
+    const own = part.last_position_m ? check(await unpack(part.last_position_m)) : last;
+    supports.push({ x: part.support_m, first: part.first, uplift: await unpack(part.uplift_m), last: own });
+  }
+  return { pantographs, supports, time: await optional(samples.time_s) };
 }
 
 // Largest uplift that counts, with its support and sample; null if it is not available.
 function findUplift(samples, signals, [start, end]) {
-  const within = (x) => x >= start - SUPPORT_M && x <= end + SUPPORT_M, { last } = signals;
+  const within = (x) => x >= start - SUPPORT_M && x <= end + SUPPORT_M;
   const inside = signals.supports.filter((support) => {
     const known = support.uplift.filter(Number.isFinite);
     return within(support.x) && known.length && largest(known) > smallest(known);
   });
-  const counted = ({ x, first, uplift }) => uplift.filter((_, i) => last[first + i] <= x + UPLIFT_M);
+  const counted = ({ x, first, uplift, last }) => uplift.filter((_, i) => last[first + i] <= x + UPLIFT_M);
   if (!inside.length || !samples.line_supports_m || inside.some((s) => !counted(s).every(Number.isFinite))) return null;
   const missing = samples.line_supports_m.filter(within).some((x) => !inside.some((s) => Math.abs(s.x - x) <= SUPPORT_M));
-  if (missing || !(last[last.length - 1] >= Math.max(...inside.map((s) => s.x)) + RUN_OUT_M)) return null;
+  if (missing || inside.some((s) => !(s.last[s.last.length - 1] >= s.x + RUN_OUT_M))) return null;
   let best = null;
   for (const support of inside) {
     counted(support).forEach((value, i) => {

@@ -79,6 +79,7 @@ ELSEWHERE = (
     *("pages/static_sections", "pages/translation", "pages/report_writers", "quantities/registry"),
     *("quantities/quantity.py", "records/record.py", "records/record_reading", "records/record_sidecar"),
     *("records/record_summary", "records/sidecar_tables", "records/channel_facts", "records/track_position"),
+    *("records/source_reading", "records/source_tables", "records/table_rows"),
     *("records/column_values", "records/samples", "results/", "runs/program", "runs/command_system"),
     *("runs/protocol_messages", "runs/reference_simulator", "pages/html", "pages/page_code", "__init__"),
 )

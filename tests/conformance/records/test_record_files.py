@@ -226,7 +226,7 @@ def test_decimal_commas_and_too_many_numbers(written: Writer, record: Record, mo
     assert_allclose(read_record(path)[0].force, record.force, rtol=1e-11)
     # The limit is lowered below the size of the table, which must not be cut silently.
     path = written("a.csv")
-    monkeypatch.setattr("pantocheck.conformance.records.record_reading.MAX_SAMPLES", record.time.size)
+    monkeypatch.setattr("pantocheck.conformance.records.table_rows.MAX_SAMPLES", record.time.size)
     with pytest.raises(InputError, match=f"more than {record.time.size} numbers"):
         read_record(path)
 

@@ -1,0 +1,386 @@
+"""Records of several sources: their clocks, the uplift criterion of a line test, wrong clocks and damaged inputs."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.command_line import pantocheck
+from helpers.measured_pairs import PASSAGE, SPEED, STATED, MeasuredPair, write_german
+from helpers.toml_edit import edit_toml
+from pantocheck.conformance.cases.profile_file import load_profile
+from pantocheck.conformance.grading.assessed_record import AssessedRecord, load_assessed_record
+from pantocheck.conformance.records.sidecar_tables import LineTable
+
+UPLIFT = "max_uplift_at_support_mm"
+SECONDS = 'kind = "pps", column = "PPS", record_column = "PPS", offset_s = 3.4'
+
+
+def assess(sidecar: Path) -> AssessedRecord:
+    return load_assessed_record(sidecar, load_profile("acceptance-ac"), LineTable())
+
+
+def read_results(sidecar: Path) -> dict[str, Any]:
+    """Result of `assess` on the command line."""
+    report = sidecar.parent / "report"
+    done = pantocheck("assess", sidecar, "--profile", "acceptance-ac", "--out", report, "--formats", "json")
+    assert done.exit_code < 2, done.output
+    return json.loads((report / "results.json").read_text())["cases"][0]
+
+
+def truth(pair: MeasuredPair) -> float:
+    """Largest uplift that was written [mm]."""
+    return float(pair.masts()[:, 1:].max())
+
+
+def add_seconds(folder: Path, pair: MeasuredPair) -> None:
+    """Pulses of 20 ms at each full second of GPS time in both files; the record starts 0.4 s after one."""
+    for name, table in (("zug.csv", pair.train()), ("mast.csv", pair.masts())):
+        head = (folder / name).read_text(encoding="cp1252").splitlines()[0].split(";")
+        clock = table[:, 0] if name == "zug.csv" else table[:, 0] / (1 + pair.drift) + pair.offset
+        pulses = np.where((clock + 0.4) % 1.0 < 0.02, 5.0, 0.0)
+        write_german(folder / name, [*head, "PPS"], np.column_stack([table, pulses]))
+
+
+@pytest.mark.parametrize("join", [PASSAGE, STATED, SECONDS])
+@pytest.mark.parametrize("pantographs", [1, 2])
+def test_uplift_of_a_line_test_is_graded_from_two_files(join: str, pantographs: int, tmp_path: Path) -> None:
+    """The largest sample is that of the file at its own rate: 1e-5 mm is the rounding of the file."""
+    pair = MeasuredPair(pantographs)
+    sidecar = pair.write(tmp_path, join)
+    if join == SECONDS:
+        add_seconds(tmp_path, pair)
+    result = read_results(sidecar)
+    assert result["verdict"] == "pass"
+    assert result["quantities"]["0"][UPLIFT] == pytest.approx(truth(pair), abs=1e-5)
+    (source,) = result["sources"]
+    assert (source["state"], source["rate_Hz"]) == ("confirmed", 200)
+    # The middle of the ties differs from the time 0 by seconds, but there is no drift.
+    assert abs(source["offset_s"] - pair.offset) <= source["uncertainty_s"]
+    assert len(source["passages"]) == 3 * pantographs
+    assert [len(series["x"]) > 300 for series in source["chart"]["series"]] == [True] * 3
+    assert len(source["chart"]["marks"]) == pantographs
+    assert result["uncertainty_components"]["0"][UPLIFT]["alignment"] == 0
+    assert result["uncertainty_components"]["1"]["mean_force_N"]["alignment"] == 0
+
+
+def test_clocks_of_each_file_differ_in_rate_and_offset(tmp_path: Path) -> None:
+    """Three masts with loggers of 100, 200 and 500 Hz; each keeps its own samples."""
+    pairs = [
+        MeasuredPair(supports=(x,), rate=f, offset=o) for x, f, o in ((300, 100, 1), (360, 200, -40), (420, 500, 7))
+    ]
+    sidecar = MeasuredPair().write(tmp_path, PASSAGE)
+    content = sidecar.read_text().partition("[[source]]")[0]
+    for n, pair in enumerate(pairs, 1):
+        write_german(tmp_path / f"mast{n}.csv", ["t [s]", "Anhub [mm]"], pair.masts())
+        content += f"""
+[[source]]
+file = "mast{n}.csv"
+join = {{ kind = "passage", offset_s = {pair.offset + 0.4}, within_s = 2.0 }}
+[source.columns]
+time_s = {{ column = "t [s]" }}
+uplift_{n}_m = {{ column = "Anhub [mm]" }}
+"""
+    sidecar.write_text(content)
+    result = read_results(sidecar)
+    assert result["verdict"] == "pass"
+    assert [source["rate_Hz"] for source in result["sources"]] == [100, 200, 500]
+    assert result["quantities"]["0"][UPLIFT] == pytest.approx(max(map(truth, pairs)), abs=1e-5)
+    assert [part["uplift_m"]["samples"] for part in result["signals"]["uplift"]] == [
+        # 60 m before to 60 m past the support, and 200 m between the pantographs.
+        pytest.approx(320 / SPEED * rate, abs=1)
+        for rate in (100, 200, 500)
+    ]
+    verified = pantocheck("verify", tmp_path / "report" / "results.json", "--record", sidecar, "--numbers-only")
+    assert "fahrt.toml is the graded record" in verified.output
+    assert "follow from the samples" in verified.output
+    table = tmp_path / "mast2.csv"
+    table.write_text(table.read_text(encoding="cp1252").replace("0,50000", "0,50001", 1), encoding="cp1252")
+    verified = pantocheck("verify", tmp_path / "report" / "results.json", "--record", sidecar, "--numbers-only")
+    assert verified.exit_code == 1
+    assert "fahrt.toml is not the graded record" in verified.output
+
+
+# Wrong clocks.
+WRONG: dict[str, tuple[MeasuredPair, str, str]] = {
+    "one second late": (
+        MeasuredPair(),
+        STATED.replace("3.217", "4.217"),
+        "pulses come 1.00 s after the pantographs pass",
+    ),
+    "one second early": (MeasuredPair(), STATED.replace("3.217", "2.217"), "pulses come 1.00 s before the pantographs"),
+    "half a span": (MeasuredPair(), STATED.replace("3.217", "3.617"), "pulses come 0.40 s after the pantographs pass"),
+    "the other pantograph": (MeasuredPair(), STATED.replace("3.217", "6.074"), "pulses come 2.86 s after"),
+    "one pantograph, 1 s": (MeasuredPair(1), STATED.replace("3.217", "4.217"), "pulses come 1.00 s after"),
+    "a minute": (MeasuredPair(1, times=(-5, 90)), STATED.replace("3.217", "63.217"), "pulses come 60.00 s after"),
+    "wrong second": (MeasuredPair(), SECONDS.replace("3.4", "4.4"), "pulses come 1.00 s after the pantographs pass"),
+    "100 ppm for an hour": (
+        MeasuredPair(offset=-3600.0, drift=1e-4),
+        'kind = "time", offset_s = -3600.0, uncertainty_s = 0.01',
+        "a drift of 100 ppm since its time 0 would explain it",
+    ),
+    "another train": (
+        replace(MeasuredPair(1), pantographs=2, heights=(0.05, 0.0)),
+        PASSAGE,
+        "its pulses fit no passage of this train",
+    ),
+    "no uplift": (MeasuredPair(heights=(0.0, 0.0)), STATED, "its pulses fit no passage of this train"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_clock_is_found_and_named(name: str, tmp_path: Path) -> None:
+    """The uplift does not count, and the reason names the file and the error."""
+    pair, join, reason = WRONG[name]
+    sidecar = pair.write(tmp_path, join)
+    if join.startswith(SECONDS[:12]):
+        add_seconds(tmp_path, pair)
+    result = read_results(sidecar)
+    assert result["verdict"] == "skip"
+    assert reason in result["skipped"]["0"][UPLIFT]
+    assert any(text.startswith("the clock of mast.csv is") and reason in text for text in result["warnings"])
+    (criterion,) = (row for row in result["criteria"] if row["quantity"] == UPLIFT)
+    assert criterion["verdict"] == "skip"
+
+
+def test_pulses_of_a_second_measure_the_drift(tmp_path: Path) -> None:
+    """10 seconds of pulses at 200 Hz give a drift of 1000 ppm to 500 ppm; it is corrected."""
+    pair = MeasuredPair(drift=2e-3)
+    sidecar = pair.write(tmp_path, SECONDS)
+    add_seconds(tmp_path, pair)
+    result = read_results(sidecar)
+    (source,) = result["sources"]
+    assert result["verdict"] == "pass"
+    assert abs(source["drift_ppm"] + 2000) < source["drift_uncertainty_ppm"] < 700
+    assert any("the clock of mast.csv runs" in text and "fast" in text for text in result["warnings"])
+
+
+def test_two_passages_of_the_same_train_need_a_choice(tmp_path: Path) -> None:
+    """A second passage 60 s later in the file of the masts: within_s decides, and nothing is guessed."""
+    pair = MeasuredPair()
+    sidecar = pair.write(tmp_path, PASSAGE.replace("20.0", "100.0"))
+    table = pair.masts()
+    later = table + np.array([60.0, 0, 0, 0])
+    quiet = np.arange(table[-1, 0] + 0.005, later[0, 0] - 0.004, 0.005)
+    rows = np.vstack([table, np.column_stack([quiet, np.zeros((quiet.size, 3))]), later])
+    names = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))]
+    write_german(tmp_path / "mast.csv", names, rows)
+    result = read_results(sidecar)
+    assert result["verdict"] == "skip"
+    assert "several passages fit, with offset_s = -56.7" in result["skipped"]["0"][UPLIFT]
+    edit_toml(sidecar, {"source.0.join.within_s": 20.0})
+    assert read_results(sidecar)["verdict"] == "pass"
+
+
+# Removal of information.
+def cut_rows(first: float, last: float) -> Callable[[Path], None]:
+    def cut(folder: Path) -> None:
+        head, *rows = (folder / "mast.csv").read_text(encoding="cp1252").splitlines()
+        times = [float(row.partition(";")[0].replace(",", ".")) for row in rows]
+        kept = [row for row, time in zip(rows, times, strict=True) if first <= time + 3.217 <= last]
+        (folder / "mast.csv").write_text("\n".join([head, *kept]) + "\n", encoding="cp1252")
+
+    return cut
+
+
+def edit_keys(changes: dict[str, Any]) -> Callable[[Path], None]:
+    return lambda folder: void(edit_toml(folder / "fahrt.toml", changes))
+
+
+def void(_: object) -> None:
+    """Nothing."""
+
+
+REMOVALS: dict[str, Callable[[Path], None]] = {
+    "start of the masts": cut_rows(4.5, 99),
+    "passage of the masts": cut_rows(-9, 7.0),
+    "end of the masts": cut_rows(-9, 8.4),
+    "hole in the passage": lambda folder: (
+        (folder / "mast.csv").write_text(
+            "\n".join(
+                row
+                for i, row in enumerate((folder / "mast.csv").read_text(encoding="cp1252").splitlines())
+                if i not in range(1900, 1910)
+            ),
+            encoding="cp1252",
+        )
+        and None
+    ),
+    "one mast": edit_keys({"source.0.columns.uplift_2_m": None}),
+    "one mast and its support": edit_keys({"source.0.columns.uplift_3_m": None, "support_position_m": [300.0, 360.0]}),
+    "source": edit_keys({"source": None}),
+    "second pantograph": edit_keys({"columns.force_2_N": None, "pantographs": 1, "spacing_m": None}),
+    "span": edit_keys({"line.span_m": None}),
+    "space for the uplift": edit_keys({"line.uplift_space_mm": None}),
+}
+
+
+@pytest.mark.parametrize("name", REMOVALS)
+@pytest.mark.parametrize("join", [PASSAGE, STATED])
+def test_removing_information_never_makes_a_pass(name: str, join: str, tmp_path: Path) -> None:
+    """The uplift of the last mast exceeds its space by 0.01 %."""
+    pair = MeasuredPair()
+    sidecar = pair.write(tmp_path, join)
+    edit_toml(sidecar, {"line.uplift_space_mm": truth(pair) / 1.0001})
+    assert read_results(sidecar)["verdict"] == "fail"
+    REMOVALS[name](tmp_path)
+    report = tmp_path / "removed"
+    assert pantocheck("assess", sidecar, "--profile", "acceptance-ac", "--out", report, "--formats", "json").exit_code
+
+
+def test_uncertain_clock_leaves_an_uplift_near_its_space_undecided(tmp_path: Path) -> None:
+    """A wave of 55 mm, 62 m before the support, counts if the clock is wrong by 0.1 s, which is stated as possible."""
+    pair = MeasuredPair(1)
+    sidecar = pair.write(tmp_path, STATED.replace("0.005", "0.1"))
+    edit_toml(sidecar, {"line.uplift_space_mm": 53.0})
+    names, table = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], pair.masts()
+    near = np.abs(SPEED * (table[:, 0] + pair.offset) - 360 + 62) < 0.4
+    table[near, 2] = 55.0
+    write_german(tmp_path / "mast.csv", names, table)
+    result = read_results(sidecar)
+    (criterion,) = (row for row in result["criteria"] if row["quantity"] == UPLIFT)
+    assert criterion["verdict"] == "undecided"
+    assert criterion["components"]["alignment"] == pytest.approx(55 - criterion["value"], abs=1e-6)
+
+
+# Position from another file.
+def write_position(folder: Path, join: str, clock: Callable[[np.ndarray], np.ndarray]) -> Path:
+    """Position and speed in a file of 10 Hz, with a time of its own."""
+    pair = MeasuredPair(1)
+    time = np.arange(-1.0, 12.0, 0.1)
+    names = ["GPS [s]", "Kilometrierung [km]", "Geschwindigkeit [km/h]"]
+    rows = np.column_stack([clock(time), 12.5 - SPEED * time / 1000, np.full(time.size, 3.6 * SPEED)])
+    write_german(folder / "gps.csv", names, rows)
+    sidecar = pair.write(folder, PASSAGE)
+    text = sidecar.read_text().replace('position_1_m = { column = "Weg [m]" }\n', "")
+    text += f"""
+[[source]]
+file = "gps.csv"
+join = {{ {join} }}
+[source.columns]
+time_s = {{ column = "GPS [s]" }}
+position_1_m = {{ column = "Kilometrierung [km]" }}
+speed_m_s = {{ column = "Geschwindigkeit [km/h]" }}
+[track]
+zero_km = 12.5
+kilometres = "decreasing"
+"""
+    sidecar.write_text(text)
+    return sidecar
+
+
+@pytest.mark.parametrize(
+    "join",
+    [
+        'kind = "time", offset_s = -1732382000.0, uncertainty_s = 0.02',
+        'kind = "marks", mark = [{ time_s = 1.0, km = 12.43 }, { time_s = 9.0, km = 11.87 }]',
+    ],
+)
+def test_position_of_another_file_places_the_force(join: str, tmp_path: Path) -> None:
+    """Seconds since 1970; marks are read to the metre of their kilometres, so that they join to 0.1 ms."""
+    pair = MeasuredPair(1)
+    reference = pair.write(tmp_path, PASSAGE)
+    expected = assess(reference)
+    assessed = assess(write_position(tmp_path, join, lambda time: time + 1732382000.0))
+    for name, value in expected.values.values[1].items():
+        # The section may begin one sample of 1 ms earlier or later.
+        assert assessed.values.values[1][name] == pytest.approx(value, rel=2e-3, abs=1e-3), name
+    component = assessed.uncertainty.components["alignment"].half_widths
+    assert 0 < component[1]["mean_force_N"] < 5
+    assert component[1].keys() == assessed.values.values[1].keys()
+    assert assessed.values.values[0][UPLIFT] == expected.values.values[0][UPLIFT]
+    assert assessed.prepared is not None
+    assert [name for name, _, _ in assessed.prepared.place_clocks] == ["gps.csv"]
+
+
+def test_wrong_clock_of_the_position_is_named_by_the_masts(tmp_path: Path) -> None:
+    """The masts cannot tell which of both clocks is wrong; their uplift does not count."""
+    sidecar = write_position(tmp_path, 'kind = "time", offset_s = 1.0, uncertainty_s = 0.01', lambda time: time)
+    edit_toml(sidecar, {"source.0.join": {"kind": "time", "offset_s": 3.217, "uncertainty_s": 0.01}})
+    skipped = assess(sidecar).values.skipped[0][UPLIFT]
+    assert "the clock of mast.csv is wrong: its pulses come 1.00 s before the pantographs pass" in skipped
+
+
+# Damaged inputs: each message names the file, the key or the sample, and the found and the expected.
+def edit_mast(change: Callable[[list[str]], list[str]]) -> Callable[[Path], None]:
+    def edit(folder: Path) -> None:
+        path = folder / "mast.csv"
+        path.write_text("\n".join(change(path.read_text(encoding="cp1252").splitlines())) + "\n", encoding="cp1252")
+
+    return edit
+
+
+DAMAGES: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
+    "missing file": (lambda folder: (folder / "mast.csv").unlink(), ("record 'mast.csv'", "No such file")),
+    "path": (edit_keys({"source.0.file": "../mast.csv"}), ("source[1].file", "found the path '../mast.csv'")),
+    "digest": (edit_keys({"source.0.sha256": "0" * 64}), ("record 'mast.csv'", "sha256")),
+    "text": (edit_mast(lambda rows: [*rows[:9], "a;b;c;d", *rows[9:]]), ("record 'mast.csv', line 10", "'a'")),
+    "time backwards": (
+        edit_mast(lambda rows: [*rows[:50], rows[40], *rows[50:]]),
+        ("source[1], mast.csv", "the time of sample 50 is not greater"),
+    ),
+    "column": (
+        edit_keys({"source.0.columns.uplift_2_m.column": "Anhub Mast 9 [mm]"}),
+        ("source[1], key columns.uplift_2_m.column", "there is no column 'Anhub Mast 9 [mm]' in mast.csv"),
+    ),
+    "unit": (
+        edit_keys({"source.0.columns.uplift_2_m.unit": "N"}),
+        ("source[1], key columns.uplift_2_m.unit", "'N' is not a unit of this channel"),
+    ),
+    "support": (
+        edit_keys({"support_position_m": [300.0, 360.0]}),
+        ("source[1].columns.uplift_3_m", "the sidecar has no support 3"),
+    ),
+    "force": (
+        edit_keys({"source.0.columns.force_1_N": {"column": "Anhub Mast 1 [mm]"}}),
+        ("source[1].columns.force_1_N", "not a channel of a further source"),
+    ),
+    "repeated": (
+        edit_keys({"columns.uplift_1_m": {"column": "Weg [m]"}}),
+        ("source[1], mast.csv", "repeats the channel uplift_1_m of another source"),
+    ),
+    "no channel": (
+        edit_keys({"source.0.columns": {"time_s": {"column": "Uhrzeit [s]"}}}),
+        ("source[1], mast.csv", "has no channel beside the time"),
+    ),
+    "no time": (
+        edit_keys({"source.0.columns.time_s": None}),
+        ("source[1], mast.csv", "has no time"),
+    ),
+    "no join": (edit_keys({"source.0.join": None}), ("source[1].join", "missing")),
+    "unknown join": (edit_keys({"source.0.join.kind": "sound"}), ("source[1].join", "sound")),
+    "no range": (edit_keys({"source.0.join.within_s": None}), ("source[1].join", "within_s")),
+    "no pulses": (
+        edit_keys({"source.0.join": {"kind": "pps", "column": "Q", "record_column": "Weg [m]", "offset_s": 0.0}}),
+        ("source[1], key join.column", "there is no column 'Q' in mast.csv"),
+    ),
+    "marks": (
+        edit_keys({"source.0.join": {"kind": "marks", "mark": [{"time_s": t, "km": t} for t in (1.0, 2.0)]}}),
+        ("source[1], key join.kind", "need the table track, and the position in the source"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damaged_inputs_end_with_a_place_and_a_reason(name: str, tmp_path: Path) -> None:
+    sidecar = MeasuredPair().write(tmp_path, PASSAGE)
+    damage, texts = DAMAGES[name]
+    damage(tmp_path)
+    for command in (("check", sidecar), ("assess", sidecar, "--profile", "acceptance-ac", "--out", tmp_path / "out")):
+        done = pantocheck(*command, COLUMNS="400")
+        assert done.exit_code == 2, done.output
+        for text in texts:
+            assert text in done.output
+
+
+def test_run_of_a_case_needs_one_time(tmp_path: Path) -> None:
+    sidecar = edit_toml(MeasuredPair().write(tmp_path, PASSAGE), {"case": "en50318-2002/250"})
+    done = pantocheck(
+        "run", "en50318-2002/250", "--system", f"record:{tmp_path}", "--out", tmp_path / "o", COLUMNS="300"
+    )
+    assert done.exit_code == 2
+    assert f"sidecar '{sidecar.name}', key source: the record has several clocks" in done.output
