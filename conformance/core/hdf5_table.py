@@ -15,9 +15,12 @@ from pantocheck.conformance.core.files import MAX_FILE_BYTES, open_file
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import (
     ChannelNames,
+    EveryRate,
     MeasuredTable,
+    SampledChannel,
     TableColumn,
     convert_damage_errors,
+    group_by_sampling,
 )
 
 MOST_ITEMS = 10_000
@@ -39,6 +42,8 @@ def read_hdf5_table(path: Path, names: ChannelNames, largest: int) -> list[Measu
     with open_hdf5(path, largest) as file:
         where = f"record '{path.name}'"
         runs = sorted((name for name in file if name.startswith("run_")), key=_run_number)
+        if not runs and isinstance(names, EveryRate):
+            return group_by_sampling(path.name, _list_rows(file, where, largest), largest)
         if not runs:
             nested = bool(names) and any(isinstance(item, h5py.Group) for item in file.values())
             return [_read_groups(file, path.name, largest) if nested else _read_root(file, path.name)]
@@ -164,6 +169,13 @@ def _read_groups(file: h5py.File, source: str, largest: int) -> MeasuredTable:
     if length * len(rows) > largest:
         raise InputError(where, f"holds {length * len(rows)} numbers", f"At most {largest} numbers are accepted.")
     return MeasuredTable(source, np.column_stack(rows), tuple(columns))
+
+
+def _list_rows(file: h5py.File, where: str, largest: int) -> Iterator[SampledChannel]:
+    """Every row of the data sets of a file; the longer axis of a data set is that of the samples."""
+    for name, array in _list_arrays(file, "", where, largest, DEEPEST_GROUP):
+        rows = np.atleast_2d(array if array.ndim == 1 or array.shape[0] <= array.shape[1] else array.T)
+        yield from (SampledChannel(TableColumn(name, number), row) for number, row in enumerate(rows, 1))
 
 
 def _list_arrays(

@@ -19,9 +19,12 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import (
     ChannelNames,
     EveryChannel,
+    EveryRate,
     MeasuredTable,
+    SampledChannel,
     TableColumn,
     convert_damage_errors,
+    group_by_sampling,
     stack_channels,
 )
 
@@ -40,6 +43,15 @@ def read_matlab_table(path: Path, names: ChannelNames, largest: int) -> list[Mea
     time = next((times[name] * arrays[name].ravel() for name in times if arrays[name].size > 1), None)
     rate = next((float(array.ravel()[0]) for array in _find_arrays(arrays, RATE_NAMES) if array.size), None)
     data = {name: array for name, array in arrays.items() if name not in times and name.lower() not in RATE_NAMES}
+    if isinstance(names, EveryRate):
+        clocks = {arrays[name].size: times[name] * arrays[name].ravel() for name in times}
+        found = (
+            SampledChannel(TableColumn(name, number), row, None, clocks.get(row.size))
+            for name, array in data.items()
+            if array.ndim == 2
+            for number, row in enumerate(array if array.shape[0] <= array.shape[1] else array.T, 1)
+        )
+        return group_by_sampling(path.name, found, largest)
     if isinstance(names, EveryChannel):
         columns, values = _list_vectors(data, where, largest)
     elif names and all(name in data for name in names):

@@ -17,9 +17,12 @@ from pantocheck.conformance.core.measured_table import (
     SAMPLED_TOGETHER,
     ChannelNames,
     EveryChannel,
+    EveryRate,
     MeasuredTable,
+    SampledChannel,
     TableColumn,
     convert_damage_errors,
+    group_by_sampling,
     stack_channels,
 )
 
@@ -45,6 +48,9 @@ def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
         _silence_library(),
         MDF(content) as file,
     ):
+        if isinstance(names, EveryRate):
+            _check_sizes(file, set(range(len(file.groups))), largest, where)
+            return group_by_sampling(path.name, _list_signals(file), largest)
         names = _list_channels(file, largest, where) if isinstance(names, EveryChannel) else names
         missing = [name for name in names if name not in file.channels_db]
         if missing:
@@ -67,6 +73,17 @@ def read_mdf_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
         raise InputError(where, "has channels with different sampling times", SAMPLED_TOGETHER)
     columns = tuple(TableColumn(signal.name, unit=str(signal.unit) or None) for signal in signals)
     return [MeasuredTable(path.name, values, columns, time=time)]
+
+
+def _list_signals(file: Any) -> Iterator[SampledChannel]:
+    """Every channel of numbers, with the times of its group."""
+    for number, group in enumerate(file.groups):
+        for index in range(len(group.channels)):
+            if index != file.masters_db.get(number) and group.channel_group.cycles_nr:
+                signal = file.get(group=number, index=index)
+                if np.asarray(signal.samples).dtype.kind in "fiu":
+                    values, time = (np.asarray(part, dtype=np.float64) for part in (signal.samples, signal.timestamps))
+                    yield SampledChannel(TableColumn(signal.name, unit=str(signal.unit) or None), values, None, time)
 
 
 def _list_channels(file: Any, largest: int, where: str) -> tuple[str, ...]:

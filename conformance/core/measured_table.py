@@ -2,7 +2,7 @@
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -26,7 +26,9 @@ LIBRARY_ERRORS: tuple[type[Exception], ...] = (
 )
 """Exceptions that the libraries of the file formats raise for damaged files."""
 
-SAMPLED_TOGETHER = "All channels of a record need the same sampling times."
+SAMPLED_TOGETHER = (
+    "All channels of a table need the same sampling times: name those of each rate in [columns], or in one [[source]]."
+)
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,13 @@ class EveryChannel:
     """Request for every channel of a file, by the names in the file."""
 
 
+@dataclass(frozen=True)
+class EveryRate(EveryChannel):
+    """Request for every channel of a file, with one table for the channels that are sampled together."""
+
+
 EVERY_CHANNEL = EveryChannel()
+EVERY_RATE = EveryRate()
 
 ChannelNames = tuple[str, ...] | EveryChannel
 """Names of the channels in a sidecar, in the order of its columns; empty for a file that describes itself."""
@@ -156,6 +164,53 @@ def stack_channels(channels: list[RealArray], where: str, largest: int) -> RealA
     if sum(channel.size for channel in channels) > largest:
         raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
     return np.column_stack(channels)
+
+
+@dataclass(frozen=True)
+class SampledChannel:
+    """Channel of a file whose channels may have different rates."""
+
+    column: TableColumn
+    values: RealArray
+    """Samples, (n,)."""
+    step: float | None = None
+    """Sampling interval that the file states [s]."""
+    time: RealArray | None = None
+    """Times of the samples, (n,) [s]."""
+
+
+def group_by_sampling(source: str, channels: Iterable[SampledChannel], largest: int) -> list[MeasuredTable]:
+    """Tables of the channels that are sampled together, that with the most samples first.
+
+    Args:
+        source: Name of the file.
+        channels: All channels of the file.
+        largest: Largest accepted number of values.
+
+    Raises:
+        InputError: There is no channel with samples, or there are too many values.
+    """
+    groups = dict[tuple[object, ...], list[SampledChannel]]()
+    for channel in channels:
+        if channel.values.size:
+            times = None if channel.time is None else (channel.time[0], channel.time[-1])
+            step = None if channel.step is None else round(channel.step, 12)
+            groups.setdefault((channel.values.size, step, times), []).append(channel)
+    where = f"record '{source}'"
+    if not groups:
+        raise InputError(where, "holds no channel of numbers", "Export the record again.")
+    if sum(channel.values.size for group in groups.values() for channel in group) > largest:
+        raise InputError(where, f"holds more than {largest} numbers", "Shorten the record, or leave channels out.")
+    return [
+        MeasuredTable(
+            source,
+            np.column_stack([channel.values for channel in group]),
+            tuple(channel.column for channel in group),
+            time=group[0].time,
+            rate=1 / group[0].step if group[0].step else None,
+        )
+        for group in sorted(groups.values(), key=lambda group: -group[0].values.size)
+    ]
 
 
 # File formats of measured tables. A new format is a file beside this one and a row in `TABLE_FORMATS`.

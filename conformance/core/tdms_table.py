@@ -1,6 +1,7 @@
 """TDMS tables (LabVIEW), with a sidecar; needs the extra `tdms`."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -9,16 +10,21 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.measured_table import (
     SAMPLED_TOGETHER,
     ChannelNames,
+    EveryRate,
     MeasuredTable,
+    SampledChannel,
     TableColumn,
     convert_damage_errors,
+    group_by_sampling,
     stack_channels,
 )
 
 
 def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[MeasuredTable]:
-    """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`."""
-    del names  # `drop_sidecar` compares the names of the columns with the sidecar
+    """Read the run of a TDMS file, channels in the order of the file; arguments and errors as in `Reader`.
+
+    `drop_sidecar` compares the names of the columns with the sidecar.
+    """
     from nptdms import TdmsFile
 
     where = f"record '{path.name}'"
@@ -33,12 +39,21 @@ def read_tdms_table(path: Path, names: ChannelNames, largest: int) -> list[Measu
     kept = [(channel, vector) for channel, vector in zip(channels, vectors, strict=True) if vector.size]
     if not kept:
         raise InputError(where, "holds no samples", "Export the record again.")
+    if isinstance(names, EveryRate):
+        found = (
+            SampledChannel(_describe(channel), vector, channel.properties.get("wf_increment"))
+            for channel, vector in kept
+        )
+        return group_by_sampling(path.name, found, largest)
     values = stack_channels([vector for _, vector in kept], where, largest)
     steps = {channel.properties.get("wf_increment") for channel, _ in kept}
     if len(steps) > 1:
         raise InputError(where, "has channels with different sampling intervals", SAMPLED_TOGETHER)
     (step,) = steps
-    columns = tuple(
-        TableColumn(channel.name, unit=str(channel.properties.get("unit_string") or "") or None) for channel, _ in kept
-    )
+    columns = tuple(_describe(channel) for channel, _ in kept)
     return [MeasuredTable(path.name, values, columns, rate=1 / float(step) if step else None)]
+
+
+def _describe(channel: Any) -> TableColumn:
+    """Name and unit of a channel."""
+    return TableColumn(channel.name, unit=str(channel.properties.get("unit_string") or "") or None)

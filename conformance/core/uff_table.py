@@ -14,9 +14,12 @@ from pantocheck.conformance.core.measured_table import (
     SAMPLED_TOGETHER,
     ChannelNames,
     EveryChannel,
+    EveryRate,
     MeasuredTable,
+    SampledChannel,
     TableColumn,
     convert_damage_errors,
+    group_by_sampling,
     stack_channels,
 )
 from pantocheck.conformance.core.units import SI_UNITS, MotionQuantity
@@ -41,14 +44,24 @@ def read_uff_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
     where = f"record '{path.name}'"
     # pyuff raises plain `Exception` for some damaged files, and leaves out keys for others.
     with convert_damage_errors(where, "a universal file", Exception):
-        return [_build_table(_read_sets(path, where), path.name, names, largest)]
+        return _build_tables(_read_sets(path, where), path.name, names, largest)
 
 
-def _build_table(sets: list[dict[str, Any]], source: str, names: ChannelNames, largest: int) -> MeasuredTable:
-    """Table of the time responses among data sets."""
+def _build_tables(sets: list[dict[str, Any]], source: str, names: ChannelNames, largest: int) -> list[MeasuredTable]:
+    """Table of the time responses among data sets; tables, if their rates may differ."""
     where, sets = f"record '{source}'", [data_set for data_set in sets if data_set.get("func_type") == TIME_RESPONSE]
     if not sets:
         raise InputError(where, "holds no time response (data set 58, function type 1)", "Export time histories.")
+    if isinstance(names, EveryRate):
+        channels = (
+            SampledChannel(
+                TableColumn(title, unit=_unit_label(data_set)),
+                np.real(data_set["data"]).astype(np.float64),
+                float(data_set["abscissa_inc"]),
+            )
+            for title, data_set in zip(_find_titles(sets), sets, strict=True)
+        )
+        return group_by_sampling(source, channels, largest)
     values = stack_channels([np.real(data_set["data"]).astype(np.float64) for data_set in sets], where, largest)
     steps = {round(float(data_set["abscissa_inc"]), 12) for data_set in sets}
     if len(steps) > 1:
@@ -62,12 +75,12 @@ def _build_table(sets: list[dict[str, Any]], source: str, names: ChannelNames, l
         columns = tuple(
             TableColumn(title, unit=_unit_label(data_set)) for title, data_set in zip(titles, sets, strict=True)
         )
-        return MeasuredTable(source, values, columns, rate=1 / step)
+        return [MeasuredTable(source, values, columns, rate=1 / step)]
     columns = tuple(
         _read_stated_facts(data_set) if names else _read_column(data_set, f"{where}, data set {number}")
         for number, data_set in enumerate(sets, 1)
     )
-    return MeasuredTable(source, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))
+    return [MeasuredTable(source, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))]
 
 
 def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:

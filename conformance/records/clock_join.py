@@ -21,7 +21,7 @@ import scipy
 
 from pantocheck.conformance.core.array_types import RealArray
 
-KINK_LENGTH_M = 5.0
+PULSE_LENGTH_M = 5.0
 """Distance L, and largest distance of a pulse from its passage [m]."""
 
 NEIGHBOURHOOD_M = 150.0
@@ -30,7 +30,7 @@ NEIGHBOURHOOD_M = 150.0
 SMALLEST_MATCH = 0.7
 """Smallest match of a passage; with two pantographs, a pattern that is one of them late has about 0.6."""
 
-SMALLEST_KINK = 5.0
+SMALLEST_PULSE = 5.0
 """Smallest kink of a pulse, in robust standard deviations of b; noise alone has 4.5 in a minute at 200 Hz."""
 
 SIGNIFICANT = 3.0
@@ -132,7 +132,7 @@ class Passages:
     @cached_property
     def pulses(self) -> RealArray:
         """Pulses at each support and even time, (s, m) [m]; 0 where no kink stands out from the noise."""
-        lag, rows = KINK_LENGTH_M / self.speed, np.zeros((len(self.uplift), self.even.size))
+        lag, rows = PULSE_LENGTH_M / self.speed, np.zeros((len(self.uplift), self.even.size))
         for row, uplift in zip(rows, self.uplift, strict=True):
             known = np.isfinite(uplift)
             if known.sum() < 2:
@@ -141,7 +141,7 @@ class Passages:
             middle, before, after = (np.interp(self.even + dt, self.time[known], level) for dt in (0.0, -lag, lag))
             kink = 2 * middle - before - after
             noise = 1.4826 * float(np.median(np.abs(kink - np.median(kink))))
-            row[:] = np.where(kink > SMALLEST_KINK * noise, np.sqrt(np.maximum(kink, 0) * np.maximum(middle, 0)), 0.0)
+            row[:] = np.where(kink > SMALLEST_PULSE * noise, np.sqrt(np.maximum(kink, 0) * np.maximum(middle, 0)), 0.0)
         return rows
 
     def compare_patterns(self) -> "PatternComparison":
@@ -167,7 +167,7 @@ class Passages:
         ties = np.full(self.moments.shape, np.nan)
         for place in np.argwhere(np.isfinite(self.moments)):
             row, expected = self.pulses[place[0]], self.moments[tuple(place)] - shift
-            near = np.flatnonzero(np.abs(self.even - expected) <= KINK_LENGTH_M / self.speed)
+            near = np.flatnonzero(np.abs(self.even - expected) <= PULSE_LENGTH_M / self.speed)
             if near.size and row[near].max() > 0:
                 ties[tuple(place)] = self._refine(row, int(near[np.argmax(row[near])]))
         return ties

@@ -20,7 +20,7 @@ from pantocheck.conformance.quantities.line_signals import (
     stack_supports,
     supports_inside,
 )
-from pantocheck.conformance.records.clock_join import KINK_LENGTH_M, SMALLEST_MATCH, Clock, Passages, fit_clock
+from pantocheck.conformance.records.clock_join import PULSE_LENGTH_M, SMALLEST_MATCH, Clock, Passages, fit_clock
 from pantocheck.conformance.records.record import ChannelRows
 
 PULSE_SHIFT_M = 1.0
@@ -141,7 +141,7 @@ def align_source(source: SourceSamples, train: PlacedTrain) -> Alignment:
     moments = np.array([train.find_times(place) for place in source.supports])
     passages = Passages(source.time, source.uplift, moments, train.speed)
     comparison, middle = passages.compare_patterns(), float(source.time.mean())
-    stated, tolerance = source.clock.shift_at(middle), KINK_LENGTH_M / train.speed + source.clock.uncertainty
+    stated, tolerance = source.clock.shift_at(middle), PULSE_LENGTH_M / train.speed + source.clock.uncertainty
     if source.kind == "passage":
         tolerance = source.clock.uncertainty
         found = comparison.list_passages(stated - tolerance, stated + tolerance)

@@ -10,7 +10,9 @@ from pantocheck.conformance.core.channel_names import find_factor
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.measured_table import (
     EVERY_CHANNEL,
+    EVERY_RATE,
     MDF,
+    SAMPLED_TOGETHER,
     ChannelNames,
     MeasuredTable,
     TableColumn,
@@ -45,13 +47,24 @@ def read_single_table(path: Path, file: ColumnFile, used: tuple[str, ...]) -> Me
     Raises:
         InputError: The file cannot be read, or holds several runs.
     """
-    # Groups of an MDF file have their own times: the named channels decide which group is read.
-    named = file.columns is not None and path.suffix.lower() in MDF.suffixes
-    names: ChannelNames = tuple(name for name in used if name != TIME_COLUMN) if named else EVERY_CHANNEL
+    names: ChannelNames = EVERY_CHANNEL if file.columns is None else EVERY_RATE
+    if file.columns is not None and path.suffix.lower() in MDF.suffixes:
+        # Groups of an MDF file have their own times: the named channels decide which group is read.
+        names = tuple(name for name in used if name != TIME_COLUMN)
     tables = read_tables(path, names, MAX_SAMPLES, layout=file.table)
-    if len(tables) > 1:
+    if len(tables) > 1 and tables[0].run:
         raise InputError(f"record '{path.name}'", f"holds {len(tables)} runs", "Write one file per run.")
-    return tables[0]
+    needed = [{name for name in used if name in _list_labels(table)} for table in tables]
+    together = set[str]().union(*needed)
+    if together not in needed:
+        rates = "; ".join(", ".join(sorted(part)) for part in needed if part)
+        found = f"the columns have different sampling times: {rates[:200]}"
+        raise InputError(f"record '{path.name}'", found, SAMPLED_TOGETHER)
+    return tables[needed.index(together)]
+
+
+def _list_labels(table: MeasuredTable) -> list[str]:
+    return [column.label for column in add_time_column(table).columns]
 
 
 def read_rows(

@@ -13,12 +13,10 @@ from pantocheck.conformance.quantities.line_signals import SUPPORT_TOLERANCE_M, 
 from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples, complete_samples
+from pantocheck.conformance.records.source_alignment import GAP_STEPS
 
 SHORT_GAP_S = 0.01
 """Longest gap that is interpolated [s]: a fifth of a period at 20 Hz, too short to hide content below 20 Hz."""
-
-GAP_STEPS = 1.5
-"""Smallest gap between two samples, over the median sampling interval [-]."""
 
 SHORTEST_S = 1.0
 """Shortest usable part [s]: its lowest band, 0-5 Hz, then has a few spectral lines."""

@@ -1,22 +1,26 @@
 """`pantocheck describe`: channels, rates, ranges and gaps of a measured file, and a sidecar to complete."""
 
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput, Unwrapped
 from pantocheck.conformance.app.commands.console import FittedTable, build_table, escape_text, indent_text
 from pantocheck.conformance.app.commands.new_command import write_new_file
+from pantocheck.conformance.app.commands.sidecar_drafts import (
+    DescribedTable,
+    draft_drop_sidecar,
+    draft_record_sidecar,
+)
 from pantocheck.conformance.core.csv_table import open_text_table
 from pantocheck.conformance.core.input_error import InputError
-from pantocheck.conformance.core.measured_table import CSV, EVERY_CHANNEL, MeasuredTable, read_tables
+from pantocheck.conformance.core.measured_table import CSV, EVERY_RATE, MeasuredTable, read_tables
 from pantocheck.conformance.core.text_reading import SEPARATOR_NAMES
 from pantocheck.conformance.core.text_settings import TextSettings, name_encoding
-from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.drops.drop_reading import LARGEST_DROP
 from pantocheck.conformance.records.channel_facts import (
@@ -24,16 +28,15 @@ from pantocheck.conformance.records.channel_facts import (
     TimeFacts,
     find_time,
     guess_channels,
-    is_acceleration,
-    is_drop_channel,
     list_channel_facts,
-    list_force_signals,
 )
-from pantocheck.conformance.records.record import CHANNELS, find_column
 
 
 def describe_command(
-    file: Annotated[Path, typer.Argument(help="File of a measurement: CSV, HDF5, MATLAB, UFF, TDMS or MDF.")],
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE ...", help="Files of a measurement: CSV, HDF5, MATLAB, UFF, TDMS or MDF."),
+    ],
     sidecar: Annotated[
         Path | None, typer.Option("--sidecar", "--out", help="Write a commented sidecar to this new file.")
     ] = None,
@@ -46,13 +49,15 @@ def describe_command(
     header_lines: Annotated[int | None, typer.Option(help="Lines above the names of a text table.")] = None,
     encoding: Annotated[str | None, typer.Option(help="Encoding of a text table.")] = None,
 ) -> CommandOutput:
-    """Describe the channels of a measured file.
+    """Describe the channels of a measured file, or of several files of one measurement.
 
     Examples:
 
     pantocheck describe logger.csv
 
     pantocheck describe logger.csv --sidecar logger.toml
+
+    pantocheck describe train.csv mast.csv --sidecar passage.toml
     """
     if kind not in (None, "record", "mass-drop"):
         raise InputError("option --kind", f"there is no kind {kind!r}", "Give record or mass-drop.")
@@ -62,33 +67,67 @@ def describe_command(
     )
     if sidecar is not None and sidecar.exists():
         raise InputError(f"file '{sidecar}'", "exists already", "Give another name; no file is overwritten.")
-    tables = _read(file, layout)
-    facts, time = list_channel_facts(tables[0]), find_time(tables[0])
-    moves = "force" not in guess_channels(facts) and any(map(is_acceleration, facts))
-    drop = kind == "mass-drop" or (kind is None and moves)
-    runs = [f"{len(tables)} runs; the first one is described"] if len(tables) > 1 else []
-    size = f"{len(facts)} columns, {tables[0].values.shape[0]} samples"
-    lines = [*_describe_layout(file, layout), *runs, size, *_describe_time(time)]
+    parts = [part for file in files for part in _describe_parts(file, layout)]
+    drop = kind == "mass-drop" or (kind is None and any(part.moves for part in parts))
+    if drop and len(files) > 1:
+        raise InputError(f"file '{files[1].name}'", "is a second file of a mass drop", "Describe each file alone.")
+    if not drop:  # the first file of a record holds the force
+        parts.sort(key=lambda part: -len(guess_channels(part.facts).get("force", [])))
     if sidecar is not None:
-        draft = draft_drop_sidecar if drop else draft_record_sidecar
-        write_new_file(sidecar, draft(file.name, facts, time, layout))
+        draft = draft_drop_sidecar(parts[0], layout) if drop else draft_record_sidecar(parts, layout)
+        write_new_file(sidecar, draft)
         follow = "drop identify" if drop else "assess"
         next_step = [f"Complete it, then: pantocheck check {sidecar}, and pantocheck {follow}"]
     else:
-        next_step = ["A sidecar to complete:", f"  pantocheck describe {file} --sidecar {file.with_suffix('.toml')}"]
+        names = " ".join(map(str, files))
+        next_step = [
+            "A sidecar to complete:",
+            f"  pantocheck describe {names} --sidecar {files[0].with_suffix('.toml')}",
+        ]
+    described = [
+        {
+            "time": None if part.time is None else _list_facts(part.time),
+            "channels": [_list_facts(fact) for fact in part.facts],
+        }
+        for part in parts
+    ]
+    several = [{"file": part.file, **facts} for part, facts in zip(parts, described, strict=True)]
     return CommandOutput(
-        escape_text(f"{file.name}: {file.stat().st_size / 1e6:.3g} MB"),
-        {"time": None if time is None else _list_facts(time), "channels": [_list_facts(fact) for fact in facts]},
+        escape_text("\n".join(f"{file.name}: {file.stat().st_size / 1e6:.3g} MB" for file in files)),
+        described[0] if len(parts) == 1 else {"sources": several},
         [
-            *(indent_text(line.lstrip(" "), line[: len(line) - len(line.lstrip(" "))]) for line in lines),
-            Text(),
-            _build_channel_table(facts),
-            *(indent_text(remark, f"{fact.column.label}: ") for fact in facts for remark in fact.remarks),
-            Text(),
+            *(line for part in parts for line in _show(part, files, layout, named=len(parts) > 1)),
             *(Unwrapped(escape_text(line).plain) for line in next_step),
         ],
         files=[] if sidecar is None else [sidecar],
     )
+
+
+def _describe_parts(file: Path, layout: TextSettings) -> list[DescribedTable]:
+    """Facts on each rate of a file, or on its first run."""
+    tables = _read(file, layout)
+    shown = tables[:1] if tables[0].run else [table for table in tables if table.values.shape[0] > 1] or tables[:1]
+    runs = len(tables) if tables[0].run else 1
+    return [
+        DescribedTable(file.name, table.values.shape[0], list_channel_facts(table), find_time(table), runs)
+        for table in shown
+    ]
+
+
+def _show(
+    part: DescribedTable, files: Sequence[Path], layout: TextSettings, *, named: bool
+) -> Iterator[RenderableType]:
+    """Lines and table of a part for the terminal."""
+    file = next(file for file in files if file.name == part.file)
+    name = [f"{part.file}:"] if named else []
+    runs = [f"{part.runs} runs; the first one is described"] if part.runs > 1 else []
+    size = f"{len(part.facts)} columns, {part.samples} samples"
+    for line in (*name, *_describe_layout(file, layout), *runs, size, *_describe_time(part.time)):
+        yield indent_text(line.lstrip(" "), line[: len(line) - len(line.lstrip(" "))])
+    yield Text()
+    yield _build_channel_table(part.facts)
+    yield from (indent_text(remark, f"{fact.column.label}: ") for fact in part.facts for remark in fact.remarks)
+    yield Text()
 
 
 def _list_facts(facts: ChannelFacts | TimeFacts) -> dict[str, object]:
@@ -100,7 +139,7 @@ def _list_facts(facts: ChannelFacts | TimeFacts) -> dict[str, object]:
 def _read(file: Path, layout: TextSettings) -> list[MeasuredTable]:
     """Tables of the file; a hint on the sidecar names the options of this command, too."""
     try:
-        return read_tables(file, EVERY_CHANNEL, LARGEST_DROP, layout=layout)
+        return read_tables(file, EVERY_RATE, LARGEST_DROP, layout=layout)
     except InputError as error:
         if "[table]" not in error.hint:
             raise
@@ -148,155 +187,3 @@ def _build_channel_table(facts: Sequence[ChannelFacts]) -> FittedTable:
         missing = f"{100 * fact.missing:.2g} %" if fact.missing else ""
         table.add_row(name, unit, f"{fact.smallest:.5g}", f"{fact.largest:.5g}", missing)
     return table
-
-
-# Commented sidecars of a logger file, to be completed.
-TO_DO = "COMPLETE:"
-"""Mark of the lines that the user completes."""
-
-
-def draft_record_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
-    """Sidecar of a contact-force record, for a table with some columns, a time and a stated layout."""
-    own = all(find_column(fact.column.name or "", fact.column.row) for fact in facts)
-    guesses = guess_channels(facts)
-    forces = len(guesses.get("force", [])) or 1
-    lines = [
-        f"# Sidecar of {file}. Complete the lines with {TO_DO.rstrip(':')}, and check the others.",
-        f"# See {DocumentationPage.RECORDS}, and {DocumentationPage.LOGGER_FILES}.",
-        'schema = "pantocheck.record/1"',
-        f"file = {json.dumps(file, ensure_ascii=False)}",
-        f"# speed_km_h = 250.0              # {TO_DO} nominal speed of the train",
-        f"pantographs = {forces:<19} # check: pantographs with a contact force",
-        f'# filter_applied_Hz = "none"      # {TO_DO} cut-off of a low-pass filter before recording, or "none"',
-        f"# evaluated_m = [0.0, 1000.0]     # {TO_DO} start and end of the analysis section, x in running direction",
-    ]
-    if forces > 1:
-        spacing = ", ".join(["200.0"] * (forces - 1))
-        lines.append(f"# spacing_m = [{spacing}]".ljust(34) + f"# {TO_DO} distances between successive pantographs")
-    lines.append("# support_position_m = []         # positions of the supports with an uplift, x in running direction")
-    lines += _list_layout(layout)
-    lines += ["", "[line]", "# span_m = 65.0                   # longest span", "# wave_speed_m_s = 120.0"]
-    lines += ["# uplift_space_mm = 120.0         # space for the uplift at the supports"]
-    lines += ["", "[system]", 'name = "measurement"              # name of the measuring system']
-    if not own:
-        lines += _list_column_lines(facts, guesses, time)
-    lines += _list_position_help(guesses)
-    return "\n".join(lines) + "\n"
-
-
-def _list_layout(layout: TextSettings) -> list[str]:
-    stated = layout.model_dump(exclude_none=True)
-    return ["", "[table]", *(f"{key} = {json.dumps(value)}" for key, value in stated.items())] if stated else []
-
-
-def _list_column_lines(
-    facts: Sequence[ChannelFacts], guesses: dict[str, list[ChannelFacts]], time: TimeFacts | None
-) -> Iterator[str]:
-    """Lines of the table `columns`: guesses by unit and name, and the other columns as comments."""
-    used = set[int]()
-    yield from ("", "[columns]                          # guessed from names and units: check each line")
-    if time is not None and time.column is not None:
-        fact = next(fact for fact in facts if fact.column is time.column)
-        used.add(id(fact))
-        yield _column_line("time_s", fact, "s" if fact.unit is None else None)
-    elif time is None:
-        yield f'# time_s = {{ column = "...", unit = "s" }}   # {TO_DO} column of the time'
-    for channel, found in guesses.items():
-        several = CHANNELS[channel].per == "support"
-        for number, fact in enumerate(found, 1):
-            used.add(id(fact))
-            name = CHANNELS[channel].column(number)
-            remark = f"   # {TO_DO} support_position_m above" if several else ""
-            yield f"{'# ' if several else ''}{_column_line(name, fact, None)}{remark}"
-    if len(guesses.get("force", [])) > 1:
-        yield "# forces of one pantograph (left and right): one [columns.force_1_N] with sum = [...], see"
-        yield f"# {DocumentationPage.LOGGER_FILES}"
-    signals = list_force_signals(facts)
-    used |= {id(fact) for fact in signals}
-    for number, fact in enumerate(signals, 1):
-        column = json.dumps(fact.column.label, ensure_ascii=False)
-        yield f'# force_{number}_N = {{ column = {column}, unit = "N", scale = 1.0 }}   # {TO_DO} N per {fact.unit}'
-    if len(signals) > 1:
-        yield "# or the sum of several sensors of one pantograph: [columns.force_1_N] with sum"
-        yield f"# in {DocumentationPage.LOGGER_FILES}"
-    if "force" not in guesses and not signals:
-        yield f'# force_1_N = {{ column = "...", unit = "N" }}   # {TO_DO} column of the contact force'
-    unused = [fact.column.label for fact in facts if id(fact) not in used and fact.column.label]
-    if unused:
-        yield f"# not used: {', '.join(json.dumps(name, ensure_ascii=False) for name in unused)}"
-
-
-def _column_line(name: str, fact: ChannelFacts, unit: str | None) -> str:
-    stated = fact.unit if fact.unit is not None else unit
-    column = json.dumps(fact.column.label, ensure_ascii=False)
-    known = f", unit = {json.dumps(stated, ensure_ascii=False)}" if stated is not None else ""
-    remark = "" if stated is not None else f"   # {TO_DO} unit"
-    return f"{name} = {{ column = {column}{known} }}{remark}"
-
-
-def _list_position_help(guesses: dict[str, list[ChannelFacts]]) -> Iterator[str]:
-    """Commented tables for the position."""
-    kilometres = [fact for fact in guesses.get("position", []) if fact.unit == "km"]
-    if kilometres:
-        direction = "decreasing" if kilometres[0].trend < 0 else "increasing"
-        yield from (
-            "",
-            f"# [track]                        # {TO_DO} the position is a kilometre of the line, which x counts from",
-            "# zero_km = 0.0                  # x = 0",
-            f'# kilometres = "{direction}"      # in running direction, as in the file',
-        )
-    elif "position" not in guesses:
-        yield from (
-            "",
-            "# position: a column position_1_m above; or speed_m_s above and start_m = 0.0 at the top; or",
-            "# [position]",
-            '# kind = "counter"               # or "pulses", "marks"',
-            '# column = "..."',
-            "# metres_per_pulse = 0.25",
-            "# start_m = 0.0",
-        )
-
-
-def draft_drop_sidecar(file: str, facts: Sequence[ChannelFacts], time: TimeFacts | None, layout: TextSettings) -> str:
-    """Sidecar of a mass-drop record."""
-    others = [fact for fact in facts if time is None or fact.column is not time.column]
-    channels = [(number, fact) for number, fact in enumerate(others, 1) if fact.missing < 1 and is_drop_channel(fact)]
-    unused = [fact.column.label for fact in others if all(fact is not used for _, used in channels)]
-    rate = "200.0" if time is None else f"{time.rate:.6g}"
-    rate = rate if "." in rate or "e" in rate else f"{rate}.0"
-    lines = [
-        f"# Sidecar of {file}. Complete the lines with {TO_DO.rstrip(':')}, and check the others.",
-        f"# See {DocumentationPage.IDENTIFICATION}.",
-        "[test]",
-        'name = ""',
-        "# spans_m = [63.0, 63.0]          # lengths of the spans",
-        "# cw_tension_n = 20000.0          # tension of one contact wire",
-        "# mw_tension_n = 15000.0",
-        "",
-        "[drop]",
-        "# mass_kg = 40.0",
-        '# wire = "CW"                     # CW contact wire, MW messenger wire',
-        "# position_m = 0.0                # from the first support",
-        "",
-        "[record]",
-        f"sampling_rate_hz = {rate:<16}# {'COMPLETE' if time is None else 'found in the file'}",
-        "# trigger_nominal_s = 5.0         # planned time of the release",
-        *_list_layout(layout),
-    ]
-    if unused:
-        lines += ["", f"# not used: {', '.join(json.dumps(name, ensure_ascii=False) for name in unused)}"]
-    for number, fact in channels:
-        name = fact.column.name or f"channel {number}"
-        unit = json.dumps(fact.unit or "m/s2", ensure_ascii=False)
-        lines += [
-            "",
-            "[[channel]]",
-            f"column = {number}",
-            f"name = {json.dumps(name, ensure_ascii=False)}",
-            f"sensor = {number:<26}# {TO_DO} one number per sensor",
-            f'direction = "+z"                  # {TO_DO} x along the track, y lateral, z upward',
-            f"unit = {unit:<28}# {'found in the file' if fact.unit else f'{TO_DO} unit'}",
-            '# wire = "CW"',
-            "# position_m = 0.0                # from the first support",
-        ]
-    return "\n".join(lines) + "\n"
