@@ -67,21 +67,19 @@ class SignatureReport:
 
     @property
     def contradictions(self) -> tuple[str, ...]:
-        """Damaged signatures and changes of the document, and signers who are not trusted although roots are given."""
-        lines = [*self.changes]
-        for number, facts in enumerate(self.signatures, 1):
-            if facts.damage:
-                lines.append(f"signature {number} ({facts.signer}): {facts.damage}")
-            elif self.roots_given and facts.distrust:
-                lines.append(f"signature {number} ({facts.signer}): not trusted, {facts.distrust}")
-        if self.roots_given and not self.signatures and self.note:
-            lines.append(self.note)
-        return tuple(lines)
+        """Changes of the document and damaged signatures; an unknown signer contradicts nothing."""
+        return self.changes + self.damages
+
+    @property
+    def damages(self) -> tuple[str, ...]:
+        """Signatures that do not hold for the content."""
+        damaged = ((number, facts) for number, facts in enumerate(self.signatures, 1) if facts.damage)
+        return tuple(f"signature {number} ({facts.signer}): {facts.damage}" for number, facts in damaged)
 
     @property
     def authentic(self) -> bool:
         """Whether every signature leads to a given trust root, there is one, and nothing was changed since."""
-        return bool(self.signatures) and self.roots_given and not self.contradictions
+        return bool(self.signatures) and not self.changes and all(facts.trusted for facts in self.signatures)
 
 
 def describe_signatures(report: SignatureReport) -> list[str]:

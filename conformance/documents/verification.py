@@ -165,14 +165,22 @@ def check_origin(report: SignatureReport) -> list[DocumentCheck]:
     """
     lines = tuple(describe_signatures(report))
     checks = []
-    if report.contradictions:
-        text = "The signatures do not hold, or the document was changed after signing."
-        checks.append(DocumentCheck("contradicted", text, report.contradictions))
+    if report.changes:
+        text = "The file was changed after signing." if report.signatures else "The signatures cannot be read."
+        checks.append(DocumentCheck("contradicted", text, report.changes))
+    if report.damages:
+        checks.append(DocumentCheck("contradicted", "A signature does not hold for this file.", report.damages))
     if report.note:
         return [*checks, DocumentCheck("incomplete", "The origin of the document.", lines)]
+    if report.signatures and not checks:
+        checks.append(DocumentCheck("proved", UNCHANGED if len(report.signatures) == 1 else ALL_UNCHANGED))
     if report.authentic:
-        return [DocumentCheck("proved", "Every signature holds, and its signer leads to a given trust root.", lines)]
+        return [*checks, DocumentCheck("proved", "Every signer leads to a given trust root.", lines)]
     return [*checks, DocumentCheck("open", "The origin of the document.", lines)]
+
+
+UNCHANGED = "The signature holds: it covers the whole file, and nothing was changed since."
+ALL_UNCHANGED = "Every signature holds: they cover the whole file, and only signatures were added since the first."
 
 
 # Completeness of results: parts that every run writes must not be missing.

@@ -80,10 +80,15 @@ class Translation:
 
 
 @cache
+def read_sections(language: str) -> Mapping[str, Mapping[str, str]]:
+    """Entries of a language by their section: English text and translation."""
+    return tomllib.loads((TEMPLATES / "languages" / f"{language}.toml").read_text("utf-8"))
+
+
+@cache
 def read_catalogue(language: str) -> Mapping[str, str]:
     """Entries of a language: English text and translation."""
-    content = tomllib.loads((TEMPLATES / "languages" / f"{language}.toml").read_text("utf-8"))
-    return {key: text for section in content.values() for key, text in section.items()}
+    return {key: text for section in read_sections(language).values() for key, text in section.items()}
 
 
 @cache

@@ -44,22 +44,6 @@ const RECORD_CHECKS = {
   }]
 };
 
-// Facts that only `pantocheck verify` can prove; a test holds this list against its checks.
-const ONLY_VERIFY = [
-  ["pages", "Texts, figures and metadata are those that the embedded results give, byte for byte."],
-  ["library", "Inputs, limits, units, texts and warnings of a library case are those of the installed library."],
-  ["cases from outside", "Inputs, limits and texts of a case from outside are those of its distribution or folder."],
-  ["revocation", "No certificate of a signer was revoked (lists among the trust roots)."],
-  ["record", "The record itself: the numbers of its consistency checks, and its digest (option --record)."],
-  ["rerun", "A new run of the simulator gives the same values (option --rerun)."],
-  ["suite", "The stated version of the suite has the stated digest."],
-  ["format", "Every key of results.json belongs to its format."],
-  ["statements", "No case is repeated, no note foreign, the run did not start in the future, and every reason follows."],
-  ["dossier", "The verdicts of the steps of a dossier, and the bounds of a comparison with a baseline."],
-  ["remarks", "Remarks on other readings of the evaluation, and on limits that a user widened."],
-  ["static values", "Values of the line at rest, of studies and of the reference simulator."],
-];
-
 function checkStatistics(values) {
   const { mean_force_N: m, std_force_N: std, std_force_50_N: std50 } = values, expected = {};
   const known = (x) => typeof x === "number";
@@ -93,7 +77,7 @@ async function checkSignals(result) {
     signals = await unpackSignals(samples);
   } catch (error) {
     if (!(error instanceof Damaged)) throw error;
-    return { found: [...found, `the embedded signals: ${error.message}`], parts: {} };
+    return { found: [...found, `the embedded signals: ${error.message}`], parts: {}, computed: {} };
   }
   const evaluated = evaluateSignals(samples, signals, run.filter, samples.evaluated_m), { parts } = evaluated;
   found.push(...compareQuantities(result.quantities, evaluated.found));
@@ -131,7 +115,7 @@ async function checkSignals(result) {
     if (uplift) places["0"] = { [UPLIFT]: { position_m: uplift.x, time_s: signals.time[uplift.sample] } };
   }
   found.push(...compareTrees({ "place of an extreme": result.places ?? {} }, { "place of an extreme": places }, EXACT));
-  return { found, parts };
+  return { found, parts, computed: evaluated.found };
 }
 
 // Every drawn point of the uplift is that of the signals, where they are embedded.
@@ -220,6 +204,15 @@ function checkCause({ record, signals, quantities, run }, { check, basis }) {
   return applies[check] ? ["'does not apply' stated, but the results show that it applies"] : [];
 }
 
+// State of a record and its reason, from the outcomes of its checks.
+function judgeState({ checks = [], reason: stated }) {
+  const of = (...outcomes) => checks.filter((row) => outcomes.includes(row.outcome)).map((row) => row.text);
+  const [bad, open] = [of("contradiction"), of("doubt", "unchecked")];
+  if (!checks.length) return { state: "unconfirmed", reason: stated };
+  const reason = (bad.length ? bad : open).join("; ") || "every consistency check that applies confirms the record";
+  return { state: bad.length ? "contradicted" : open.length ? "unconfirmed" : "consistent", reason };
+}
+
 // The state of a record follows from the outcomes of its checks, and these fit the remarks of the case.
 function checkState(result) {
   const { record, notes, warnings } = result;
@@ -240,10 +233,7 @@ function checkState(result) {
     const note = notes.find((text) => text.startsWith(`the ${check} check was not made`) && !texts.includes(text));
     if (note) found.push(`check '${check}': a note says that it was not made, its row does not`);
   });
-  const of = (...outcomes) => rows.filter((row) => outcomes.includes(row.outcome)).map((row) => row.text);
-  const [bad, open] = [of("contradiction"), of("doubt", "unchecked")];
-  const state = bad.length ? "contradicted" : open.length ? "unconfirmed" : "consistent";
-  const reason = (bad.length ? bad : open).join("; ") || "every consistency check that applies confirms the record";
+  const { state, reason } = judgeState(record);
   if (record.state !== state || record.reason !== reason) {
     found.push(`state '${record.state}' of the record stated (${record.reason}); '${state}' follows from its checks (${reason})`);
   }
@@ -298,18 +288,21 @@ function buildScope(cases) {
 
 // Contradictions between the numbers and verdicts of results.
 async function checkNumbers(results) {
-  const found = [], decided = decideRun(results), evaluated = {};
+  const found = [], decided = decideRun(results), evaluated = {}, computed = {};
   for (const result of results.cases) {
     found.push(...checkCase(result, results));
     if (result.signals) {
       const checked = await checkSignals(result);
       found.push(...checked.found.map((text) => `${result.id}: ${text}`));
       evaluated[result.id] = checked.parts;
+      computed[result.id] = checked.computed;
     }
   }
+  const cases = results.cases.map((result, i) => ({ ...result, verdict: decided.cases[i] }));
+  const procedure = results.procedure && decideProcedure({ ...results, cases });
   const pairs = [
     ...results.cases.map((result, i) => [`${result.id}: `, result.verdict, decided.cases[i]]),
-    ...(results.procedure ? [] : [["", results.verdict, decided.verdict]]),
+    ["", results.verdict, procedure ? judgeProcedure(procedure) : decided.verdict],
     ["verification: ", results.verification_verdict ?? null, decided.verification],
     ["baseline: ", results.baseline_verdict ?? null, decided.baseline],
     ["EN 50318 criteria: ", results.criteria_verdict ?? null, decided.criteria],
@@ -331,7 +324,8 @@ async function checkNumbers(results) {
   if (JSON.stringify(results.findings ?? null) !== JSON.stringify(outcomes.length ? Object.fromEntries(counts) : null)) {
     found.push("the numbers of findings do not follow from the criteria");
   }
-  return { found, evaluated };
+  if (procedure) found.push(...checkProcedure(results, procedure));
+  return { found, evaluated, follows: followResults(results, computed) };
 }
 
 // Parts that every run writes.

@@ -32,13 +32,14 @@ async function readDocument(bytes) {
   const decode = (content) => new TextDecoder("utf-8", { fatal: true }).decode(content);
   if (start.includes("%PDF-")) {
     const { content, added, signed } = await readPdf(bytes);
-    return { kind: "PDF", text: decode(content), added, signed, digest: await sha256(content) };
+    const language = /\/Lang\s*\(([a-z]+)/.exec(latin(bytes))?.[1];
+    return { kind: "PDF", language, text: decode(content), added, signed, digest: await sha256(content) };
   }
   if (beginning.startsWith("<!doctype") || beginning.startsWith("<html")) {
     const page = decode(bytes), blocks = [...page.matchAll(BLOCK)];
     if (blocks.length !== 1) throw new Error(`the page holds ${blocks.length || "no"} embedded results`);
     const digest = await sha256(new TextEncoder().encode(writeAttachment(blocks[0][1])));
-    return { kind: "HTML", text: blocks[0][1], page, digest };
+    return { kind: "HTML", language: /<html lang="(\w+)"/.exec(page)?.[1], text: blocks[0][1], page, digest };
   }
   if (!beginning.startsWith("{")) throw new Error("the file is neither a PDF nor an HTML page nor JSON");
   const text = decode(bytes);
@@ -47,10 +48,6 @@ async function readDocument(bytes) {
 
 // English words of a page by their words in the language of the page.
 const LANGUAGES = "@languages@";
-
-const WORDS = {
-  pass: "PASS", fail: "FAIL", skip: "SKIP", info: "INFO", error: "ERROR", undecided: "UNDECIDED", unconfirmed: "UNCONFIRMED",
-};
 
 const findNumbers = (text) =>
   (text.replace(/[\u2009\u00a0]/g, "").match(/[-−+]?\d+(\.\d+)?(e[-+]?\d+)?/gi) ?? []).map((number) => number.replace("−", "-"));
@@ -71,8 +68,12 @@ function isPrinted(text, stated, values) {
   return parts.every((part) => values.some((value) => value !== null && isRounded(part, value)));
 }
 
-// English word of a printed verdict without its symbol.
-const readVerdict = (text, english) => english(text.trim().replace(/^[^\p{L}]+/u, "").toUpperCase());
+// English word of a printed verdict behind its symbol; of a badge, both must belong together.
+function readVerdict(text, english) {
+  const shown = text.trim(), { symbol, word } = Object.values(PRINTED.verdict).find((mark) =>
+    english(shown.slice(mark.symbol.length).trim().toUpperCase()) === mark.word && shown.startsWith(mark.symbol)) ?? {};
+  return symbol ? word : english(shown.toUpperCase());
+}
 
 // Values and verdicts in the tables of a case, or in that of page 1: rows with the name of a quantity and a cell "Value".
 function checkTables(section, result, english) {
@@ -95,8 +96,8 @@ function checkTables(section, result, english) {
     }
     const rows = [...result.criteria, ...(result.verification?.criteria ?? [])]
       .filter((row) => row.quantity === name && (anyone || String(row.pantograph) === owner));
-    if (cells.Verdict && rows.length && !rows.some((row) => readVerdict(cells.Verdict, english).startsWith(WORDS[row.verdict]))) {
-      found.push(`${name}: the verdict '${cells.Verdict}' is printed, ${WORDS[rows[0].verdict]} follows from the results`);
+    if (cells.Verdict && rows.length && !rows.some((row) => readVerdict(cells.Verdict, english) === markRows(row.verdict, [row]))) {
+      found.push(`${name}: the verdict '${cells.Verdict}' is printed, ${markRows(rows[0].verdict, [rows[0]])} follows from the results`);
     }
   }
   return { found: found.map((text) => `${result.id}, ${text}`), count };
@@ -104,11 +105,11 @@ function checkTables(section, result, english) {
 
 // Numbers printed on an HTML page against the results: title, digest, and the tables of graded values.
 function checkPage(page, digest, results) {
-  const shown = new DOMParser().parseFromString(page, "text/html"), found = [], word = WORDS[results.verdict];
+  const shown = new DOMParser().parseFromString(page, "text/html"), found = [], word = markRun(results);
   const language = LANGUAGES[shown.documentElement.lang] ?? {}, english = (text) => language[text] ?? text;
   const verdicts = [["title", shown.title.split(" – ")[0]], ["heading", shown.querySelector("h1")?.textContent.split(": ").pop() ?? ""]];
   for (const [place, text] of verdicts) {
-    if (!readVerdict(text, english).startsWith(word)) found.push(`the ${place} does not print the verdict ${word}: '${text}'`);
+    if (readVerdict(text, english) !== word) found.push(`the ${place} does not print the verdict ${word}: '${text}'`);
   }
   const facts = [...shown.querySelectorAll("dl div")].map((row) => [...row.children].map((cell) => cell.textContent.trim()));
   const printed = facts.find(([label]) => english(label) === "Digest of the results")?.[1];
@@ -119,62 +120,4 @@ function checkPage(page, digest, results) {
     checkTables(shown.getElementById(anchor)?.closest("section"), result, english)));
   const count = tables.reduce((sum, table) => sum + table.count, 0);
   return { found: [...found, ...tables.flatMap((table) => table.found)], count };
-}
-
-// Report on a document: its checks by outcome, as `pantocheck verify` prints them.
-async function verifyDocument(bytes, name = "document", signatureFile = null, roots = null) {
-  const document = await readDocument(bytes), results = JSON.parse(document.text), checks = [];
-  const origin = await checkOrigin(bytes, document, signatureFile, roots && [roots].flat().flatMap(({ content, name: file }) => readRoots(content, file)));
-  if (results.schema !== "pantocheck.results/1") throw new Error("the document holds no results of Pantocheck");
-  const add = (outcome, statement, details = []) => checks.push({ outcome, statement, details });
-  const judged = (proved, contradicted, details) =>
-    details.length ? add("contradicted", contradicted, details) : add("proved", proved);
-  let numbers;
-  try {
-    numbers = await checkNumbers(results);
-  } catch (error) {
-    numbers = { found: [`the results are not in the format of Pantocheck (${error.message})`], evaluated: {} };
-  }
-  const lines = [...new Set(numbers.found)];
-  judged(
-    "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
-    "The embedded numbers and verdicts contradict each other.", lines);
-  let gaps = [];
-  try { gaps = findGaps(results); } catch (error) { gaps = [error.message]; }
-  if (gaps.length) add("contradicted", "Parts that every run writes are missing.", gaps);
-  if (document.added && !document.signed) {
-    add("contradicted", "The file was changed after it was written.", [`${document.added} bytes were appended after the document was written`]);
-  }
-  if (document.kind === "HTML") {
-    const page = checkPage(document.page, document.digest, results);
-    const values = page.count ? `, digest and ${page.count} values` : " and digest";
-    const texts = `Verdict${values} printed on the page are those of the results.`;
-    if (!page.count) add("open", "The values printed in the tables of the page.");
-    judged(texts, "The page prints other numbers than its results.", page.found);
-  } else if (document.kind === "PDF") {
-    const digest = document.digest ?? "not computed: this browser offers no digests to a local file";
-    add("open", "The numbers printed on the pages of the PDF. Compare the printed digest of the results.", [digest]);
-  }
-  if (origin.contradictions.length) {
-    add("contradicted", "The signatures do not hold, or the document was changed after signing.", origin.contradictions);
-  }
-  if (origin.note) add("incomplete", "The origin of the document.", origin.lines);
-  else if (origin.authentic) add("proved", "Every signature holds, and its signer leads to a given trust root.", origin.lines);
-  else add("open", "The origin of the document.", origin.lines);
-  const unsampled = results.cases.filter((result) => !result.signals && Object.keys(result.traces ?? {}).length)
-    .map((result) => result.id);
-  if (unsampled.length) add("open", "Statistics of records whose signals are not embedded.", unsampled);
-  for (const [check, statement] of ONLY_VERIFY) add("open", `${statement} (verify: ${check})`);
-  const contradictions = checks.filter((check) => check.outcome === "contradicted").flatMap((check) => check.details);
-  const criteria = results.cases?.reduce((sum, r) => sum + r.criteria.length + (r.verification?.criteria.length ?? 0), 0);
-  const noun = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
-  const size = `${noun(results.cases?.length, "case")}, ${noun(criteria, "criterion", "criteria")}`;
-  const signers = origin.signers.length ? ` by ${origin.signers.join(", ")}` : "";
-  const claim = origin.authentic ? "authentic: " : signers || origin.note ? `NOT TRUSTED: the document claims to be signed${signers}; `
-    : "UNSIGNED: the numbers are consistent, anyone can have written this document; ";
-  const conclusion = contradictions.length
-    ? `not consistent: ${noun(contradictions.length, "contradiction")} (${size}; stated verdict '${results.verdict}').`
-    : `${claim}the verdict '${results.verdict}' follows from the embedded numbers (${size}).`;
-  const state = contradictions.length ? "contradicted" : origin.note ? "incomplete" : "consistent", { evaluated } = numbers;
-  return { name, kind: document.kind, state, conclusion, checks, digest: document.digest ?? null, authentic: origin.authentic, results, evaluated };
 }

@@ -101,28 +101,29 @@ function closeRemarks(row, errors) {
 
 const isDrift = (row) => row.baseline !== null || row.quantity === "baseline";
 
+// Grade of a value that follows from its limits, errors and trust.
+function gradeRow(row, trust, rule, unknown) {
+  const { value, lower, upper, finding } = row, errors = findErrors(row, unknown), role = finding?.role, counts = decides(row.trust, trust);
+  if (lower === null && upper === null) return { verdict: counts ? "skip" : "info", margin: null, errors };
+  let judged = value === null ? "skip" : judgeByRule(value, row, errors, rule);
+  const outcome = { fail: "not_reproduced", pass: role === "imposed" ? "imposed" : "reproduced" }[judged] ?? "not_evaluated";
+  if (judged === "pass" && ((row.doubt ?? null) !== null || role === "imposed")) judged = "info";
+  return { verdict: counts ? judged : "info", margin: value === null ? null : findMargin(value, lower, upper), outcome, errors };
+}
+
 // Contradictions of one criterion with its value, limits, errors and trust.
-function checkGrade(row, trust, rule, unknown) {
-  const found = [], { value, lower, upper } = row, counts = decides(row.trust, trust);
+function checkGrade(row, trust, rule = "simple", unknown = []) {
+  const found = [], { value, lower, upper } = row, { verdict, margin, outcome, errors } = gradeRow(row, trust, rule, unknown);
   const suffix = /_([^_]*)$/.exec(row.quantity)?.[1], unit = { N: "N", mm: "mm", pct: "%", s: "s" }[suffix] ?? "";
   if (SIGNAL_NAME.test(row.quantity) && row.unit !== unit) {
     found.push(`unit '${row.unit}' stated, '${unit}' is the unit of this quantity`);
   }
-  if (lower === null && upper === null) return [...found, ...(row.verdict === (counts ? "skip" : "info") ? [] : ["no limit"])];
+  if (lower === null && upper === null) return [...found, ...(row.verdict === verdict ? [] : ["no limit"])];
   if (lower !== null && upper !== null && lower > upper) {
     return [...found, `lower limit ${exact(lower)} above upper limit ${exact(upper)}`];
   }
-  const errors = findErrors(row, unknown), role = row.finding?.role;
-  let judged = value === null ? "skip" : judgeByRule(value, row, errors, rule);
-  if (row.finding) {
-    const outcome = { fail: "not_reproduced", pass: role === "imposed" ? "imposed" : "reproduced" }[judged] ?? "not_evaluated";
-    if (outcome !== row.finding.outcome) found.push(`finding '${row.finding.outcome}' stated, '${outcome}' follows`);
-  }
-  if (judged === "pass" && (row.doubt ?? null) !== null) judged = "info";
-  if (judged === "pass" && role === "imposed") judged = "info";
-  const verdict = counts ? judged : "info";
+  if (row.finding && outcome !== row.finding.outcome) found.push(`finding '${row.finding.outcome}' stated, '${outcome}' follows`);
   if (row.verdict !== verdict) found.push(`verdict '${row.verdict}' stated, '${verdict}' follows from value, limits and trust`);
-  const margin = value === null ? null : findMargin(value, lower, upper);
   if (!sameNumber(row.margin, margin)) {
     found.push(`margin ${exact(row.margin)} stated, ${exact(margin)} follows from value and limits`);
   }
@@ -150,9 +151,12 @@ function unknownComponents(result, row, names) {
   return [...names.filter((name) => basis[name]?.startsWith("not known")), ...BOUNDED.filter(lacks)];
 }
 
+// Components of the uncertainty that count for limits of a trust.
+const selectComponents = ({ record }, trust) => (trust !== "computed" ? COMPONENTS
+  : ["discretisation", "sampling", "resolution", ...(record?.start === "differs" ? ["start"] : [])]);
+
 function checkCriteria(result, criteria, trust, rule) {
-  const names = trust !== "computed" ? COMPONENTS
-    : ["discretisation", "sampling", "resolution", ...(result.record?.start === "differs" ? ["start"] : [])];
+  const names = selectComponents(result, trust);
   return criteria.flatMap((row) => {
     const found = [], reported = selectItem(result.quantities[row.pantograph]?.[row.quantity], row.item);
     if (row.value !== reported) {
@@ -228,6 +232,36 @@ const judgeRows = (rows) => {
   return rows.some((row) => (row.doubt ?? null) !== null) ? worst([verdict, "info"]) : verdict;
 };
 
+// Results whose values, states and verdicts are those that follow; `computed`: quantities of the signals by case.
+function followResults(results, computed) {
+  const cases = results.cases.map((result) => {
+    const record = result.record && { ...result.record, state: judgeState(result.record).state };
+    const follow = (rows, trust, rule) => rows.map((row) => {
+      const known = selectItem(computed[result.id]?.[row.pantograph]?.[row.quantity], row.item);
+      const replaced = row.value !== null && known !== null && !isDrift(row) && !sameNumber(row.value, known);
+      const graded = { ...row, value: replaced ? known : row.value }, unknown = unknownComponents(result, row, selectComponents(result, trust));
+      const { verdict, margin, errors } = gradeRow(graded, trust, rule, unknown);
+      return { ...graded, verdict, margin, close: closeRemarks(graded, errors) };
+    });
+    const criteria = follow(result.criteria, results.trust, results.decision), graded = criteria.filter((row) => !isDrift(row));
+    const stated = result.criteria_verdict ?? result.verdict, ungraded = !graded.length && result.reason && ["skip", "error"].includes(stated);
+    const verdict = ungraded ? stated : judgeCase([judgeRows(graded)], record), second = result.verification;
+    const rows = second && follow(second.criteria, "computed", "simple");
+    const verification = second && { ...second, criteria: rows, verdict: rows.length ? judgeCase(rows.map((row) => row.verdict), record) : second.verdict };
+    const own = result.criteria_verdict ? { criteria_verdict: verdict } : { verdict };
+    return { ...result, record, criteria, verification, ...own };
+  });
+  const { cases: verdicts, verdict } = decideRun({ ...results, cases });
+  const decided = { ...results, cases: cases.map((result, i) => ({ ...result, verdict: verdicts[i] })), verdict };
+  if (!results.procedure) return decided;
+  const procedure = decideProcedure(decided);
+  return { ...decided, procedure, verdict: judgeProcedure(procedure) };
+}
+
+// Whether a case lacks the requested verification.
+const lacksVerification = ({ requested }) => (result) =>
+  requested.includes("verification") && !result.verification && result.record && result.profile === null;
+
 // Verdicts of the cases and of the run, without the steps of a dossier.
 function decideRun(results) {
   const { requested, information, verification_only: only } = results, system = results.system.name;
@@ -236,7 +270,7 @@ function decideRun(results) {
   const accepted = results.accepted_unconfirmed.includes(system);
   const judgeRun = (pairs) => judgeParts(pairs.filter(([id]) => !information.includes(id))
     .map(([, verdict]) => (accepted && verdict === "unconfirmed" ? "pass" : verdict)));
-  const lacks = (result) => requested.includes("verification") && !result.verification && result.record && result.profile === null;
+  const lacks = lacksVerification(results);
   const cases = results.cases.map((result) => {
     const errors = [result.criteria_verdict, result.verdict].filter((verdict) => verdict === "error");
     const verdicts = [...requested.map((name) => of(name, result)), ...errors].filter((verdict) => verdict !== null);

@@ -170,9 +170,7 @@ async function checkOrigin(bytes, document, signatureFile, roots) {
     note = `signatures were not checked: ${error.message}.`;
   }
   const names = facts.map(({ signer }, i) => `signature ${i + 1} (${signer})`);
-  const broken = facts.flatMap(({ damage, distrust }, i) => damage ? [`${names[i]}: ${damage}`]
-    : given && distrust ? [`${names[i]}: not trusted, ${distrust}`] : []);
-  const contradictions = [...changes, ...broken, ...(given && !facts.length && note ? [note] : [])];
+  const damages = facts.flatMap(({ damage }, i) => (damage ? [`${names[i]}: ${damage}`] : []));
   const lines = facts.flatMap((part, i) => {
     const { signer, issuer, role, damage, distrust, root, time, stamped, stampProblem } = part, trusted = !damage && !distrust;
     const trust = damage ? `invalid: ${damage}` : distrust ? `not trusted: ${distrust}` : `trusted: its chain leads to ${root}`;
@@ -186,6 +184,6 @@ async function checkOrigin(bytes, document, signatureFile, roots) {
   if (!facts.length) lines.push(note || "unsigned: nothing shows who made this document.");
   if (!facts.length && !note && given) lines.push("The document has no signature to compare with the trust roots.");
   if (facts.length) lines.push("Revocation of certificates was not checked: verification uses no network.");
-  const authentic = facts.length > 0 && given && !note && !contradictions.length;
-  return { authentic, contradictions, note, signers: facts.map(({ signer }) => signer), lines };
+  const authentic = facts.length > 0 && !note && !changes.length && facts.every(({ damage, distrust }) => !damage && !distrust);
+  return { authentic, changes, damages, note, signers: facts.map(({ signer }) => signer), lines };
 }

@@ -38,7 +38,7 @@ def test_commands_of_the_test_authority(accepted_wave: Results, tmp_path: Path) 
         capture_output=True, check=False, text=True,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "\nauthentic: the verdict 'pass' follows" in done.stdout
+    assert "\nauthentic: the verdict 'PASS" in done.stdout
     output = " ".join(done.stdout.split())
     assert "signed by Test author as author (trusted: its chain leads to Test authority)" in output
     assert "signed by Test assessor as assessor (trusted" in output

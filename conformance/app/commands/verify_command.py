@@ -18,6 +18,8 @@ from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.documents.authenticity_check import CheckOutcome
 from pantocheck.conformance.documents.verification import Verification
+from pantocheck.conformance.pages.two_verdicts import mark_results
+from pantocheck.conformance.pages.words import name_verdict
 
 HEADINGS: dict[CheckOutcome, str] = {
     "contradicted": "Contradictions",
@@ -101,7 +103,7 @@ def _conclude(report: VerifiedReport, numbers_only: bool) -> str:
     """State of the document in one sentence."""
     verification = report.verification
     size = f"{count_noun(verification.cases, 'case')}, {count_noun(verification.criteria, 'criterion', 'criteria')}"
-    verdict = verification.verdict
+    verdict = name_verdict(mark_results(verification.results))
     match verification.state:
         case "consistent":
             stated = f"the verdict '{verdict}' follows from the embedded numbers ({size})."

@@ -118,6 +118,6 @@ def _is_repeated(results: Results, repeated: Collection[str]) -> bool:
 def _find_origin(signatures: SignatureReport, all_repeated: bool) -> Origin:
     if signatures.authentic:
         return "authentic"
-    if all_repeated and (signatures.signatures or not signatures.roots_given):
+    if all_repeated and not signatures.roots_given:
         return "repeated"
     return "untrusted" if signatures.signatures else "unsigned"

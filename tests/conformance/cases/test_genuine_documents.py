@@ -68,7 +68,7 @@ def test_document_dated_in_the_future_is_found(
 def test_output_has_eighty_columns(wave_results: Results, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_bytes(wave_results.to_json())
     output = pantocheck("verify", tmp_path / "results.json", "--numbers-only").stdout
-    first = "consistent: the verdict 'fail' follows from the embedded numbers (1 case, 18 criteria). Proved: *"
+    first = "consistent: the verdict 'FAIL' follows from the embedded numbers (1 case, 18 criteria). Proved: *"
     assert " ".join(output.split()).startswith(first)
     _, _, unproved = output.partition("\nNot proved:\n")
     statements = ("  * The numbers of these consistency checks", "  * The origin of the document")

@@ -11,8 +11,10 @@ from helpers.signed_files import sign
 from helpers.signer_fixtures import Signers
 from pantocheck.conformance.core.input_error import InputError
 from pantocheck.conformance.documents import key_files
+from pantocheck.conformance.documents.authenticity_check import DocumentCheck
 from pantocheck.conformance.documents.cms_check import REVOCATION, describe_signatures
 from pantocheck.conformance.documents.signature_check import check_signatures
+from pantocheck.conformance.documents.verification import check_origin
 
 
 @pytest.fixture
@@ -53,9 +55,11 @@ def test_signer_without_a_given_root_is_named_but_not_trusted(signers: Signers, 
     assert "signed by Ada Author as author (not trusted: no trust root given)" in describe_signatures(report)[0]
     other = issue(request("Test root", authority=True, usages=("key_cert_sign",)))  # the same name, another key
     report = check_signatures(document, other.write_certificate(tmp_path / "other.pem"))
-    assert report.contradictions == (
-        "signature 1 (Ada Author): not trusted, its chain does not lead to a given trust root",
-    )
+    assert (report.contradictions, report.authentic) == ((), False)
+    assert "(not trusted: its chain does not lead to a given trust root)" in describe_signatures(report)[0]
+    proved = DocumentCheck("proved", "The signature holds: it covers the whole file, and nothing was changed since.")
+    assert check_origin(report)[0] == proved
+    assert [check.outcome for check in check_origin(report)] == ["proved", "open"]
 
 
 def test_first_certificate_of_a_key_signs_and_a_long_name_is_shortened() -> None:

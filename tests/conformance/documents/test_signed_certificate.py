@@ -55,7 +55,7 @@ def test_commands_from_signing_to_authentic(
 
     trusted = invoke("verify", signed, "--trust-roots", roots_file)
     assert trusted.exit_code == 0
-    assert trusted.stdout.startswith("authentic: the verdict 'pass' follows")
+    assert trusted.stdout.startswith("authentic: the verdict 'PASS")
     text = one_line(trusted.stdout)
     assert "signature 2: signed by Ben Assessor as assessor (trusted: its chain leads to Test root)." in text
     assert "Revocation of certificates was not checked" in text
@@ -63,7 +63,7 @@ def test_commands_from_signing_to_authentic(
     named = invoke("verify", signed)
     assert named.exit_code == 1
     assert one_line(named.stdout).startswith(
-        "NOT TRUSTED: the document claims to be signed by Ada Author, Ben Assessor; the verdict 'pass' follows"
+        "NOT TRUSTED: the document claims to be signed by Ada Author, Ben Assessor; the verdict 'PASS"
     )
     assert "claims to be signed by Ada Author as author (not trusted: no trust root given)" in one_line(named.stdout)
     assert invoke("verify", signed, "--numbers-only").exit_code == 0
@@ -71,7 +71,7 @@ def test_commands_from_signing_to_authentic(
     bare = invoke("verify", passing_certificate)
     assert bare.exit_code == 1
     assert one_line(bare.stdout).startswith(
-        "UNSIGNED: the numbers are consistent, anyone can have written this document; the verdict 'pass' follows"
+        "UNSIGNED: the numbers are consistent, anyone can have written this document; the verdict 'PASS"
     )
     assert "unsigned: nothing shows who made this document." in bare.stdout
     numbers = invoke("verify", passing_certificate, "--numbers-only")
@@ -101,7 +101,7 @@ def test_failing_certificate_may_be_authentic(
     signed = sign(tmp_path / "certificate.pdf", signers.author)
     result = invoke("verify", signed, "--trust-roots", roots_file)
     assert result.exit_code == 1
-    assert result.stdout.startswith("authentic: the verdict 'fail' follows")
+    assert result.stdout.startswith("authentic: the verdict 'FAIL' follows")
 
 
 def test_unusable_trust_roots(passing_certificate: Path, signers: Signers, tmp_path: Path) -> None:
@@ -234,4 +234,4 @@ def test_invented_results_are_detected_by_the_signature(
         document.write_bytes(forged)
     report = check_signatures(document, roots_file)
     assert not report.authentic
-    assert bool(report.contradictions) is (signature != "removed")  # a document without a signature is UNSIGNED
+    assert bool(report.contradictions) is (signature == "kept")  # the others are UNSIGNED and NOT TRUSTED
