@@ -26,7 +26,6 @@ from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
 from pantocheck.conformance.cases.input_changes import parse_changes
 from pantocheck.conformance.cases.library import find_entries, load_entry, overlay_limits, read_limits
 from pantocheck.conformance.cases.profile_file import load_profile
-from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.sourced_table import PROVENANCE
 from pantocheck.conformance.core.suite_identity import suite_digest
@@ -35,6 +34,7 @@ from pantocheck.conformance.execution.plan import resolve_cases, resolve_system
 from pantocheck.conformance.grading.case_identity import limits_digest
 from pantocheck.conformance.line.library_folder import library_folder
 from pantocheck.conformance.results.campaign_format import CampaignEnding
+from pantocheck.conformance.runs.core_requirement import require_core
 from pantocheck.conformance.runs.system_choice import choose_system
 
 OUTSIDE_IDENTITY = {"execution", "title", "cases", "case_folders", "limits", "profile"}
@@ -168,8 +168,8 @@ def _check_systems(systems: Sequence[str], execution: Execution) -> None:
     """Refuse a system that does not exist; a folder per design is looked up by its run."""
     for system in systems:
         if system == "builtin":
-            if execution.is_local:  # the workers alone need the compiled kernels
-                require_package("numba", "system 'builtin'")
+            if execution.is_local:  # the workers alone need the core
+                require_core("system 'builtin'")
         elif "{design}" not in system:
             choose_system(system, execution.timeout_s)
 

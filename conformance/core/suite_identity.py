@@ -9,7 +9,7 @@ from pathlib import Path
 from pantocheck.conformance.core.files import file_digest
 
 PACKAGES = ("pantocheck.conformance", "pantocheck.model", "pantocheck.reference_cases", "pantocheck.templates")
-SOURCE_SUFFIXES = frozenset({".py", ".toml", ".html", ".typ", ".css", ".js", ".md", ".mplstyle"})
+SOURCE_SUFFIXES = frozenset({".py", ".c", ".h", ".toml", ".html", ".typ", ".css", ".js", ".md", ".mplstyle"})
 """Suffixes of the files that determine the results and their pages: code, cases and templates."""
 
 

@@ -40,6 +40,7 @@ from pantocheck.conformance.results.results_format import CaseResult, Quantities
 from pantocheck.conformance.runs.record_folder import RecordFolder
 from pantocheck.conformance.runs.reference_simulator import ReferenceSimulator
 from pantocheck.conformance.studies.damping_sensitivity import add_damping_study
+from pantocheck.model.dynamics.core_choice import core_name
 
 RECORD_COMPONENTS: tuple[ComponentName, ...] = ("section", "length", "alignment")
 """Components of the uncertainty that follow from the record alone; the others need further runs."""
@@ -323,8 +324,8 @@ def _name_skipped(skipped: list[str]) -> Iterator[DocumentCheck]:
 
 
 def _is_same_platform(results: Results) -> bool:
-    """Whether the numerical packages and the kind of processor are those of the results."""
+    """Whether the numerical packages, the core and the kind of processor are those of the results."""
     stated = results.platform
-    versions = {name: version(name) for name in ("numpy", "scipy", "numba")}
+    versions = {name: version(name) for name in ("numpy", "scipy")} | {"core": core_name()}
     machine = (stated.machine, stated.system) == (host.machine(), host.system())
     return machine and all(getattr(stated, name) == number for name, number in versions.items())

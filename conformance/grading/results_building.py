@@ -9,7 +9,6 @@ from typing import TypeVar
 
 from pantocheck.conformance.core.criterion import ComponentName
 from pantocheck.conformance.core.decision import format_decision
-from pantocheck.conformance.core.extras import version_or_absence
 from pantocheck.conformance.core.findings import count_findings
 from pantocheck.conformance.core.results_part import Number, Suite
 from pantocheck.conformance.core.suite_identity import find_suite_commit, suite_digest
@@ -27,6 +26,7 @@ from pantocheck.conformance.results.results_format import (
     UncertaintyComponents,
 )
 from pantocheck.conformance.results.scope import build_scope
+from pantocheck.model.dynamics.core_choice import core_name
 
 Content = TypeVar("Content")
 
@@ -104,7 +104,7 @@ def build_results(
             python=host.python_version(),
             numpy=version("numpy"),
             scipy=version("scipy"),
-            numba=version_or_absence("numba"),
+            core=core_name(),
             machine=host.machine(),
             system=host.system(),
         ),

@@ -72,7 +72,8 @@ class Platform(ResultsPart):
     python: str
     numpy: str
     scipy: str
-    numba: str
+    core: str
+    """Core of the time steps with its compiler; `none` without one."""
     machine: str
     system: str
 

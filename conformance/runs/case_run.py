@@ -12,12 +12,12 @@ from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.start_and_section import RunStart
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.extras import refuse_missing_package
 from pantocheck.conformance.core.step_log import ShareCallback, ignore_progress
 from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.runs.core_requirement import require_core
 from pantocheck.conformance.runs.uplift_tuning import build_pantographs, estimate_uplift_forces, tune_uplift
 from pantocheck.model import Pantograph
 from pantocheck.model.description.catenary import Catenary
@@ -201,17 +201,18 @@ def _strip_forces(passage: Passage, history: History) -> tuple[RealArray, RealAr
     return front, history.force - front
 
 
-# Compiled simulations of the model. They need the extra `simulator`; the first simulation loads them.
+# Compiled simulations of the model. They need the core in C or the extra `simulator`; the first simulation loads them.
 def integrate_passage(
     line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
 ) -> History:
     """Simulate a passage; parameters and errors as in `model.simulate_passage`.
 
     Raises:
-        InputError: The extra `simulator` is not installed.
+        InputError: There is no core.
     """
-    with refuse_missing_package("the simulation of a passage"):
-        from pantocheck.model.dynamics.simulation import simulate_passage
+    require_core("the simulation of a passage")
+    from pantocheck.model.dynamics.simulation import simulate_passage
+
     return simulate_passage(line, passage, progress)
 
 
@@ -221,8 +222,9 @@ def integrate_mass_drop(
     """Simulate a mass drop; parameters and errors as in `model.dynamics.mass_drop.simulate_mass_drop`.
 
     Raises:
-        InputError: The extra `simulator` is not installed.
+        InputError: There is no core.
     """
-    with refuse_missing_package("the simulation of a mass drop"):
-        from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
+    require_core("the simulation of a mass drop")
+    from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
+
     return simulate_mass_drop(catenary, element_length, test, progress)

@@ -12,13 +12,13 @@ from typing import Literal
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import Discretisation
 from pantocheck.conformance.cases.start_and_section import RunStart, list_other_starts
-from pantocheck.conformance.core.extras import require_package
 from pantocheck.conformance.core.step_log import ShareCallback, StepSequence, ignore_progress
 from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.line.line_parameters import list_tolerance_lines
 from pantocheck.conformance.line.line_shape import build_line_shape
 from pantocheck.conformance.records.sidecar_tables import RunTable
 from pantocheck.conformance.runs.case_run import run_passage, run_start
+from pantocheck.conformance.runs.core_requirement import require_core
 from pantocheck.conformance.runs.resolution import (
     list_mesh_frequencies,
     list_model_uncertainty,
@@ -30,6 +30,7 @@ from pantocheck.conformance.runs.system import Delivered
 from pantocheck.model import Catenary, discretise
 from pantocheck.model.description.failures import SimulationError
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
+from pantocheck.model.dynamics.core_choice import choose_core
 from pantocheck.model.kernel_cache import has_kept_kernels
 
 _LOGGER = logging.getLogger(__name__)
@@ -58,8 +59,8 @@ class ReferenceSimulator:
     """Uplift force of every pantograph at the start of its tuning in a run alone [N]; empty: that of the case."""
 
     def __post_init__(self) -> None:
-        """Require the compiler of the time steps at once: later, each case would end as `error`."""
-        require_package("numba", "reference simulator")
+        """Require the core of the time steps at once: later, each case would end as `error`."""
+        require_core("reference simulator")
 
     def run(self, case: Case) -> Delivered:
         """Run a case, with element length and time step halved and doubled, and from other starts."""
@@ -118,7 +119,7 @@ def _plan_steps(case: Case) -> StepSequence:
 def _begin_run(case: Case, steps: StepSequence) -> ShareCallback:
     """Begin the run on the mesh of the case; the first run of all shows its compilation until its time steps begin."""
     progress = steps.begin(OWN_MESH)
-    if not case.is_static and not has_kept_kernels():
+    if not case.is_static and choose_core().library is None and not has_kept_kernels():
         _LOGGER.warning("%s", COMPILATION)
         steps.begin(COMPILATION)
     return progress

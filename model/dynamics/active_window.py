@@ -1,15 +1,14 @@
 """Active window of a time step: the stations that it moves, found by a binary search."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine, max_wave_speed
-from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.kernel_compilation import kernel, plain_kernel
 from pantocheck.model.dynamics.passage import Passage
 from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.vectors import LANES
@@ -97,24 +96,27 @@ def build_whole_window(line: DiscretisedLine) -> WindowArrays:
     return WindowArrays(line.mesh.position, max_wave_speed(line), math.inf, math.inf, math.inf, math.inf, True)
 
 
-@kernel
-def wave_reach(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
-    """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m]."""
+@plain_kernel
+def wave_reach(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, Any]:
+    """Largest distances behind the last and ahead of the first pantograph that waves can have reached [m].
+
+    The time since the start [s] may be an array.
+    """
     front = MIN_HALF_WIDTH + limits.wave_speed * elapsed
-    return front + speed * elapsed, max(front - speed * elapsed, MIN_HALF_WIDTH)
+    return front + speed * elapsed, np.maximum(front - speed * elapsed, MIN_HALF_WIDTH)
 
 
-@kernel
-def half_widths(limits: WindowArrays, speed: float, elapsed: float) -> tuple[float, float]:
+@plain_kernel
+def half_widths(limits: WindowArrays, speed: float, elapsed: Any) -> tuple[Any, Any]:
     """Half-widths of the window behind the last and ahead of the first pantograph at a time after the start [m].
 
     A wave needs the time d / (c - v) to catch up a distance d behind a pantograph, and d / (c + v) from ahead.
     """
     behind, ahead = wave_reach(limits, speed, elapsed)
-    left = max(limits.duration - elapsed, 0.0)
-    behind = min(behind, MIN_HALF_WIDTH + limits.kept_behind + max(limits.wave_speed - speed, 0.0) * left)
-    ahead = min(ahead, MIN_HALF_WIDTH + limits.kept_ahead + (limits.wave_speed + speed) * left)
-    return min(behind, limits.reach), min(ahead, limits.reach)
+    left = np.maximum(limits.duration - elapsed, 0.0)
+    behind = np.minimum(behind, MIN_HALF_WIDTH + limits.kept_behind + max(limits.wave_speed - speed, 0.0) * left)
+    ahead = np.minimum(ahead, MIN_HALF_WIDTH + limits.kept_ahead + (limits.wave_speed + speed) * left)
+    return np.minimum(behind, limits.reach), np.minimum(ahead, limits.reach)
 
 
 @kernel
@@ -146,7 +148,7 @@ def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray
     if limits.whole_line:
         return unknown
     position = np.array([position for _, position in passage.watched])[:, None]
-    widths = _half_widths_and_reach(limits, passage.speed, time)
+    widths = np.array([half_widths(limits, passage.speed, time), wave_reach(limits, passage.speed, time)])
     for side, start, end_of_line, direction in (
         (0, min(passage.start), limits.position[0], -1),
         (1, max(passage.start), limits.position[-1], 1),
@@ -160,13 +162,3 @@ def find_unknown(limits: WindowArrays, passage: Passage, time: Array) -> NDArray
             wave = edge[first] - direction * travelled
             unknown[:, first:] |= direction * (position - wave) >= 0
     return unknown
-
-
-@njit(cache=True)
-def _half_widths_and_reach(limits: WindowArrays, speed: float, time: Array) -> Array:
-    """Half-widths and influence at each time, (2, 2, T): behind and ahead [m]."""
-    widths = np.empty((2, 2, time.size))
-    for n in range(time.size):
-        widths[0, 0, n], widths[0, 1, n] = half_widths(limits, speed, time[n])
-        widths[1, 0, n], widths[1, 1, n] = wave_reach(limits, speed, time[n])
-    return widths

@@ -14,11 +14,10 @@ of the active window are solved by `panels`, the same recurrences with eight pie
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from pantocheck.model.description.arrays import Array
-from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.kernel_compilation import entry_kernel, kernel
 
 ForceMoment = tuple[float, float]
 
@@ -49,7 +48,7 @@ def factorise_blocks(diagonal: Array, below: Array, free: NDArray[np.bool_]) -> 
     return factor
 
 
-@njit(cache=True)
+@entry_kernel
 def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], factor: Factor) -> None:
     """Eliminate station by station; the diagonal blocks A_s become D_s."""
     inverse, link, stations = factor.inverse, factor.link, diagonal.shape[1]
@@ -73,7 +72,7 @@ def _eliminate(diagonal: Array, below: Array, free: NDArray[np.bool_], factor: F
             inverse[b, s, 2] = ww / determinant if free[b, s, 1] else 0.0
 
 
-@kernel
+@entry_kernel
 def solve_stations(factor: Factor, row: int, first: int, last: int, w: Array, r: Array, shift: int) -> None:
     """Solve A x = f in place for some stations of one row; f is zero and x negligible at all others.
 

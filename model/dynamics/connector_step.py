@@ -8,7 +8,6 @@ of every force around in the acceleration of this station.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.sparse import coo_array, csc_array
 
 from pantocheck.model.description.arrays import Array, Indices
@@ -16,7 +15,7 @@ from pantocheck.model.discretisation.connectors import Connectors
 from pantocheck.model.dynamics.active_window import Window, search
 from pantocheck.model.dynamics.block_tridiagonal import Factor, solve_stations
 from pantocheck.model.dynamics.extents import active_run, find_runs
-from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.kernel_compilation import entry_kernel, kernel
 from pantocheck.model.dynamics.motion import Layout, Motion
 from pantocheck.model.dynamics.scalar_forces import ScalarForces, ScalarWorkspace
 from pantocheck.model.dynamics.vectors import LANES, align, lane_sum, load, splat
@@ -31,19 +30,20 @@ def column_half_width(factor: Factor, loads: list[tuple[int, int]]) -> int:
     A load is a row and a station.
     """
     rows, stations = np.array(loads, dtype=np.int64).reshape(-1, 2).T.copy()
-    width = 8
-    while width < factor.link.shape[1] and _largest_tail(factor, rows, stations, width) >= NEGLIGIBLE_SHARE:
-        width += 8  # whole vectors
+    width = LANES
+    while width < factor.link.shape[1]:
+        if _largest_tail(factor, rows, stations, width, np.zeros((2, 2 * width))) < NEGLIGIBLE_SHARE:
+            break
+        width += LANES
     return width
 
 
-@njit(cache=True)
-def _largest_tail(factor: Factor, rows: Indices, stations: Indices, half_width: int) -> float:
+@entry_kernel
+def _largest_tail(factor: Factor, rows: Indices, stations: Indices, half_width: int, column: Array) -> float:
     """Largest size of a column of the inverse at a cut on either side of its load, relative to its peak.
 
-    The columns are those of a unit force and of a unit moment at every load.
+    The columns are those of a unit force and of a unit moment at every load; `column` is scratch memory, (2, 2 n).
     """
-    column = np.zeros((2, 2 * half_width))
     largest = 0.0
     for k in range(rows.size):
         first, last = max(0, stations[k] - half_width), min(factor.link.shape[1], stations[k] + half_width) - 1
@@ -62,7 +62,7 @@ def _largest_tail(factor: Factor, rows: Indices, stations: Indices, half_width: 
     return largest
 
 
-@njit(cache=True)
+@entry_kernel
 def inverse_columns(factor: Factor, rows: Indices, stations: Indices, starts: Indices, columns: Array) -> None:
     """Fill local columns of the inverse for L unit forces.
 

@@ -1,23 +1,97 @@
-"""Decorators of the compiled functions of a time step.
+"""Functions of a time step that numba compiles when they are first needed: the readable form of the core in C.
 
 These functions allocate no memory, so that numba need not count references to their arrays. Counting them takes half of
 the time of a step: a line has a hundred arrays, and every function that receives them counts each one up and down.
 Without counting, numba refuses to compile a function that allocates an array.
+
+Numba is loaded by the first call, or by the compilation of a caller. A simulation with the core in C never loads it.
 """
 
 from collections.abc import Callable
+from functools import cached_property, update_wrapper
+from importlib import import_module
+from types import FunctionType
 from typing import Any, TypeVar
 
-import numba
-
-_njit: Any = numba.njit  # The type of some versions lists public options only.
+from pantocheck.model.dynamics.core_choice import call_core, choose_core
+from pantocheck.model.kernel_cache import provide_kernel_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+class LateObject:
+    """Object of numba that does not exist before it is needed; a compiled function names it like the object itself."""
+
+    def __init__(self, build: Callable[[], Any]) -> None:
+        self._build = build
+
+    @cached_property
+    def built(self) -> Any:
+        """The object; builds it."""
+        provide_kernel_cache()
+        import_module("pantocheck.model.dynamics.vector_code")  # the type of vectors, before a function is compiled
+        return self._build()
+
+    @property
+    def _numba_type_(self) -> Any:
+        return import_module("numba.core.registry").cpu_target.typing_context.resolve_value_type(self.built)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the object from Python."""
+        return self.built(*arguments)
+
+    def __getattr__(self, name: str) -> Any:
+        """Options of the object, which numba reads when it compiles a caller."""
+        if name.startswith("__") or name == "built":
+            raise AttributeError(name)
+        return getattr(self.built, name)
+
+
+class EntryKernel(LateObject):
+    """Function that Python calls: it runs in the chosen core, in C under its own name or compiled by numba."""
+
+    __wrapped__: FunctionType
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the function in the chosen core."""
+        library = choose_core().library
+        if library is None:
+            return super().__call__(*arguments)
+        function = self.__wrapped__
+        result = call_core(library, function.__name__, arguments)
+        return int(result) if function.__annotations__["return"] is int else result
+
+
+class PlainKernel(LateObject):
+    """Function that numba compiles for its callers; called from Python, it runs as Python."""
+
+    __wrapped__: FunctionType
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the function in Python."""
+        return self.__wrapped__(*arguments)
+
+
+def _late(kind: type[LateObject], function: Function, **options: Any) -> Any:
+    late = kind(lambda: import_module("numba").njit(cache=True, _nrt=False, **options)(function))
+    return update_wrapper(late, function)
+
+
 def kernel(function: Function) -> Function:
     """Compile a function of a time step, and keep it for other processes; other threads of Python run meanwhile."""
-    compiled: Function = _njit(cache=True, _nrt=False, nogil=True)(function)
+    compiled: Function = _late(LateObject, function, nogil=True)
+    return compiled
+
+
+def entry_kernel(function: Function) -> Function:
+    """Compile a function that Python calls, or run its twin of the core in C."""
+    compiled: Function = _late(EntryKernel, function, nogil=True)
+    return compiled
+
+
+def plain_kernel(function: Function) -> Function:
+    """Compile a function of numbers for its callers; called from Python, once or with arrays, it runs as Python."""
+    compiled: Function = _late(PlainKernel, function, nogil=True)
     return compiled
 
 
@@ -26,7 +100,7 @@ def inline_kernel(function: Function) -> Function:
 
     For functions of vectors, and for those that receive all arrays of a line: a call would copy their descriptions.
     """
-    compiled: Function = _njit(cache=True, _nrt=False, forceinline=True)(function)
+    compiled: Function = _late(LateObject, function, forceinline=True)
     return compiled
 
 
@@ -35,5 +109,11 @@ def merged_kernel(function: Function) -> Function:
 
     It is not compiled by itself then, which saves time in the first run after an installation.
     """
-    compiled: Function = _njit(cache=True, _nrt=False, inline="always")(function)
+    compiled: Function = _late(LateObject, function, inline="always")
+    return compiled
+
+
+def merged_entry_kernel(function: Function) -> Function:
+    """Compile a function as statements of its only caller; called from Python, it runs in the chosen core."""
+    compiled: Function = _late(EntryKernel, function, inline="always")
     return compiled

@@ -28,7 +28,7 @@ from pantocheck.model.dynamics.distributed_step import accelerate_distributed, l
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.joint_step import sweep_joints
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace
-from pantocheck.model.dynamics.kernel_compilation import merged_kernel
+from pantocheck.model.dynamics.kernel_compilation import merged_entry_kernel, merged_kernel
 from pantocheck.model.dynamics.motion import Motion, hold_passed_stations
 from pantocheck.model.dynamics.panels import solve_wires
 from pantocheck.model.dynamics.scalar_forces import FORCE_TOLERANCE, MAX_SWEEPS, maximum, sweep_forces
@@ -36,7 +36,7 @@ from pantocheck.model.dynamics.train import Train
 from pantocheck.model.dynamics.wire_step import add_lumped_forces, predict_wires
 
 
-@merged_kernel
+@merged_entry_kernel
 def step(kernel: KernelArrays, motion: Motion, train: Train, work: Workspace) -> int:
     """Advance line and pantographs by one time step, in place.
 

@@ -23,7 +23,7 @@ from pantocheck.model.description.arrays import Array, Indices
 from pantocheck.model.dynamics.active_window import Window
 from pantocheck.model.dynamics.block_tridiagonal import Factor
 from pantocheck.model.dynamics.extents import Extents, clip_extent
-from pantocheck.model.dynamics.kernel_compilation import inline_kernel, kernel
+from pantocheck.model.dynamics.kernel_compilation import entry_kernel, inline_kernel, kernel
 from pantocheck.model.dynamics.vectors import (
     LANES,
     align,
@@ -107,7 +107,7 @@ def allocate_panel_workspace(factor: PanelFactor) -> PanelWorkspace:
     return PanelWorkspace(force, panel, start, first, last, np.zeros(number))
 
 
-@kernel
+@entry_kernel
 def measure_fade(factor: Factor, position: Array) -> int:
     """Largest number of stations over which products of the factors L_s decay to `FADED`.
 

@@ -11,7 +11,7 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import active_window
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
-from pantocheck.model.dynamics.kernel_compilation import kernel
+from pantocheck.model.dynamics.kernel_compilation import entry_kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import Train
@@ -77,7 +77,7 @@ def simulate_steps(
             progress(block.stop / load.size)
 
 
-@kernel
+@entry_kernel
 def _advance(
     kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
 ) -> int:

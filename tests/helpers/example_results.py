@@ -313,7 +313,7 @@ def example() -> dict[str, Any]:
             "python": "3.11.9",
             "numpy": "2.4.6",
             "scipy": "1.17.1",
-            "numba": "0.68.1",
+            "core": "C (GCC 12.2.0)",
             "machine": "x86_64",
             "system": "Linux",
         },

@@ -60,7 +60,10 @@ def test_writable_folder_is_found(path: str, writable: bool, tmp_path: Path) -> 
 @pytest.mark.skipif(os.getuid() != 0 or shutil.which("setpriv") is None, reason="another user is needed")
 def test_kernels_are_loaded_from_a_read_only_installation_without_home() -> None:
     """Another user, who may read everything and write nothing but the folder of temporary files."""
-    code = "import os, pantocheck.model.fem.residual_flexibility; print(os.environ['NUMBA_CACHE_DIR'])"
+    code = (
+        "import os, numpy; from pantocheck.model.dynamics.active_window import search\n"
+        "search(numpy.arange(3.0), 0, 3, 1.0); print(os.environ['NUMBA_CACHE_DIR'])"
+    )
     user = [
         "setpriv",
         "--reuid=65534",

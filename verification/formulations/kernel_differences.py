@@ -1,18 +1,21 @@
-"""Differences of all recorded quantities between the time steps of two installations, at fixed uplift forces.
+"""Differences of all recorded quantities between two cores or installations, at fixed uplift forces.
 
+    python -m verification.formulations.kernel_differences cores            core in C and numba
     python -m verification.formulations.kernel_differences write FILE.npz   simulate with this Python
     python -m verification.formulations.kernel_differences compare OLD.npz NEW.npz
 
 Write both files, each with its own installation, for example in two virtual environments. The simulations are all
 passages and mass drops of the library, and lines of what these do not have: tension sections with overlaps, an
 irregularity with point masses, two contact wires (an odd number of rows), modal damping and held stretches under a
-train, and a coarse line with a long time step. The command fails if a quantity differs by more than 1e-8 of its largest
-value, or is known at other times.
+train, a coarse line with a long time step, the other contact laws, heads with structure, and lost contact. The command
+fails if a quantity differs by more than 1e-9 (cores) or 1e-8 (installations) of its largest value, or is known at other
+times.
 """
 
 import argparse
+import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,15 +25,25 @@ from pantocheck.conformance.drops.drop_simulation import simulate_drop
 from pantocheck.conformance.line.catenary_model import build_catenary
 from pantocheck.conformance.line.elements.tension_section import OverlapTable, SectionTable
 from pantocheck.conformance.runs.case_run import build_passage
-from pantocheck.model import Catenary, Kind, ModalBand, discretise, simulate_passage
+from pantocheck.model import Catenary, Kind, ModalBand, Pantograph, discretise, simulate_passage
+from pantocheck.model.description.head_structure import (
+    MountedStrip,
+    Rotation,
+    add_bending_mode,
+    add_friction,
+    add_roll,
+    add_stop,
+    mount_strips,
+)
 from pantocheck.model.description.irregularity import Irregularity
+from pantocheck.model.dynamics import core_choice
 from verification.formulations.library_passages import PASSAGES
 from verification.speed.passage_lines import ac_simple, passage, staggered, vertical
 
 UPLIFT_FORCE = 160.0
 """Constant uplift force of every pantograph [N]."""
 DROPS = ("vovan2015/mass-drop/printed", "vovan2015/mass-drop/stand-in")
-TOLERANCE = 1e-8
+TOLERANCE, TOLERANCE_OF_CORES = 1e-8, 1e-9
 """Largest difference as a share of the largest value: sweeps leave 1e-9 N of a few hundred newtons in every step."""
 MOTION = ("displacement", "velocity", "acceleration")
 
@@ -52,14 +65,21 @@ def library_drop(name: str) -> Quantities:
     return moved(simulate_drop(case, 1).decay.motion)
 
 
-def short_passage(catenary: Catenary, element: float = 0.5, step: float = 1e-3) -> Quantities:
-    """Two pantographs over seven spans of a line like AC simple."""
+def short_passage(
+    catenary: Catenary,
+    element: float = 0.5,
+    step: float = 1e-3,
+    change: Callable[[Pantograph], Pantograph] | None = None,
+) -> Quantities:
+    """Two pantographs, changed by a function, over seven spans of a line like AC simple."""
     case = ac_simple(20)
     line = discretise(catenary, element)
     way = passage(case, line, step, 2, 55.0 * 8, np.inf)
     supports = [position for _, position in way.watched]
     watched = tuple((wire.name, x) for wire in catenary.contact_wires for x in supports if wire.start <= x <= wire.end)
     way = replace(way, kept_behind=82.5, watched=watched)
+    if change is not None:
+        way = replace(way, pantographs=tuple(map(change, way.pantographs)))
     history = simulate_passage(line, way)
     return {"force": history.force, "height": history.height, **moved(history.motion)}
 
@@ -123,6 +143,24 @@ def modal_line() -> Catenary:
     return replace(staggered(ac_simple(14)), modal_damping=(ModalBand(0.8, 1.1, 0.02),))
 
 
+def build_head(pantograph: Pantograph) -> Pantograph:
+    """Two strips, roll and a bending mode, friction and a stop in the suspension of the head."""
+    strips = (MountedStrip(0.3, 3.0, 5000.0, 20.0), MountedStrip(-0.28, 3.0, 6000.0, 15.0))
+    model = add_roll(mount_strips(pantograph, strips, Rotation(0.8, 40.0, 3.0)), Rotation(2.0, 300.0, 5.0))
+    model = add_bending_mode(model, 31.0, 0.02, [(0.3, 0.0, -0.8), (0.3, 0.1)])
+    suspension = np.eye(model.head.size)[1] - np.eye(model.head.size)[0]
+    return add_stop(add_friction(model, suspension, 12.0, 2e-3), suspension, 0.01, 2e4, 30.0)
+
+
+CHANGES: dict[str, Callable[[Pantograph], Pantograph]] = {
+    "damped contact": lambda pantograph: replace(pantograph, contact_damping=60.0),
+    "constraint": lambda pantograph: replace(pantograph, contact_stiffness=np.inf),
+    "Hertz's law": lambda pantograph: replace(pantograph, contact_stiffness=np.inf, hertz_coefficient=1.2e7),
+    "heads with structure": build_head,
+    "lost contact": lambda pantograph: replace(pantograph, force=0.3 * pantograph.force),
+}
+"""Changes of the pantographs of a short passage."""
+
 LINES: dict[str, Callable[[], Quantities]] = {
     "three sections": lambda: short_passage(overlapping_sections()),
     "irregularity and masses": lambda: short_passage(rough_line()),
@@ -142,41 +180,55 @@ def simulate_all() -> Iterator[tuple[str, Quantities]]:
         yield name, library_drop(name)
     for name, simulate in LINES.items():
         yield name, simulate()
+    for name, change in CHANGES.items():
+        yield name, short_passage(staggered(ac_simple(20)), change=change)
 
 
-def compare(old: str, new: str) -> bool:
+def collect() -> Quantities:
+    """Quantities of every simulation by its name."""
+    return {f"{name}: {key}": values for name, found in simulate_all() for key, values in found.items()}
+
+
+def compare(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], tolerance: float) -> bool:
     """Print the largest difference of every quantity; true if none exceeds the tolerance."""
-    agreed = True
-    with np.load(old) as before, np.load(new) as after:
-        alone = sorted(set(before.files) ^ set(after.files))
-        agreed &= not alone
-        print("| simulation | quantity | largest value | largest difference | share |\n| :-- | :-- | --: | --: | --: |")
-        for key in (key for key in before.files if key not in alone):
-            first, second = before[key], after[key]
-            largest = float(np.nanmax(np.abs(first)))
-            difference = float(np.nanmax(np.abs(first - second)))
-            share = difference / largest
-            agreed &= share <= TOLERANCE and bool((np.isnan(first) == np.isnan(second)).all())
-            name, quantity = key.split(": ")
-            print(f"| {name} | {quantity} | {largest:.4g} | {difference:.1e} | {share:.1e} |")
+    alone = sorted(set(before) ^ set(after))
+    agreed = not alone
+    print("| simulation | quantity | largest value | largest difference | share |\n| :-- | :-- | --: | --: | --: |")
+    for key in (key for key in before if key not in alone):
+        first, second = before[key], after[key]
+        largest = float(np.nanmax(np.abs(first)))
+        difference = float(np.nanmax(np.abs(first - second)))
+        share = difference / largest
+        agreed &= share <= tolerance and bool((np.isnan(first) == np.isnan(second)).all())
+        name, quantity = key.split(": ")
+        print(f"| {name} | {quantity} | {largest:.4g} | {difference:.1e} | {share:.1e} |")
     for key in alone:
-        print(f"in one file only: {key}")
+        print(f"on one side only: {key}")
     return agreed
+
+
+def compare_cores() -> bool:
+    """Compare the core in C with that of numba."""
+    found = []
+    for core in ("numba", "c"):
+        os.environ[core_choice.CORE_VARIABLE] = core
+        print(core_choice.choose_core().name, flush=True)
+        found.append(collect())
+    return compare(*found, TOLERANCE_OF_CORES)
 
 
 def main() -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("action", choices=("write", "compare"))
-    parser.add_argument("files", nargs="+")
+    parser.add_argument("action", choices=("cores", "write", "compare"))
+    parser.add_argument("files", nargs="*")
     options = parser.parse_args()
+    if options.action == "cores":
+        sys.exit(not compare_cores())
     if options.action == "compare":
-        sys.exit(not compare(*options.files))
-    arrays: Quantities = {}
-    for name, quantities in simulate_all():
-        print(name, flush=True)
-        arrays |= {f"{name}: {quantity}": values for quantity, values in quantities.items()}
-    np.savez_compressed(options.files[0], **arrays)
+        with np.load(options.files[0]) as before, np.load(options.files[1]) as after:
+            sys.exit(not compare(before, after, TOLERANCE))
+    np.savez_compressed(options.files[0], **collect())
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`pantocheck doctor`: versions, extras, cache of the compiled kernels, threads, fonts and folders."""
+"""`pantocheck doctor`: versions, extras, core of the simulator, threads, fonts and folders."""
 
 import os
 import platform
@@ -20,6 +20,7 @@ from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, escape_text
 from pantocheck.conformance.cases.case_source import list_case_packages
 from pantocheck.conformance.core.suite_identity import find_suite_commit, suite_digest
+from pantocheck.model.dynamics.core_choice import core_name, find_core_in_c
 from pantocheck.model.kernel_cache import find_kernel_cache
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -74,7 +75,9 @@ def list_facts(environment: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         "thread limits",
         ", ".join(f"{name}={environment[name]}" for name in _THREADS if name in environment) or "none",
     )
-    yield "compiled kernels", str(find_kernel_cache() or "in a folder of each run: set NUMBA_CACHE_DIR to keep them")
+    in_c = find_core_in_c()
+    yield "core of the simulator", core_name() + (f"; not in C: {in_c}" if isinstance(in_c, str) else "")
+    yield "kernels of numba", str(find_kernel_cache() or "in a folder of each run: set NUMBA_CACHE_DIR to keep them")
     folder = tempfile.gettempdir()
     yield "temporary folder", f"{folder}, {shutil.disk_usage(folder).free / 1e9:.1f} GB free"
     yield "text encoding", f"{sys.stdout.encoding}, files {sys.getfilesystemencoding()}"

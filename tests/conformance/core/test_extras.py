@@ -1,6 +1,7 @@
 """Extras: every optional package is loaded when it is used, and a missing one is named with its installation."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from pantocheck.conformance.documents.verification import verify_document
 from pantocheck.conformance.records.record_writing import write_record
 from pantocheck.conformance.results.report_files import DEFAULT_FORMATS, FILES
 from pantocheck.conformance.results.results_reading import read_results
+from pantocheck.model.dynamics.core_choice import CORE_VARIABLE
 
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -37,15 +39,15 @@ NEEDS_AN_EXTRA = (
 )
 """Readers and writers that import an optional package on loading."""
 
-COMPUTE_WITH_KERNELS = ("model.dynamics.",)
-"""Compiled time steps."""
+CODE_OF_NUMBA = "model.dynamics.vector_code"
+"""Vectors in kernels of numba, which loads them before it compiles a function."""
 
 
 def run_without_extras(code: str, *arguments: str, folder: Path) -> dict[str, Any]:
-    """Run code in a process in which no optional package can be imported; it prints one JSON object at its end."""
+    """Run code in a process without optional packages and the core in C; it prints one JSON object at its end."""
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT_EXTRAS + code, *arguments],
-        cwd=folder, capture_output=True, text=True, check=False, timeout=120,
+        cwd=folder, env=os.environ | {CORE_VARIABLE: "numba"}, capture_output=True, text=True, check=False, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-2000:]
     assert "Traceback" not in done.stderr
@@ -70,7 +72,7 @@ def test_packages_and_extras_are_those_of_the_project() -> None:
 
 
 def test_every_file_but_readers_and_time_steps_loads_without_extras(tmp_path: Path) -> None:
-    """The import rule behind the core installation: 23 of 24 files of `model.dynamics` need numba."""
+    """The import rule behind the core installation, whose time steps run in C if it has a compiler."""
     code = f"""
 import importlib, json, pathlib
 failed = {{}}
@@ -84,8 +86,8 @@ for top in ("model", "conformance"):
 print(json.dumps(failed))
 """
     failed = run_without_extras(code, folder=tmp_path)
-    assert {name for name in failed if not name.startswith(COMPUTE_WITH_KERNELS)} == set(NEEDS_AN_EXTRA)
-    assert {failed[name] for name in failed if name.startswith("model.")} <= {"numba", "llvmlite"}
+    assert set(failed) == {CODE_OF_NUMBA, *NEEDS_AN_EXTRA}
+    assert failed[CODE_OF_NUMBA] in {"numba", "llvmlite"}
 
 
 def test_record_is_graded_and_verified_without_extras(tmp_path: Path, wave: type[Wave], case_250: Case) -> None:
@@ -123,7 +125,7 @@ print(json.dumps({"loaded": loaded, **commands}))
     written = {path.name for path in (tmp_path / "report").iterdir()}
     assert written == {FILES[name] for name in DEFAULT_FORMATS} - {"certificate.pdf"}
     results = read_results(tmp_path / "report" / "results.json")
-    assert results.platform.numba == results.renderer.typst == NOT_INSTALLED
+    assert (results.platform.core, results.renderer.typst) == ("none", NOT_INSTALLED)
     for document in ("html", "json"):
         assert "Proved" in done[document][1]
         assert "Contradict" not in done[document][1]

@@ -161,7 +161,7 @@ def forge_probability(results: Results, place: str) -> Results:
     return Results.model_validate(content)
 
 
-@pytest.mark.parametrize("key", ["machine", "numba"])
+@pytest.mark.parametrize("key", ["machine", "core"])
 @pytest.mark.usefixtures("remembered_run")
 def test_rerun_elsewhere_is_compared_within_rounding(static_results: Results, key: str) -> None:
     platform = static_results.platform.model_copy(update={key: "another"})

@@ -52,4 +52,4 @@ def test_a_package_that_is_too_old_is_reported(monkeypatch: pytest.MonkeyPatch) 
     report = json.loads(done.output)["result"]
     numpy = {"name": "numpy", "extra": "", "lowest": "2.0", "installed": "1.26", "state": "too old"}
     assert report["packages"] == [numpy]
-    assert {"Python", "processors", "compiled kernels", "digest of the suite"} <= report["environment"].keys()
+    assert {"Python", "processors", "core of the simulator", "digest of the suite"} <= report["environment"].keys()

@@ -25,6 +25,7 @@ from pantocheck.conformance.runs.reference_simulator import (
     ReferenceSimulator,
 )
 from pantocheck.model.description.failures import SimulationError
+from pantocheck.model.dynamics.core_choice import Core
 
 LOGGER = logging.getLogger("pantocheck.test")
 
@@ -234,6 +235,7 @@ def test_reference_simulator_reports_its_steps(
 ) -> None:
     """The completed share never decreases, although the tuning of two uplift forces repeats the passage."""
     monkeypatch.setattr(reference_simulator, "has_kept_kernels", lambda: kept)
+    monkeypatch.setattr(reference_simulator, "choose_core", lambda: Core("numba", None))
     case = select_cases(["en50318-2018/ac-simple/275-twin"])[-1]
     short = shorten_case(case, 200.0, 0.5, 2)
     with caplog.at_level(logging.DEBUG, "pantocheck"):
