@@ -21,6 +21,7 @@ from pantocheck.conformance.app.commands.console import console, error_console, 
 from pantocheck.conformance.app.commands.guard import guard_command, strip_control_characters
 from pantocheck.conformance.app.commands.output_settings import (
     FLAGS,
+    Detail,
     add_flags,
     combine_flags,
     current_settings,
@@ -59,6 +60,13 @@ class CommandOutput:
     remarks: Sequence[str] = ()
     """Remarks on the files, which go to standard error."""
 
+    def list_parts(self, detail: Detail) -> list[RenderableType]:
+        """Text and tables in their order, without the files."""
+        if detail == "quiet":
+            return [self.conclusion] if self.conclusion else [*self.details]
+        further = self.further if detail == "verbose" else ()
+        return [*filter(None, [self.conclusion]), *self.details, *further]
+
 
 def print_output(output: CommandOutput, command: str) -> None:
     """Print the output of a command in the form and amount of the current settings."""
@@ -70,10 +78,8 @@ def print_output(output: CommandOutput, command: str) -> None:
         facts = {"conclusion": output.conclusion.plain, "files": files, "result": output.data}
         _print_json(command, output.exit_code, facts)
         return
-    parts = [output.conclusion] if output.conclusion else list(output.details)
+    parts = output.list_parts(settings.detail)
     if settings.detail != "quiet":
-        parts = [*filter(None, [output.conclusion]), *output.details]
-        parts += output.further if settings.detail == "verbose" else ()
         parts += [Unwrapped(escape_text(str(path)).plain) for path in output.files]
     printed = console()
     for part in parts:

@@ -22,11 +22,15 @@ FLAGS: Mapping[str, tuple[tuple[str, ...], str]] = {
 """Options of the output by name: their forms and their help."""
 
 
+Detail = Literal["quiet", "normal", "verbose"]
+"""Amount of text of an output."""
+
+
 @dataclass(frozen=True)
 class OutputSettings:
     """Settings of the output of a command."""
 
-    detail: Literal["quiet", "normal", "verbose"] = "normal"
+    detail: Detail = "normal"
     """Amount of text."""
     form: Literal["text", "json"] = "text"
     """Text for a reader, or JSON for a program."""

@@ -1,12 +1,14 @@
-"""Output of `pantocheck run` and `assess`: verdict, criteria, values and remarks."""
+"""Output of `pantocheck run` and `assess`: tables of criteria and values, lines of the cases, and verdict."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import RenderableType
 from rich.text import Text
 
+from pantocheck.conformance.app.commands.case_line import list_case_remarks, summarise_case
 from pantocheck.conformance.app.commands.command_output import STANDING_REMARKS, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     FittedTable,
@@ -15,6 +17,7 @@ from pantocheck.conformance.app.commands.console import (
     indent_text,
     style_verdict,
 )
+from pantocheck.conformance.app.commands.output_settings import Detail
 from pantocheck.conformance.app.commands.quantities_table import (
     build_quantities_table,
     format_width,
@@ -41,36 +44,51 @@ LEGEND = (
 )
 
 
+@dataclass(frozen=True)
+class GradedOutput(CommandOutput):
+    """Output of graded cases: remarks or, on request, tables first, then the verdict at the end."""
+
+    lines: Sequence[Text] = ()
+    """One line for each case."""
+
+    def list_parts(self, detail: Detail) -> list[RenderableType]:
+        """The conclusion alone, or behind the lines of the cases with their remarks, or behind the tables."""
+        above = {"quiet": (), "normal": self.details, "verbose": (*self.further, *self.lines)}
+        return [*above[detail], self.conclusion]
+
+
 def build_results_output(
     results: Results, files: Sequence[Path], exit_code: int, remarks: Sequence[str] = ()
-) -> CommandOutput:
-    """Verdict, criteria and values of each case, and remarks on the cases and on the files."""
+) -> GradedOutput:
+    """Lines of the cases and verdict; the tables of the cases are further parts."""
     system = f"{results.system.name} {results.system.version}".strip()
     headline = f"{build_headline(results)} System: {system}"
-    parts: list[RenderableType] = [
-        escape_text(f"{results.statement}; limits count from trust '{results.trust}' up"),
-        escape_text(state_decision(results)),
-    ]
+    tables: list[RenderableType] = [escape_text(f"{results.statement}. {state_decision(results)}")]
     if results.administration is not None:
         stated = list_administration(results.administration)
-        parts.append(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
+        tables.append(escape_text("; ".join(f"{label}: {clean_text(text)}" for label, text in stated)))
     footnotes = list_footnotes(results.cases)
     for case in results.cases:
-        parts += [Text(), *_describe_case(case, footnotes)]
-    parts.append(Text())
+        tables += [Text(), *_describe_case(case, footnotes)]
+    tables.append(Text())
     rows = [row for case in results.cases for row in case.criteria]
     rows += [row for case in results.cases if case.verification is not None for row in case.verification.criteria]
     if rows:
-        parts.append(Text(LEGEND, "dim"))
-    parts += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
-    return CommandOutput(
+        tables.append(Text(LEGEND, "dim"))
+    tables += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
+    tables += [part for case in results.cases for part in _list_all_values(case)]
+    lines = [summarise_case(results, case) for case in results.cases]
+    below = [list_case_remarks(results, case, footnotes) for case in results.cases]
+    statement = escape_text(f"{results.statement}; limits count from trust '{results.trust}' up")
+    return GradedOutput(
         conclusion=style_verdict(mark_results(results)) + escape_text(f" {headline}"),
         data=results,
-        details=parts,
-        further=[part for case in results.cases for part in _list_all_values(case)],
+        details=[*(part for pair in zip(lines, below, strict=True) for part in (pair[0], *pair[1])), statement],
+        further=tables,
         files=files,
         exit_code=exit_code,
         remarks=remarks,
+        lines=lines,
     )
 
 

@@ -5,13 +5,16 @@ from typing import Any
 import pytest
 
 from pantocheck.conformance.app.commands.command_output import print_output
+from pantocheck.conformance.app.commands.output_settings import OutputSettings, use_settings
 from pantocheck.conformance.app.commands.results_output import LEGEND, build_results_output
 from pantocheck.conformance.results.results_format import Results
 
 
 def printed(results: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> str:
-    print_output(build_results_output(Results.model_validate(results), [], 0), "run")
-    return capsys.readouterr().out
+    """Tables of the criteria."""
+    with use_settings(OutputSettings(detail="verbose")):
+        print_output(build_results_output(Results.model_validate(results), [], 0), "run")
+    return capsys.readouterr().out.partition("All values of")[0]
 
 
 def rows(text: str, name: str) -> list[list[str]]:
