@@ -81,7 +81,8 @@ def list_case_remarks(results: Results, case: CaseResult, footnotes: Sequence[st
     record = case.record
     state = describe_record(case) if record is not None and record.state != "consistent" and not case.reason else None
     changes = [describe_changes(case), *(f"limits file: {text}" for text in case.limit_changes)]
-    warnings = (f"warning: {warning}" for warning in case.warnings if warning not in footnotes)
+    known = {*footnotes, None if state is None or record is None else record.reason}
+    warnings = (f"warning: {warning}" for warning in case.warnings if warning not in known)
     failed = [row for row in select_criteria(results, case) if row.verdict not in ("pass", "info")]
     more = f"{len(failed) - MOST_REASONS} more with -v" if len(failed) > MOST_REASONS else None
     reasons = [_describe_failure(row) for row in failed[:MOST_REASONS]]

@@ -49,7 +49,9 @@ def describe_command(
     header_lines: Annotated[int | None, typer.Option(help="Lines above the names of a text table.")] = None,
     encoding: Annotated[str | None, typer.Option(help="Encoding of a text table.")] = None,
 ) -> CommandOutput:
-    """Describe the channels of a measured file, or of several files of one measurement.
+    """Describe the channels of a measured file.
+
+    Several files become the sources of one record.
 
     Examples:
 
