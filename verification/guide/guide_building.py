@@ -9,6 +9,7 @@ from pantocheck.conformance.core.results_part import ResultsPart
 from pantocheck.conformance.grading.results_building import build_suite, utc_now
 from pantocheck.conformance.results.results_format import Platform
 from pantocheck.conformance.runs.resolution import read_effects
+from pantocheck.model.dynamics.core_choice import core_name
 from verification.guide.guide_driver import GuideParts, read_limitations
 from verification.guide.guide_format import (
     Guide,
@@ -29,7 +30,7 @@ def describe_platform() -> Platform:
         python=host.python_version(),
         numpy=version("numpy"),
         scipy=version("scipy"),
-        numba=version("numba"),
+        core=core_name(),
         machine=host.machine(),
         system=host.system(),
     )

@@ -20,12 +20,15 @@ PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text(encoding="utf-8"
 
 CODE = (".py", "py.typed")
 PACKAGES = {
-    "model": CODE,
+    "model": (*CODE, ".c", ".h"),
     "conformance": CODE,
     "reference_cases": (*CODE, ".toml", ".json"),
     "templates": ("",),
 }
 """Folders of the checkout that are installed below `pantocheck/`, with the ends of the names of their files."""
+
+LIBRARY = "pantocheck/model/dynamics/time_step"
+"""Library of the core in C, without its ending."""
 
 LEFT_OUT = ("tests/", "verification/", "docs/", "examples/", ".ci/", ".github/")
 """Folders that neither distribution contains."""
@@ -59,7 +62,10 @@ def check_wheel(path: Path) -> Iterator[str]:
         names = {name for name in archive.namelist() if not name.endswith("/")}
         (metadata,) = (name for name in names if name.endswith(".dist-info/METADATA"))
         info = metadata.removesuffix("METADATA")
-        yield from _compare({f"pantocheck/{name}" for name in list_installed()}, names, info)
+        libraries = {name for name in names if name.startswith(LIBRARY) and name.endswith((".so", ".pyd"))}
+        yield from _compare({f"pantocheck/{name}" for name in list_installed()}, names - libraries, info)
+        if len(libraries) != 1:
+            yield f"one library of the core in C is expected: {sorted(libraries) or 'none'}"
         licences = {f"{info}licenses/{name}" for name in PROJECT["license-files"]}
         yield from (f"licence missing: {name}" for name in sorted(licences - names))
         yield from check_metadata(message_from_string(archive.read(metadata).decode("utf-8")))
@@ -98,7 +104,7 @@ def check_sdist(path: Path) -> Iterator[str]:
     """Problems of a source distribution: it must hold all that a wheel needs, and no tests."""
     with tarfile.open(path) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    needed = list_installed() | {"pyproject.toml", PROJECT["readme"], *PROJECT["license-files"]}
+    needed = list_installed() | {"pyproject.toml", "setup.py", PROJECT["readme"], *PROJECT["license-files"]}
     yield from (f"missing: {name}" for name in sorted(needed - names))
     yield from (f"does not belong here: {name}" for name in sorted(names) if name.startswith(LEFT_OUT))
 

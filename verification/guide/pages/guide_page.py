@@ -65,7 +65,7 @@ def _build_verification(topics: dict[str, Any]) -> doc.Section:
 
 def _list_facts(guide: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     suite, platform = guide["suite"], guide["platform"]
-    software = ", ".join(f"{name} {platform[name]}" for name in ("numpy", "scipy", "numba"))
+    software = ", ".join(f"{name} {platform[name]}" for name in ("numpy", "scipy", "core"))
     return (
         ("Suite", f"Pantocheck {suite['version']}"),
         ("Commit", suite["commit"] or "not known"),
