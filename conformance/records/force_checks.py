@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-import scipy
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from pantocheck.conformance.core.array_types import RealArray
@@ -39,10 +39,11 @@ def find_outliers(force: RealArray) -> NDArray[np.intp]:
     """
     if force.size < NEIGHBOURS:
         return np.empty(0, dtype=np.intp)
-    distance = np.abs(force - scipy.signal.medfilt(force, NEIGHBOURS))
+    windows = sliding_window_view(np.pad(force, NEIGHBOURS // 2), NEIGHBOURS)
+    distance = np.abs(force - np.sort(windows, axis=1)[:, NEIGHBOURS // 2])
     # 1.4826: standard deviation of a normal variable over the median of its absolute value.
     deviation = 1.4826 * float(np.median(distance))
-    inner = distance[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # medfilt pads its ends with zeros
+    inner = distance[NEIGHBOURS // 2 : -(NEIGHBOURS // 2)]  # without the zeros beyond the ends
     return np.flatnonzero(inner > max(DEVIATIONS * deviation, SMALLEST_DISTANCE_N)) + NEIGHBOURS // 2
 
 
@@ -73,11 +74,18 @@ def detect_filtered(signals: PantographSignals, name: str) -> tuple[PantographSi
 
 
 def _leakage_free_rms(signals: PantographSignals, low: float, high: float) -> float:
-    """RMS in a band [N] through a Hann window, so that the ends of a section do not appear as content."""
+    """RMS in a band [N] through Hann windows of two seconds, so that the ends of a section do not appear as content.
+
+    The windows overlap by half, and their powers are averaged (Welch's method).
+    """
     rate, force = signals.force.rate, signals.delivered
-    frequency, density = scipy.signal.welch(force, rate, nperseg=min(force.size, round(2 * rate)))
+    size = min(force.size, round(2 * rate))
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(size) / size)
+    parts = sliding_window_view(force, size)[:: size - size // 2]
+    lines = np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * window, axis=1)
+    frequency = np.fft.rfftfreq(size, 1 / rate)
     inside = (frequency >= low) & (frequency <= high)
-    return float(np.sqrt(density[inside].sum() * frequency[1]))
+    return float(np.sqrt(2 * np.mean(np.abs(lines[:, inside]) ** 2, axis=0).sum() / (size * np.sum(window**2))))
 
 
 # Clipping: flat tops of a signal from a saturated amplifier.

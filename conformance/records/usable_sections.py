@@ -44,8 +44,9 @@ class UsableSection:
 def local_speed(time: RealArray, position: RealArray) -> RealArray:
     """Speed of the train at each sample, averaged over about a second [m/s]."""
     speed = np.gradient(position, time)
-    width = max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time)))))
-    return np.asarray(scipy.ndimage.uniform_filter1d(speed, min(width, speed.size), mode="nearest"))
+    width = min(max(1, round(SPEED_AVERAGED_S / float(np.median(np.diff(time))))), speed.size)
+    sums = np.cumsum(np.pad(speed - speed[0], (width // 2 + 1, (width - 1) // 2), mode="edge"))
+    return np.asarray(speed[0] + (sums[width:] - sums[:-width]) / width)
 
 
 def find_usable_sections(time: RealArray, usable: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
