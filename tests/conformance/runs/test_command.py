@@ -318,7 +318,12 @@ def wait_for_end(text: bytes) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals as on Linux")
 @pytest.mark.parametrize(
-    ("number", "jobs", "exit_code"), [(signal.SIGTERM, 1, 143), (signal.SIGHUP, 1, 129), (signal.SIGINT, 2, 130)]
+    ("number", "jobs", "exit_code"),
+    [
+        (signal.SIGTERM, 1, 143),
+        pytest.param(signal.SIGHUP, 1, 129, marks=pytest.mark.thorough),
+        (signal.SIGINT, 2, 130),
+    ],
 )
 def test_signal_to_the_main_process_keeps_results_and_ends_programs(
     case_250: Case, wave: type[Wave], tmp_path: Path, number: int, jobs: int, exit_code: int
