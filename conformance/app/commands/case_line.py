@@ -26,7 +26,7 @@ BLOCKS = "\N{LOWER ONE EIGHTH BLOCK}\N{LOWER ONE QUARTER BLOCK}\N{LOWER THREE EI
 )
 """Blocks of eight heights."""
 
-MOST_REASONS = 3
+MOST_FAILURES = 3
 """Largest number of failed values below the line of a case; the tables have all."""
 
 
@@ -59,7 +59,7 @@ def draw_blocks(values: Sequence[float], width: int) -> str:
     return "".join(BLOCKS[min(int(8 * (mean - low) / (high - low)), 7) if high > low else 0] for mean in means)
 
 
-def summarise_case(results: Results, case: CaseResult) -> Text:
+def write_case_line(results: Results, case: CaseResult) -> Text:
     """Verdict of a case with the numbers of its values inside and close to a limit, in one line."""
     rows = list_criteria(case, "criteria")
     close = sum(row.verdict == "pass" and row.is_close for row in select_criteria(results, case))
@@ -84,8 +84,8 @@ def list_case_remarks(results: Results, case: CaseResult, footnotes: Sequence[st
     known = {*footnotes, None if state is None or record is None else record.reason}
     warnings = (f"warning: {warning}" for warning in case.warnings if warning not in known)
     failed = [row for row in select_criteria(results, case) if row.verdict not in ("pass", "info")]
-    more = f"{len(failed) - MOST_REASONS} more with -v" if len(failed) > MOST_REASONS else None
-    reasons = [_describe_failure(row) for row in failed[:MOST_REASONS]]
+    more = f"{len(failed) - MOST_FAILURES} more with -v" if len(failed) > MOST_FAILURES else None
+    reasons = [_describe_failure(row) for row in failed[:MOST_FAILURES]]
     yield from map(indent_text, filter(None, [case.reason, state, *changes, *warnings, *reasons, more]))
     if not list_criteria(case, "criteria"):
         missing = list_unknown(case.uncertainty_basis)

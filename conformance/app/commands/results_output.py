@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import RenderableType
 from rich.text import Text
 
-from pantocheck.conformance.app.commands.case_line import list_case_remarks, summarise_case
+from pantocheck.conformance.app.commands.case_line import list_case_remarks, write_case_line
 from pantocheck.conformance.app.commands.command_output import STANDING_REMARKS, CommandOutput
 from pantocheck.conformance.app.commands.console import (
     FittedTable,
@@ -77,7 +77,7 @@ def build_results_output(
         tables.append(Text(LEGEND, "dim"))
     tables += [indent_text(text, f"[{number}] ") for number, text in enumerate(footnotes, 1)]
     tables += [part for case in results.cases for part in _list_all_values(case)]
-    lines = [summarise_case(results, case) for case in results.cases]
+    lines = [write_case_line(results, case) for case in results.cases]
     below = [list_case_remarks(results, case, footnotes) for case in results.cases]
     statement = escape_text(f"{results.statement}; limits count from trust '{results.trust}' up")
     return GradedOutput(

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from pantocheck.conformance.app.commands.case_line import BLOCKS, ForceLine, draw_blocks, summarise_case
+from pantocheck.conformance.app.commands.case_line import BLOCKS, ForceLine, draw_blocks, write_case_line
 from pantocheck.conformance.app.commands.command_output import print_output
 from pantocheck.conformance.app.commands.results_output import build_results_output
 from pantocheck.conformance.results.results_format import Results
@@ -22,12 +22,12 @@ def test_line_counts_the_values_inside_and_those_close(passing: dict[str, Any]) 
     case = results.cases[0]
     inside = sum(row.verdict == "pass" for row in case.criteria)
     close = sum(bool(row.close) for row in case.criteria)
-    text = summarise_case(results, case).plain
+    text = write_case_line(results, case).plain
     assert f"{case.id}  {inside} of {inside} values inside" in text
     assert (f"{close} close" in text) == bool(close)
     row = case.criteria[0].model_copy(update={"close": ["lies 1 N from a limit"], "uncertainty": 2.0})
     marked = case.model_copy(update={"criteria": [row, *case.criteria[1:]]})
-    assert f"{close + (not case.criteria[0].close)} close" in summarise_case(results, marked).plain
+    assert f"{close + (not case.criteria[0].close)} close" in write_case_line(results, marked).plain
 
 
 def test_answer_stands_below_the_cases(passing: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
