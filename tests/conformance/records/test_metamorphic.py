@@ -30,7 +30,7 @@ from pantocheck.conformance.results.results_format import CaseResult
 from pantocheck.conformance.runs.record_folder import open_record_folder
 from pantocheck.conformance.runs.system import Delivered
 
-RULE = settings(max_examples=10)
+RULE = settings(max_examples=6)
 
 FAULTS = ("force of pantograph 2", "uplift of one support")
 
