@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 
 from pantocheck.conformance.core.figure_style import (
     FULL,
@@ -58,6 +59,8 @@ def draw_stretch(record: IdentifiedRecord) -> Figure:
     axes.plot(record.residual_time_s, record.residual_over_rest, color=INK, linewidth=1.0, label="residual")
     axes.axhline(1, color=INK, linestyle=LIMIT_LINE, linewidth=0.9)
     axes.set_yscale("log")
+    for set_formatter in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        set_formatter(LogFormatter())  # plain letters: the style reads no text as a formula
     axes.set(xlabel="time after the release [s]", ylabel="residual over rest")
     add_legend(axes)
     return figure

@@ -22,6 +22,7 @@ from pantocheck.conformance.pages.identification_figures import (
     draw_response_zoom,
     draw_responses,
     draw_spectra,
+    draw_stretch,
 )
 from pantocheck.conformance.pages.identification_page import build_identification_document
 from pantocheck.conformance.pages.record_figures import DrawnPlace, draw_drop_layout, draw_motion, draw_spectrogram
@@ -76,6 +77,13 @@ def test_every_figure_has_a_caption_and_another_alternative_text(document: Docum
 
 
 @pytest.mark.usefixtures("fresh_figures")
+def test_no_tick_shows_the_source_of_a_formula(line: dict[str, Any]) -> None:
+    """A residual of less than one decade has ticks between the decades."""
+    record = IdentifiedLine.model_validate(line).records[0]
+    times = {"residual_time_s": [0.0, 1.0, 2.0], "residual_over_rest": [6.0, 1.2, 0.9]}
+    assert "mathdefault" not in draw_stretch(record.model_copy(update=times))
+
+
 def test_page_is_the_same_every_time(line: dict[str, Any], document: Document) -> None:
     assert render_html(report(line)) == render_html(document)
 
