@@ -39,6 +39,9 @@ def lumped_masses(line: Line, strands: Strands) -> tuple[Floats, Floats]:
                 line.supports, line.by_support("messenger_supports", DAMPER[axis]), strict=True
             ):
                 damper[strand.point(x)] += support_damper
+    for part in line.point_masses:
+        for axis in "zy" if line.staggered else "z":
+            add(strands[part.wire, axis], part.position, part.mass, part.mass_coefficient)
     alpha = droppers["mass_coefficient_1_s"]
     axes = "zy" if line.staggered else "z"
     for axis in axes:

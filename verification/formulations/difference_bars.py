@@ -35,6 +35,12 @@ def build_bars(line: Line, strands: Strands, rest: Rest) -> list[Bar]:
                 damping, preload = (beta * stiffness, tension) if taut_only else (0.0, 0.0)
                 bars.append(Bar(x, *join(*parts), float(stiffness), float(damping), float(preload), taut_only))
     bars += _arm_bars(line, strands, rest)
+    for spring in line.derived.get("wire_springs") or []:
+        x, k = spring["position_m"], spring["stiffness_N_m"]
+        upper, lower = strands["messenger", "z"], strands["contact", "z"]
+        ends = join((1.0, upper.weights(x)), (-1.0, lower.weights(x)))
+        stiffness = k / (1 - k * (upper.excess_at(x) + lower.excess_at(x)))
+        bars.append(Bar(x, *ends, stiffness, spring["damping_N_s_m"]))
     for axis in axes:
         strand = strands["messenger", axis]
         for x, k in zip(line.supports, line.by_support("messenger_supports", STIFFNESS[axis]), strict=True):

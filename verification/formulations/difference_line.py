@@ -85,6 +85,9 @@ class Heads(NamedTuple):
     height: Floats
     velocity: Floats
     """Displacements z and velocities, (P, n)."""
+    contact_damping: float = 0.0
+    hertz: float = np.inf
+    """Damper beside the contact spring [N s/m], and coefficient of Hertz's law in place of it [N/m^1.5]."""
 
 
 # Line of the second formulation: wires, droppers, arms, supports and clamps from the case that a program receives.
@@ -96,11 +99,11 @@ CaseData = dict[str, Any]
 
 FEATURES = frozenset(
     (
-        "applied_forces", "bending_stiffness", "chain", "contact_laws", "curves", "dropper_mass", "droppers",
-        "gradients", "head_pitch", "irregularity", "line_at_rest", "listed_spans", "presag", "pushing_steady_arms",
-        "rayleigh_damping", "several_pantographs", "single_supports", "stagger", "steady_arm_dampers",
-        "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers", "surveyed_wire_heights", "two_strips",
-        "uplift_force_tuning", "wire_height",
+        "applied_forces", "bending_stiffness", "chain", "contact_damping", "contact_laws", "curves", "dropper_mass",
+        "droppers", "gradients", "head_pitch", "irregularity", "line_at_rest", "listed_spans", "point_masses",
+        "presag", "pushing_steady_arms", "rayleigh_damping", "several_pantographs", "single_supports", "stagger",
+        "steady_arm_dampers", "steady_arm_mass", "steady_arms", "stitch_wire", "support_dampers",
+        "surveyed_wire_heights", "two_strips", "uplift_force_tuning", "variation", "wire_height", "wire_springs",
     )
 )  # fmt: skip
 """Features of a case that the second formulation has."""
@@ -114,6 +117,15 @@ class Dropper:
     upper: str
     height: float
     mass: float
+
+
+class PointMass(NamedTuple):
+    """Mass on a wire: position [m], wire, mass [kg] and mass-proportional damping [1/s]."""
+
+    position: float
+    wire: str
+    mass: float
+    mass_coefficient: float
 
 
 @dataclass(frozen=True)
@@ -130,6 +142,14 @@ class Line:
     def staggered(self) -> bool:
         """Whether the line moves sideways as well."""
         return self.derived["contact_wire"]["lateral_position_m"] is not None
+
+    @property
+    def point_masses(self) -> list[PointMass]:
+        """Masses on the wires."""
+        listed = self.derived.get("point_masses") or []
+        keys = ("position_m", "wire", "mass_kg", "mass_coefficient_1_s")
+        rows = ([part[key] for key in keys] for part in listed)
+        return [PointMass(x, wire.removesuffix("_wire"), mass, alpha) for x, wire, mass, alpha in rows]
 
     @property
     def gravity(self) -> float:
@@ -208,6 +228,10 @@ def build_line(case: CaseData) -> Line:
     inputs, derived = case["line"], case["derived"]["line"]
     if missing := sorted(set(case["features"]) - FEATURES):
         raise ValueError(f"the second formulation does not have {', '.join(missing)}")
+    variation = inputs.get("variation") or {}
+    changes = [(variation.get(wire) or {}).get("tension_change_share") for wire in ("contact_wire", "messenger_wire")]
+    if variation.get("temperature_change_K") or any(changes):
+        raise ValueError("the second formulation does not have tensions that change along a wire")
     messenger, stitch = inputs["messenger_wire"], derived["stitch_wires"]
     stretches = [] if stitch is None else list(zip(stitch["start_m"], stitch["end_m"], strict=True))
     change = 0.0 if stitch is None else stitch["messenger_tension_N"] - messenger["tension_N"]

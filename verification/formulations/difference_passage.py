@@ -77,11 +77,10 @@ def check_conventions(case: CaseData) -> None:
         raise ValueError("the second formulation starts at rest under the uplift forces, without a ramp")
 
 
-def working_height(case: CaseData, model: Model, force: float, contact_stiffness: float) -> float:
-    """Height of the head under a static force: nominal height, mean uplift of the wire, and the contact [m]."""
+def working_height(case: CaseData, model: Model, force: float) -> float:
+    """Height of the wire under a static force: nominal height and mean uplift of the wire [m]."""
     positions = case["derived"]["train"]["working_height_positions_m"]
-    lift = float(np.mean([model.static_uplift(x, force) for x in positions])) + force / contact_stiffness
-    return nominal_height(case, model) + lift
+    return nominal_height(case, model) + float(np.mean([model.static_uplift(x, force) for x in positions]))
 
 
 def nominal_height(case: CaseData, model: Model) -> float:
@@ -95,16 +94,22 @@ def build_heads(
 ) -> Heads:
     """Pantographs at rest on the displaced line."""
     contact = case["pantographs"][0]["contact"]
-    if contact.get("law", "spring") == "hertz" or contact.get("damping_N_s_m"):
-        raise ValueError("the second formulation has contacts by a spring without damper, or by a constraint")
-    stiffness = contact.get("stiffness_N_m", np.inf)
-    excess = 0.0 if np.isinf(stiffness) else 1.0
+    law, damping = contact.get("law", "spring"), contact.get("damping_N_s_m", 0.0)
+    stiffness = contact["stiffness_N_m"] if law == "spring" else np.inf
+    excess, hertz = 0.0 if law == "constraint" else 1.0, np.inf
+    if law == "hertz":
+        hertz = 4 / 3 * contact["effective_modulus_N_m2"] * contact["effective_radius_m"] ** 0.5
+
+    def penetrate(force: float) -> float:
+        """Penetration of a strip under a static force [m]."""
+        return force / stiffness + (force / hertz) ** (2 / 3)
+
     parts = [build_parts(pantograph) for pantograph in case["pantographs"]]
     loads, heights = [], []
     for pantograph, part, x, force in zip(case["pantographs"], parts, starts, uplift_forces, strict=True):
         free = nominal_height(case, model)
         if pantograph["chain"]["base_spring_unstretched"] == "working_height":
-            free = working_height(case, model, force, stiffness * part.offset.size)
+            free = working_height(case, model, force) + penetrate(force / part.offset.size)
         load = np.zeros(part.mass.size)
         masses = len(pantograph["chain"]["masses_kg"])
         load[:masses] = _place_forces(pantograph, pantograph["chain"], force)
@@ -113,7 +118,8 @@ def build_heads(
         shares = part.level_forces(load, force)
         held = [
             model.lift(x + ahead, model.arrays.rest + displacement)
-            + share * (1 / stiffness - excess * model.contact.excess_at(x + ahead))
+            + penetrate(share)
+            - excess * share * model.contact.excess_at(x + ahead)
             for ahead, share in zip(part.offset, shares, strict=True)
         ]
         loads.append(load)
@@ -130,6 +136,8 @@ def build_heads(
         contact_stiffness=stiffness,
         height=np.array(heights),
         velocity=np.zeros((starts.size, parts[0].mass.size)),
+        contact_damping=damping or 0.0,
+        hertz=hertz,
     )
 
 

@@ -146,13 +146,17 @@ def compute_rest(line: Line, strands: Strands) -> Rest:
     held = [contact.weights(0.0), contact.weights(contact.wire.end), *below]
     held += [contact.weights(x) for x, carries in zip(supports, level, strict=True) if carries]
     heights = np.array([*at_limits[[0, -1]], *(d.height for d in line.droppers), *at_limits[1:-1][level]])
-    shape, force = _hang(strands, ["contact"], gravity, np.zeros(n), held, heights)
+    weight = np.zeros(n)
+    for part in line.point_masses:
+        points, weights = strands[part.wire, "z"].weights(part.position)
+        weight[points] -= gravity * part.mass * weights
+    shape, force = _hang(strands, ["contact"], gravity, weight, held, heights)
     holding, arm_force = force[2 : 2 + len(below)], np.zeros((len(supports), 2))
     arm_force[level, 1] = force[2 + len(below) :]
     vertical = holding + gravity * (table["lower_clamp_kg"] + mass / 2)
     # 2. Messenger and stitch wires.
     upper = [wire.name for wire in line.wires if wire.name != "contact"]
-    load = -(rows(above, n).T @ (vertical + gravity * (table["upper_clamp_kg"] + mass / 2)))
+    load = weight - (rows(above, n).T @ (vertical + gravity * (table["upper_clamp_kg"] + mass / 2)))
     messenger = strands["messenger", "z"]
     for x, _ in line.clamps:
         load[messenger.point(x)] -= gravity * line.derived["stitch_wires"]["clamp_mass_kg"]

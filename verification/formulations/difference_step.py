@@ -6,6 +6,9 @@ from numba import njit
 from verification.formulations.difference_line import Heads, Lines
 from verification.formulations.difference_strands import Floats, Indices
 
+HERTZ_ITERATIONS = 40
+"""Iterations of the penetration by Hertz's law; each is nearer by the excess flexibility over that of the contact."""
+
 
 @njit(cache=True)
 def accelerate_pantograph(heads: Heads, k: int, dt: float) -> None:
@@ -22,10 +25,11 @@ def accelerate_pantograph(heads: Heads, k: int, dt: float) -> None:
 def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Floats) -> float:
     """Contact force of a strip, applied to strip and wire: a Catmull-Rom spline interpolates and distributes.
 
-    A constraint (infinite stiffness) lets strip and wire meet at the end of the step, at the strip's next position; the
-    excess flexibility of the points then remains as a penetration, which the spacing removes.
+    Points are too flexible by their excess, so the penetration is the gap and this excess times the force. A constraint
+    (infinite stiffness) lets strip and wire meet at the end of the step, at the strip's next position; the excess then
+    remains as a penetration, which the spacing removes.
     """
-    constrained, shape = np.isinf(heads.contact_stiffness), heads.shape[k, strip]
+    constrained, shape = np.isinf(heads.contact_stiffness) and np.isinf(heads.hertz), heads.shape[k, strip]
     x = (heads.position[k] + heads.offset[k, strip] + heads.speed * line.step * constrained) / line.spacing
     s, point = x - int(x), line.first[line.contact] + int(x) - 1
     weights = (
@@ -34,7 +38,13 @@ def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Float
         0.5 * (s + 4 * s**2 - 3 * s**3),
         0.5 * (-(s**2) + s**3),
     )
-    height, excess, mobility, gap, closing = 0.0, 0.0, 0.0, 0.0, 0.0
+    slopes = (
+        0.5 * (-1 + 4 * s - 3 * s**2),
+        0.5 * (-10 * s + 9 * s**2),
+        0.5 * (1 + 8 * s - 9 * s**2),
+        s * (1.5 * s - 1),
+    )
+    height, excess, mobility, gap, closing, push = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(shape.size):
         mobility += line.step * shape[i] ** 2 / heads.mass[k, i]
         gap += shape[i] * heads.height[k, i]
@@ -47,9 +57,14 @@ def push_wire(line: Lines, heads: Heads, k: int, strip: int, w: Floats, v: Float
             excess += weights[j] * line.excess[abs(j - m)] * weights[m]
     if constrained:
         push = max(0.0, ((gap - height) / line.step + closing) / mobility)
+    elif not np.isinf(heads.hertz):
+        for _ in range(HERTZ_ITERATIONS):
+            push = heads.hertz * max(0.0, gap - height + excess * push) ** 1.5
     else:
-        stiffness = heads.contact_stiffness / (1 - heads.contact_stiffness * excess)
-        push = max(0.0, stiffness * (gap - height))
+        for j in range(4):
+            closing -= heads.speed / line.spacing * slopes[j] * (w[point + j] + line.rest[point + j])
+        law = heads.contact_stiffness * (gap - height) + heads.contact_damping * closing
+        push = max(0.0, law / (1 - heads.contact_stiffness * excess))
     for j in range(4):
         v[point + j] += line.gain[point + j] * weights[j] * push
     for i in range(shape.size):

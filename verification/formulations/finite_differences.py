@@ -78,7 +78,7 @@ def find_case(name: str) -> Case:
         return case
     changes = read_toml(Path(__file__).with_name("changed_lines.toml"), "changed lines")[change]
     tables = case.line.model_dump(mode="json", exclude_unset=True)
-    tables |= {key: tables.get(key, {}) | table for key, table in changes.items()}
+    tables |= {key: table if isinstance(table, list) else tables.get(key, {}) | table for key, table in changes.items()}
     return replace(case, line=validate_model(tables, LineFile, name))
 
 

@@ -21,6 +21,7 @@ from verification.guide.library_values import (
 )
 from verification.guide.peers.peer_list import PEERS, find_version, run_peer
 from verification.guide.topics.contact_laws import study_contact_laws
+from verification.guide.topics.line_elements import study_line_elements
 from verification.guide.topics.long_string_passage import study_long_string
 from verification.guide.topics.moving_load import study_moving_load
 from verification.guide.topics.passage_balance import study_balances
@@ -35,6 +36,7 @@ DURATIONS_S = {
     "verification/waves": 10.0,
     "verification/long-string": 25.0,
     "verification/contact-laws": 30.0,
+    "verification/line-elements": 25.0,
     "library/en50318-2018/ac-simple/275": 35.0,
     "library/en50318-2018/ac-simple/275-twin": 35.0,
     "library/en50318-2018/ac-simple/320": 35.0,
@@ -76,6 +78,7 @@ TOPICS: dict[str, Callable[[], Topic]] = {
     "long-string": study_long_string,
     "balances": study_balances,
     "contact-laws": study_contact_laws,
+    "line-elements": study_line_elements,
 }
 """Topics of the verification against closed forms."""
 

@@ -1,6 +1,7 @@
 """Parts of the guide beside the closed forms: peers, self-test, computing times and limitations."""
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -10,6 +11,11 @@ from pantocheck.conformance.app.self_test.numerical_faults import FAULTS, Numeri
 from pantocheck.conformance.cases.library import select_cases
 from pantocheck.conformance.core.verdicts import Verdict
 from pantocheck.conformance.drops.identify import identify_modes
+from pantocheck.conformance.line.elements.element_registry import ELEMENTS
+from pantocheck.conformance.pantograph.pantograph_file import ContactTable
+from pantocheck.conformance.runs.command_system import build_case_message
+from verification.formulations.difference_passage import difference_quantities
+from verification.formulations.finite_differences import find_case, reference_quantities
 from verification.guide import peers
 from verification.guide.guide_building import list_effects
 from verification.guide.guide_driver import LIMITATIONS_FILE, read_limitations
@@ -17,6 +23,7 @@ from verification.guide.guide_tasks import DURATIONS_S, list_tasks, list_timings
 from verification.guide.library_values import describe_fault, describe_mutant, measure_passage, name_processor
 from verification.guide.peers.peer_list import PEERS, Peer, evaluate_ishigami, run_peer
 from verification.guide.peers.subspace_modes import KNOWN_MODES, build_known_drop
+from verification.guide.topics.line_elements import CONTACTS, LINES, OTHERS, UPLIFT_N, shorten
 
 ROOT = Path(__file__).parents[3]
 
@@ -102,3 +109,25 @@ def test_effects_of_the_exact_model_and_long_parts_exist() -> None:
     assert (fixed.relative_pct["max_uplift_at_support_mm"], fixed.absolute["min_force_N"]) == (4.3, 1.4)
     # A duration of a part that is renamed would be lost.
     assert DURATIONS_S.keys() <= {task.name for task in (*list_tasks(), *list_timings())}
+
+
+def test_every_element_of_a_line_and_every_contact_law_is_a_row() -> None:
+    assert sorted([*LINES, *OTHERS]) == sorted(element.__name__ for element in ELEMENTS)
+    laws = get_args(ContactTable.model_fields["law"].annotation)
+    assert {"spring", *(contact.law for contact in CONTACTS.values())} == set(laws)
+
+
+@pytest.mark.parametrize("change", ["masses", "springs"])
+def test_row_of_an_element_finds_one_that_is_left_out(change: str) -> None:
+    """Without its element the second formulation is beyond both tolerances; 0.5 m apart its points leave 0.7 %."""
+    case, plain = (shorten(find_case(name)) for name in (LINES["Wires"] + f"+{change}", LINES["Wires"]))
+    ours = reference_quantities(case, 0.5, 1e-3, (UPLIFT_N,))
+    error = {
+        name: abs(
+            difference_quantities(build_case_message(other), 0.25, (UPLIFT_N,))[1, "rms_5_20_N"] / ours[1, "rms_5_20_N"]
+            - 1
+        )
+        for name, other in (("with", case), ("without", plain))
+    }
+    assert error["with"] < 0.02
+    assert error["without"] > 0.03
