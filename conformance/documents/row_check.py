@@ -22,7 +22,7 @@ from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.results.results_format import CaseResult, Results
 from pantocheck.conformance.runs.check import DOES_NOT_APPLY, Check, Finding, worst_finding
 from pantocheck.conformance.runs.force_content import CONTENT, COPY, FORCE_REMAINDER, find_likeness
-from pantocheck.conformance.runs.force_dynamics import DYNAMICS
+from pantocheck.conformance.runs.force_dynamics import DYNAMICS, is_linear
 from pantocheck.conformance.runs.implied_force import IMPLIED_FORCE
 from pantocheck.conformance.runs.record_checks import COVERAGE, MEAN_FORCE
 
@@ -98,7 +98,10 @@ def _find_case(result: CaseResult) -> Case | None:
 
 def list_repeated(case: Case) -> tuple[Check, ...]:
     """Checks that the embedded signals of a case repeat; one pantograph alone has no copy."""
-    return (*REPEATED, COPY) if len(case.pantographs) == 1 else REPEATED
+    checks = (*REPEATED, COPY) if len(case.pantographs) == 1 else REPEATED
+    linear = all(is_linear(case, number) for number in range(1, len(case.pantographs) + 1))
+    # Friction and stops depend on the motion before the embedded signals.
+    return checks if linear else tuple(check for check in checks if check not in (DYNAMICS, IMPLIED_FORCE))
 
 
 def _compare_rows(result: CaseResult, case: Case, rows: list[CheckRow]) -> Iterator[str]:
@@ -172,7 +175,7 @@ def repeat_check(check: Check, case: Case, signals: UnpackedSignals) -> Finding:
         single = replace(
             case, file=case.file.model_copy(update={"pantograph": (use,), "spacing_m": ()}), pantographs=(file,)
         )
-        height = part.contact_height
+        height, strips = part.contact_height, [] if part.front_strip is None else [part.front_strip[None]]
         record = Record(
             time=np.arange(part.position.size) / part.rate,
             speed=case.speed,
@@ -181,6 +184,8 @@ def repeat_check(check: Check, case: Case, signals: UnpackedSignals) -> Finding:
             evaluated=part.section,
             filter_applied_Hz=part.filter_applied_Hz,
             contact_height=None if height is None else height[None],
+            front_strip=strips[0] if strips else None,
+            rear_strip=part.force.delivered[None] - strips[0] if strips else None,
         )
         finding = check.run(single, _EmbeddedSignals(record, case.file.filter, embedded_line=signals.line))
         basis = finding.basis

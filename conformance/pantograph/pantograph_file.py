@@ -276,10 +276,17 @@ class PantographFile(InputTable):
         return rigid
 
     @property
-    def is_linear(self) -> bool:
-        """Whether the motion under the contact forces is linear and does not depend on the position of the wire."""
+    def has_joints(self) -> bool:
+        """Whether friction or stops act."""
+        return self.head is not None and bool(self.head.friction or self.head.stop)
+
+    @property
+    def follows_stagger(self) -> bool:
+        """Whether the motion of a strip depends on the lateral position of the wire."""
         head = self.head
-        return head is None or not (head.friction or head.stop or head.roll or head.bending_mode)
+        if head is None:
+            return False
+        return head.roll is not None or any(len(shape) > 1 for mode in head.bending_mode for shape in mode.shapes)
 
     def penetration(self, force: Force) -> Force:
         """Penetration of the strips and the wire under a contact force that they share [m, N]."""

@@ -5,6 +5,7 @@ plus the free motion of an initial state, plus a constant. The last two are fitt
 its amplitude and its lag reveal a wrong gain or unit of the force, or a shift in time.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,8 @@ import scipy  # loads scipy.linalg when it is used
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.core.array_types import RealArray
+from pantocheck.conformance.line.catenary_model import discretise_line
+from pantocheck.conformance.line.line_shape import find_deflection
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.pantograph_model import build_pantograph
 from pantocheck.conformance.quantities.filters import is_observable
@@ -26,6 +29,7 @@ from pantocheck.conformance.runs.check import (
     report_not_made,
     worst_finding,
 )
+from pantocheck.model.description.driven_head import drive_head
 from pantocheck.model.description.pantograph import state_space
 
 MISFIT = Measure("misfit of the motion", "", {"contradiction": 0.1})
@@ -45,6 +49,12 @@ LATE_MISFIT, LATE_GAIN_ERROR = (
 )
 """The same where the force is late by no more than a causal filter delays it: a doubt."""
 
+ROLLING_MISFIT, ROLLING_GAIN_ERROR = (
+    replace(measure, name=f"{measure.name}, lateral place of the wire at rest", thresholds={"doubt": threshold})
+    for measure, threshold in ((MISFIT, 0.1), (GAIN_ERROR, 0.06))
+)
+"""The same where a strip rolls or bends with the place of the wire: its vibrations across the track give 0.03 each."""
+
 CLEAR = 0.05
 """Unexplained share below which the cause of a misfit is named."""
 
@@ -56,6 +66,9 @@ LONGEST_S, LONGEST_LAG_S = 300.0, 0.5
 
 CAUSAL_DELAY_PERIODS = 0.75
 """Largest delay of a causal Butterworth filter of order 6, in periods of its cut-off: 0.62 at low frequencies."""
+
+DRIVEN_RATE_HZ = 1000.0
+"""Largest rate at which a head with friction or stops is followed [Hz]."""
 
 SAMPLES_PER_PERIOD = 20
 """Samples per period of the cut-off: straight lines between them follow the force within a percent."""
@@ -85,30 +98,84 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding:
     findings = []
     step = max(1, int(record.rate / (SAMPLES_PER_PERIOD * low_pass.cutoff_Hz)))
     for number, (file, pantograph) in enumerate(zip(case.pantographs, signals.pantographs.values(), strict=True), 1):
-        if (reason := find_unknown_motion(file, signals, number)) is not None:
+        if (reason := find_unknown_motion(case, signals, number)) is not None:
             findings.append(report_not_made("dynamics", reason))
             continue
         window = _compared_samples(pantograph)
-        forces = [low_pass(force, record.rate)[window][::step] for force in list_strip_forces(file, signals, number)]
-        height = low_pass(record.contact_height[number - 1], record.rate)[window][::step]
-        fit = compare_motion(file, np.array(forces), height, step / record.rate)
+
+        def smooth(channel: RealArray, window: slice = window) -> RealArray:
+            return low_pass(channel, record.rate)[window][::step]
+
+        forces, responses = find_responses(case, signals, number, smooth, step / record.rate)
+        fit = compare_motion(file, forces, smooth(record.contact_height[number - 1]), responses)
         if fit is None:
             findings.append(report_not_made("dynamics", f"the head of pantograph {number} hardly moves"))
         else:
-            confirmed = _compare(number, fit)
+            rolls = follows_wire(case, number)
+            measures = (ROLLING_MISFIT, ROLLING_GAIN_ERROR) if rolls else (MISFIT, GAIN_ERROR)
+            confirmed = _compare(number, fit, measures=measures)
             is_wrong = confirmed.kind != "confirmed"
-            diagnosis = (number, fit, step / record.rate, record.filter_applied_Hz)
+            diagnosis = (number, fit, step / record.rate, record.filter_applied_Hz, measures)
             findings.append(_diagnose(*diagnosis) if is_wrong else confirmed)
     return worst_finding(findings)
 
 
-def find_unknown_motion(file: PantographFile, signals: RecordSignals, number: int) -> str | None:
+def find_unknown_motion(case: Case, signals: RecordSignals, number: int) -> str | None:
     """Reason why a record does not determine the motion of the head of a pantograph; None if it does."""
-    if not file.is_linear:
-        return f"the head of pantograph {number} is not linear"
+    file, line = case.pantographs[number - 1], case.line
     if file.strips > 1 and signals.record.front_strip is None:
         return f"the record has no forces of the strips of pantograph {number}"
+    if file.head is not None and any(stop.between is None or "base" in stop.between for stop in file.head.stop):
+        return f"the record does not state the height of pantograph {number} above its base, on which a stop acts"
+    wires = line.contact_wire.number * len(line.section or (None,))
+    if follows_wire(case, number) and (wires > 1 or line.curves):
+        return f"the record does not state the place of the wire on pantograph {number}"
     return None
+
+
+def is_linear(case: Case, number: int) -> bool:
+    """Whether the motion of a pantograph is a sum of the responses to its forces, wherever the wire is."""
+    return not (case.pantographs[number - 1].has_joints or follows_wire(case, number))
+
+
+def follows_wire(case: Case, number: int) -> bool:
+    """Whether strips of a pantograph rise with the lateral position of a wire that leaves the axis."""
+    return case.pantographs[number - 1].follows_stagger and case.line.layout.has_stagger
+
+
+def find_responses(
+    case: Case, signals: RecordSignals, number: int, smooth: Callable[[RealArray], RealArray], step: float
+) -> tuple[RealArray, tuple[RealArray, RealArray]]:
+    """Forces of the strips of a pantograph, and response of its head with its free motions, over compared samples.
+
+    Friction, stops and the place of the wire act on the force as delivered, from the begin of the record on.
+
+    Args:
+        case: Case of the record.
+        signals: Signals of the record.
+        number: Number of the pantograph from 1.
+        smooth: Compared samples of a channel of the whole record.
+        step: Time between them [s].
+    """
+    file, record = case.pantographs[number - 1], signals.record
+    forces = list_strip_forces(file, signals, number)
+    smoothed = np.array([smooth(force) for force in forces])
+    response, free = head_responses(file, smoothed, step)
+    if not is_linear(case, number):
+        every = max(1, int(record.rate / DRIVEN_RATE_HZ))
+        model = build_pantograph(file, float(np.mean(record.force[number - 1])), 0.0)
+        offsets = np.array([[strip.offset] for strip in model.strips])
+        place = record.position[number - 1, ::every] + offsets
+        lateral = _place_wire(case, place) if follows_wire(case, number) else np.zeros(place.shape)
+        driven = drive_head(model, np.array(forces)[:, ::every], lateral, every / record.rate)
+        response = smooth(np.interp(record.time, record.time[::every], driven))
+    return smoothed, (response, free)
+
+
+def _place_wire(case: Case, position: RealArray) -> RealArray:
+    """Lateral position of the only contact wire at rest [m]; its vibrations across the track are left out."""
+    line = discretise_line(case.line, case.file.discretisation.element_m)
+    return find_deflection(line, line.catenary.contact_wires[0].name, "y", position)
 
 
 def list_strip_forces(file: PantographFile, signals: RecordSignals, number: int) -> list[RealArray]:
@@ -119,19 +186,21 @@ def list_strip_forces(file: PantographFile, signals: RecordSignals, number: int)
     return [record.front_strip[row], record.rear_strip[row]]
 
 
-def compare_motion(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit | None:
+def compare_motion(
+    file: PantographFile, force: RealArray, height: RealArray, responses: tuple[RealArray, RealArray]
+) -> ResponseFit | None:
     """Compare a motion with the response of a pantograph.
 
     Args:
         file: Pantograph of the case.
         force: Contact force of each strip, (strips, n), or of a single one, (n,) [N].
         height: Height of the contact point, (n,) [m].
-        step: Time between samples [s].
+        responses: Response of the head to the force, and its free motions, as from `head_responses`.
 
     Returns:
         The fit; None if both the recorded and the computed motion are too small.
     """
-    response, free = head_responses(file, force, step)
+    response, free = responses
     response, motion = remove_free_motion(response, free), remove_free_motion(height, free)
     if max(response.std(), motion.std()) < SMALLEST_MOTION_M:
         return None
@@ -216,21 +285,27 @@ def _compare(
     return worst_finding(measure.compare(value, f"pantograph {number}", text) for measure, value in numbers)
 
 
-def _diagnose(number: int, fit: ResponseFit, step: float, filter_applied_Hz: float | None) -> Finding:
+def _diagnose(
+    number: int,
+    fit: ResponseFit,
+    step: float,
+    filter_applied_Hz: float | None,
+    measures: tuple[Measure, Measure] = (MISFIT, GAIN_ERROR),
+) -> Finding:
     mismatch = f"pantograph {number}: the contact force contradicts the contact height"
     if fit.unexplained < CLEAR:
         cause = f"the height corresponds to {1 / fit.gain:.3g} times the force; check gain and unit of the force"
-        return _compare(number, fit, f"{mismatch}: {cause}")
+        return _compare(number, fit, f"{mismatch}: {cause}", measures)
     samples, correlation = _find_lag(fit, round(LONGEST_LAG_S / step))
     delay = -samples * step
     if not samples or not correlation >= 1 - CLEAR:  # the correlation with a constant force is nan
         share = 100 * max(0.0, 1 - fit.unexplained)
-        return _compare(number, fit, f"{mismatch}: the force explains only {share:.0f} % of the motion")
+        return _compare(number, fit, f"{mismatch}: the force explains only {share:.0f} % of the motion", measures)
     lags = delay > 0
     text = f"{mismatch}: the force {'lags' if lags else 'leads'} the height by about {abs(delay):.1g} s"
     if lags and filter_applied_Hz is not None and delay < CAUSAL_DELAY_PERIODS / filter_applied_Hz:
         return _compare(number, fit, f"{text}, as after a causal filter", (LATE_MISFIT, LATE_GAIN_ERROR))
-    return _compare(number, fit, text)
+    return _compare(number, fit, text, measures)
 
 
 def _find_lag(fit: ResponseFit, longest: int) -> tuple[int, float]:
@@ -252,5 +327,5 @@ DYNAMICS = Check(
     why="a wrong gain, unit, sign or time of the force shows in the motion",
     needs="contact force and contact height",
     run=_check_force_dynamics,
-    measures=(MISFIT, GAIN_ERROR, LATE_MISFIT, LATE_GAIN_ERROR),
+    measures=(MISFIT, GAIN_ERROR, LATE_MISFIT, LATE_GAIN_ERROR, ROLLING_MISFIT, ROLLING_GAIN_ERROR),
 )

@@ -11,7 +11,7 @@ from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import active_window
 from pantocheck.model.dynamics.extents import active_run
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, Workspace, build_workspace
-from pantocheck.model.dynamics.kernel_compilation import entry_kernel
+from pantocheck.model.dynamics.kernel_compilation import entry_kernel, kernel
 from pantocheck.model.dynamics.motion import Motion
 from pantocheck.model.dynamics.newmark import step
 from pantocheck.model.dynamics.train import Train
@@ -29,7 +29,7 @@ class Recording(NamedTuple):
     contact: Array
     """Contact force of each strip, summed over the contact wires, (T, C) [N]."""
     height: Array
-    """Height of the strips, (T, C) [m]."""
+    """Height of the strips where the wires touch them, (T, C) [m]; below the axis of the track without contact."""
     motion: Array
     """Displacement, velocity, acceleration at the stations, (T, U, 3) [m, m/s, m/s2]."""
     slack: Indices
@@ -77,6 +77,18 @@ def simulate_steps(
             progress(block.stop / load.size)
 
 
+@kernel
+def _rise_at_wires(train: Train, work: Workspace, c: int) -> float:
+    """Height of strip c at the lateral positions of its wires above that below the axis, times their forces [N m]."""
+    rise, contact = 0.0, work.contact
+    for n in range(contact.number_above[c]):
+        wire = contact.above[c, n]
+        for i in range(train.z.shape[2]):
+            lateral = contact.head[c, wire, i] - train.head[c, i]
+            rise += train.contact[c, wire] * lateral * train.z[0, train.owner[c], i]
+    return rise
+
+
 @entry_kernel
 def _advance(
     kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, load: Array, recording: Recording
@@ -93,6 +105,8 @@ def _advance(
                 total += train.contact[c, k]
             for i in range(train.z.shape[2]):
                 head += train.head[c, i] * train.z[0, train.owner[c], i]
+            if train.lateral.shape[1] > 0 and total > 0.0:
+                head += _rise_at_wires(train, work, c) / total
             recording.contact[n, c], recording.height[n, c] = total, head
         for u in range(recording.row.size):
             b, s = recording.row[u], recording.station[u]

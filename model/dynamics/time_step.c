@@ -1012,8 +1012,22 @@ static int64_t step(const KernelArrays *kernel, const Motion *motion, const Trai
     return isnan(accelerated) ? 0 : sweeps;
 }
 
-static void record(const KernelArrays *kernel, const Motion *motion, const Train *train, const Recording *recording,
-                   int64_t n)
+/* Height of strip c at the lateral positions of its wires above that below the axis, times their forces [N m]. */
+static double rise_at_wires(const Train *train, const ContactWorkspace *contact, int64_t c)
+{
+    double rise = 0.0;
+    for (int64_t n = 0; n < contact->number_above.at[c]; n++) {
+        int64_t wire = AT2(contact->above, c, n);
+        for (int64_t i = 0; i < train->z.n[2]; i++) {
+            double lateral = AT3(contact->head, c, wire, i) - AT2(train->head, c, i);
+            rise += AT2(train->contact, c, wire) * lateral * AT3(train->z, 0, train->owner.at[c], i);
+        }
+    }
+    return rise;
+}
+
+static void record(const KernelArrays *kernel, const Motion *motion, const Train *train, const Workspace *work,
+                   const Recording *recording, int64_t n)
 {
     const ConnectorArrays *connectors = &kernel->connectors;
     double dt = kernel->time_step;
@@ -1023,6 +1037,8 @@ static void record(const KernelArrays *kernel, const Motion *motion, const Train
             total += AT2(train->contact, c, k);
         for (int64_t i = 0; i < train->z.n[2]; i++)
             head += AT2(train->head, c, i) * AT3(train->z, 0, train->owner.at[c], i);
+        if (train->lateral.n[1] > 0 && total > 0.0)
+            head += rise_at_wires(train, &work->contact, c) / total;
         AT2(recording->contact, n, c) = total;
         AT2(recording->height, n, c) = head;
     }
@@ -1079,7 +1095,7 @@ EXPORT double pantocheck_advance(const AdvanceArguments *a)
         a->motion.load.at[0] = a->load.at[n];
         if (step(&a->kernel, &a->motion, &a->train, &a->work) == 0)
             return (double)n;
-        record(&a->kernel, &a->motion, &a->train, &a->recording, n);
+        record(&a->kernel, &a->motion, &a->train, &a->work, &a->recording, n);
     }
     return (double)a->load.n[0];
 }

@@ -12,13 +12,22 @@ from scipy.signal import lsim
 from helpers.extreme_runs import list_problems
 from helpers.wave_system import Wave
 from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.core.array_types import RealArray
 from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.quantities.filters import Filter
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs import force_dynamics
 from pantocheck.conformance.runs.check import HOLDS, CheckName, Finding, Measure, report_low_rate, report_missing
-from pantocheck.conformance.runs.force_dynamics import DYNAMICS, LATE_MISFIT, MISFIT, ResponseFit, compare_motion
+from pantocheck.conformance.runs.force_dynamics import (
+    DYNAMICS,
+    LATE_MISFIT,
+    MISFIT,
+    ResponseFit,
+    compare_motion,
+    head_responses,
+)
 from pantocheck.conformance.runs.record_checks import (
     MOTION,
     RECORD_CHECKS,
@@ -96,9 +105,15 @@ def test_shift_in_time_is_found_and_stated(case_250: Case, record: Record, sampl
     assert kinds(case_250, late) == [("dynamics", "doubt")]
 
 
+def fit_file(file: PantographFile, force: RealArray, height: RealArray, step: float) -> ResponseFit:
+    fit = compare_motion(file, force, height, head_responses(file, force, step))
+    assert fit is not None
+    return fit
+
+
 def test_constant_force_and_exact_fit(case_250: Case, record: Record) -> None:
     """The response to straight lines between samples is exact up to (w dt)^2/12 = 4e-6 at 1.16 Hz and 1 ms."""
-    fit = compare_motion(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
+    fit = fit_file(case_250.pantographs[0], record.force[0], record.contact_height[0], 1e-3)
     assert_allclose([fit.gain, fit.misfit], [1.0, 0.0], atol=1e-4)
     # A dead channel: 119 N throughout, while the contact point goes up and down.
     ((name, finding),) = findings(case_250, replace(record, force=np.full_like(record.force, 119.0))).items()
@@ -192,7 +207,7 @@ def fit_pantograph(case: Case, train_record: Record, row: int) -> ResponseFit:
         low_pass(channel[row], train_record.rate)[first:last:2]
         for channel in (train_record.force, train_record.contact_height)
     )
-    return compare_motion(case.pantographs[row], force, height, 2 / train_record.rate)
+    return fit_file(case.pantographs[row], force, height, 2 / train_record.rate)
 
 
 @pytest.fixture
