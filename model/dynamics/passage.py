@@ -2,6 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
 
 from pantocheck.model.description.arrays import Array
 from pantocheck.model.description.pantograph import Pantograph
@@ -38,6 +41,60 @@ class Passage:
     """
 
 
+class ForeignPantograph(Protocol):
+    """Pantograph that another program moves in steps; heights above the datum of the line."""
+
+    @property
+    def can_repeat(self) -> bool:
+        """Whether a step can be repeated from its start with another force."""
+
+    def attempt(self, force: Array) -> Array:
+        """Advance from the last accepted state by one step under held forces.
+
+        Args:
+            force: Force on each strip, downwards, (strips,) [N].
+
+        Returns:
+            Height of each strip at the end of the step, (strips,) [m].
+        """
+
+    def accept(self) -> None:
+        """Keep the state after the last attempt as the start of the next step."""
+
+    def restart(self) -> None:
+        """Return to the state before the first step."""
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Agreement of a line and a pantograph that another program moves, over a passage."""
+
+    energy: float = 0.0
+    """Energy that the coupling made: work on the line minus work of the program [J]."""
+    exchanged: float = 0.0
+    """Sum of the absolute work of all steps [J]."""
+    largest_difference: float = 0.0
+    """Largest difference of the heights of a strip on both sides at the end of a step [m]."""
+    attempts: int = 0
+    """Number of steps that the program has made, with the repeated ones."""
+
+    def add(self, force: Array, rise: Array, difference: Array, attempts: int) -> "Coupling":
+        """Coupling after a further step.
+
+        Args:
+            force: Force held on each strip, downwards, (strips,) [N].
+            rise: Rise of each strip, (strips,) [m].
+            difference: Height that the line has seen minus that of the program, (strips,) [m].
+            attempts: Number of attempts of the step.
+        """
+        return Coupling(
+            self.energy + float(force @ difference),
+            self.exchanged + float(np.abs(force @ rise)),
+            max(self.largest_difference, float(np.abs(difference).max())),
+            self.attempts + attempts,
+        )
+
+
 @dataclass(frozen=True)
 class History:
     """Result of a passage; T steps, P pantographs, C strips, U watched stations."""
@@ -56,3 +113,5 @@ class History:
     """
     strip_force: Array
     """Contact force of each strip, numbered as in a `Train`, (C, T) [N]."""
+    coupling: tuple[Coupling, ...] = ()
+    """Couplings of the pantographs that other programs move, in running order."""

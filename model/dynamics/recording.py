@@ -1,7 +1,7 @@
 """Driver of the time step: advances line and pantographs and records their motion."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
@@ -68,11 +68,7 @@ def simulate_steps(
         )
         steps = _advance(kernel, motion, train, work, load[block], part)
         if steps < block.stop - first:
-            time = (first + steps + 1) * kernel.time_step
-            raise DidNotConverge(
-                f"the contact, dropper and damping forces of the time step at {time:.3f} s after the start"
-                " did not converge"
-            )
+            refuse_divergence(first + steps, kernel.time_step)
         if progress:
             progress(block.stop / load.size)
 
@@ -87,6 +83,42 @@ def _rise_at_wires(train: Train, work: Workspace, c: int) -> float:
             lateral = contact.head[c, wire, i] - train.head[c, i]
             rise += train.contact[c, wire] * lateral * train.z[0, train.owner[c], i]
     return rise
+
+
+def advance_once(
+    kernel: KernelArrays, motion: Motion, train: Train, work: Workspace, recording: Recording, step: int
+) -> None:
+    """Advance line and pantographs, in place, by one step of a recording, and fill it.
+
+    Args:
+        kernel, motion, train, recording: As in `simulate_steps`.
+        work: Scratch arrays.
+        step: Number of the step, from 0.
+
+    Raises:
+        DidNotConverge: The forces of the step did not converge.
+    """
+    here = slice(step, step + 1)
+    part = recording._replace(
+        contact=recording.contact[here],
+        height=recording.height[here],
+        motion=recording.motion[here],
+        slack=recording.slack[here],
+    )
+    if _advance(kernel, motion, train, work, np.zeros(1), part) == 0:
+        refuse_divergence(step, kernel.time_step)
+
+
+def refuse_divergence(steps: int, time_step: float) -> NoReturn:
+    """Refuse a simulation whose forces did not converge after a number of steps [s].
+
+    Raises:
+        DidNotConverge: Always.
+    """
+    time = (steps + 1) * time_step
+    raise DidNotConverge(
+        f"the contact, dropper and damping forces of the time step at {time:.3f} s after the start did not converge"
+    )
 
 
 @entry_kernel

@@ -1,6 +1,7 @@
 """Simulation of a passage: pantographs along a line, starting from rest."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from pantocheck.model.description.pantograph import Pantograph
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.active_window import build_window_arrays, find_unknown
 from pantocheck.model.dynamics.contact_arrays import ContactArrays, height_of_irregularity
+from pantocheck.model.dynamics.foreign_pantograph import build_interface, couple_steps, start_interfaces
 from pantocheck.model.dynamics.kernel_arrays import KernelArrays, build_kernel_arrays
 from pantocheck.model.dynamics.motion import Motion, motion_at_rest
-from pantocheck.model.dynamics.passage import History, Passage
+from pantocheck.model.dynamics.passage import ForeignPantograph, History, Passage
 from pantocheck.model.dynamics.recording import allocate_recording, simulate_steps
 from pantocheck.model.dynamics.train import Train, build_train
 from pantocheck.model.fem import beam
@@ -24,7 +26,10 @@ from pantocheck.model.statics.static_solver import static_solver
 
 
 def simulate_passage(
-    line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
+    line: DiscretisedLine,
+    passage: Passage,
+    progress: Callable[[float], None] | None = None,
+    programs: Sequence[ForeignPantograph | None] = (),
 ) -> History:
     """Simulate the passage of pantographs along a line, starting from rest.
 
@@ -32,6 +37,7 @@ def simulate_passage(
         line: Discretised line.
         passage: Pantographs, speed, duration.
         progress: Called from time to time with the completed share, 0 to 1.
+        programs: Programs that move pantographs in place of their model, in running order; None: the model.
 
     Returns:
         Contact forces and motion.
@@ -42,10 +48,18 @@ def simulate_passage(
     """
     _check_passage(line, passage)
     kernel = build_kernel_arrays(line, passage.time_step, build_window_arrays(line, passage))
+    pantographs, programs = passage.pantographs, programs or [None] * len(passage.pantographs)
+    pairs = zip(pantographs, programs, strict=True)
+    moved = tuple(pantograph if program is None else build_interface(pantograph) for pantograph, program in pairs)
+    passage = replace(passage, pantographs=moved)
     motion, train = start_motion(line, kernel, passage)
+    interfaces = start_interfaces(programs, pantographs, train, passage.time_step)
     steps = round(passage.duration / passage.time_step)
     recording = allocate_recording(line, passage.watched, steps, train.owner.size)
-    simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
+    if interfaces:
+        couple_steps(kernel, motion, train, interfaces, recording, progress)
+    else:
+        simulate_steps(kernel, motion, train, np.zeros(steps), recording, progress)
     time: Array = passage.time_step * np.arange(1, steps + 1).astype(np.float64)
     position: Array = np.array(passage.start)[:, None] + passage.speed * time
     force, height = recording.contact.T.copy(), recording.height.T.copy()
@@ -59,6 +73,7 @@ def simulate_passage(
         height=np.add.reduceat(height, first) / np.diff(train.first_strip)[:, None],
         motion=watched,
         strip_force=force,
+        coupling=tuple(interface.coupling for interface in interfaces),
     )
 
 
