@@ -38,6 +38,7 @@ pytest_plugins = [
     "helpers.converged_fixtures",
     "helpers.example_results",
     "helpers.fake_distribution",
+    "helpers.fmu_fixtures",
     "helpers.graded_wave",
     "helpers.record_fixtures",
     "helpers.signer_fixtures",

@@ -17,6 +17,7 @@ from pantocheck.conformance.core.texts import DocumentationPage
 from pantocheck.conformance.core.trust import Trust
 from pantocheck.conformance.line.elements.damping import Damping, overlay_damping
 from pantocheck.conformance.line.line_file import LineFile
+from pantocheck.conformance.pantograph.fmu_table import FmuTable
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.records.sidecar_tables import StartTable
 
@@ -78,6 +79,11 @@ class Case:
     def pantograph_files(self) -> tuple[PantographFile, ...]:
         """All pantographs of the case: those of the run, and that of a static case."""
         return self.pantographs if self.static_pantograph is None else (*self.pantographs, self.static_pantograph)
+
+    @property
+    def fmus(self) -> tuple[FmuTable, ...]:
+        """FMUs that move pantographs of the run."""
+        return tuple(pantograph.fmu for pantograph in self.pantographs if pantograph.fmu is not None)
 
     @property
     def id(self) -> str:

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.case_file import CaseFile
-from pantocheck.conformance.cases.input_changes import InputChange
+from pantocheck.conformance.cases.input_changes import InputChange, find_pantograph_file
 from pantocheck.conformance.cases.lift_force import resolve_rule
 from pantocheck.conformance.cases.limits import repeat_limits
 from pantocheck.conformance.core.input_error import InputError
@@ -115,12 +115,20 @@ class CaseFiles:
 
     def _read_pantograph(self, name: str, index: int) -> tuple[PantographFile, tuple[str, ...]]:
         changes = [c for c in self.changes if c.part == "pantograph" and c.pantograph in (None, index)]
-        return _read_pantograph(_locate(self.path, name, f"pantograph[{index + 1}].model"), changes)
+        file, texts = _read_pantograph(path := _locate(self.path, name, f"pantograph[{index + 1}].model"), changes)
+        naming = [c for c in self.changes if c.part == "use" and c.path == ("model",) and c.pantograph in (None, index)]
+        return (_name_fmu(file, path) if naming else file), texts
 
 
 def _read_pantograph(path: Path, changes: Sequence[InputChange]) -> tuple[PantographFile, tuple[str, ...]]:
     file, descriptions = _read_changed(path, PantographFile, "pantograph", changes)
-    return resolve_rule(file, _name_file("pantograph", path, descriptions, changes)), descriptions
+    return _resolve(file, path, _name_file("pantograph", path, descriptions, changes)), descriptions
+
+
+def _resolve(file: PantographFile, path: Path, where: str) -> PantographFile:
+    """Pantograph with the formula of its force rule, and the digest of its FMU."""
+    resolved = resolve_rule(file, where)
+    return resolved if file.fmu is None else resolved.model_copy(update={"fmu": file.fmu.identify(path)})
 
 
 def _read_changed(path: Path, model: type[T], kind: str, changes: Sequence[InputChange]) -> tuple[T, tuple[str, ...]]:
@@ -193,7 +201,7 @@ def change_tree(
         holder[part] = change.value
         _mark_provisional(changed, model, change)
         stated = "not in the file" if before is None else f"file: {_show(before)}"
-        descriptions.append(f"{change.key} = {_show(change.value)} ({stated})")
+        descriptions.append(f"{change.key} = {_show(change.shown)} ({stated})")
     return changed, tuple(dict.fromkeys(descriptions))
 
 
@@ -237,5 +245,15 @@ def read_line_file(path: Path) -> LineFile:
 
 
 def read_pantograph_file(path: Path) -> PantographFile:
-    """Read a pantograph file and resolve its force rule; InputError if it is invalid."""
-    return resolve_rule(read_model(path, PantographFile, "pantograph"), f"pantograph '{path.name}'")
+    """Read a pantograph file with its force rule and the digest of its FMU; InputError if it is invalid."""
+    return _resolve(read_model(path, PantographFile, "pantograph"), path, f"pantograph '{path.name}'")
+
+
+def read_named_pantograph(path: Path) -> PantographFile:
+    """Read a pantograph file, or that beside an FMU, which the user has named: its FMU may run."""
+    file = find_pantograph_file(path)
+    return _name_fmu(read_pantograph_file(file), file)
+
+
+def _name_fmu(file: PantographFile, path: Path) -> PantographFile:
+    return file if file.fmu is None else file.model_copy(update={"fmu": file.fmu.name(path)})

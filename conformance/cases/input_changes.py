@@ -8,6 +8,7 @@ import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 from pydantic import BaseModel
@@ -45,6 +46,9 @@ FIXED_KEYS = {"id", "title", "edition", "superseded_by", "on_request", "requires
 SET_OPTION = "option --set"
 """Option of the command line that changes an input."""
 
+PANTOGRAPH_OPTION = "option --pantograph"
+"""Option of the command line that replaces the pantographs."""
+
 _PLAIN_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_./-]*")
 
 
@@ -64,6 +68,11 @@ class InputChange:
     """New value."""
     origin: str = SET_OPTION
     """File or option that states the change, for messages."""
+
+    @property
+    def shown(self) -> object:
+        """Value in reports: of a pantograph that the user has named, the name of its file."""
+        return Path(str(self.value)).name if self.origin == PANTOGRAPH_OPTION else self.value
 
     @property
     def where(self) -> str:
@@ -115,6 +124,35 @@ def build_change(key: str, value: object, origin: str = SET_OPTION) -> InputChan
     check_path(models, change.path, change.value, change.where, everywhere, prefix)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return replace(change, value=[value]) if is_number and holds_list(models, change.path) else change
+
+
+def replace_pantographs(names: Sequence[str]) -> tuple[InputChange, ...]:
+    """Changes that replace the pantographs of a case.
+
+    Args:
+        names: Pantograph files in running order, or one for all; an FMU stands for the pantograph file beside it.
+
+    Raises:
+        InputError: There is no pantograph file beside an FMU.
+    """
+    paths = [str(find_pantograph_file(Path(name)).absolute()) for name in names]
+    keys = ["pantograph.model"] if len(paths) == 1 else [f"pantograph[{n}].model" for n in range(1, len(paths) + 1)]
+    return tuple(build_change(key, path, PANTOGRAPH_OPTION) for key, path in zip(keys, paths, strict=True))
+
+
+def find_pantograph_file(path: Path) -> Path:
+    """Pantograph file by its path, or beside an FMU: with its name, or fmu.toml.
+
+    Raises:
+        InputError: There is none beside the FMU.
+    """
+    if path.suffix != ".fmu":
+        return path
+    candidates = (path.with_suffix(".toml"), path.with_name("fmu.toml"))
+    if found := next((file for file in candidates if file.is_file()), None):
+        return found
+    hint = f"Write a pantograph file with a table [fmu] as {candidates[0].name}."
+    raise InputError(PANTOGRAPH_OPTION, f"there is no {' or '.join(c.name for c in candidates)} beside {path}", hint)
 
 
 def _parse_change(text: str) -> InputChange:

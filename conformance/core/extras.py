@@ -22,6 +22,7 @@ EXTRA_OF_PACKAGE = {
     "dask": "cluster",
     "dask_jobqueue": "cluster",
     "pyarrow": "parquet",
+    "fmpy": "fmi",
 }
 """Extra of `pyproject.toml` that installs a package, by its name in an import."""
 

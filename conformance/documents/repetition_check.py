@@ -263,6 +263,10 @@ def check_rerun(results: Results, catalogue: Catalogue = LIBRARY) -> list[Docume
             f"the system '{results.system.name}' is not the built-in simulator",
             "Run this system again with 'pantocheck run --system', or give its record with --record.",
         )
+    for case in results.cases:
+        for fmu in case.fmus:
+            found = f"{case.id} was run with the FMU {fmu.file}, SHA-256 {fmu.sha256}, whose code is not run here"
+            raise InputError("option --rerun", found, "Run the case again with 'pantocheck run --pantograph'.")
     computed = [case for case in results.cases if case.quantities]
     entries = {case.id: catalogue.find_id(case.id) for case in computed}
     tolerance = 0.0 if _is_same_platform(results) else OTHER_PLATFORM

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.catalogue import Catalogue, open_catalogue
-from pantocheck.conformance.cases.input_changes import parse_changes
+from pantocheck.conformance.cases.input_changes import parse_changes, replace_pantographs
 from pantocheck.conformance.cases.library import find_entries, overlay_limits, read_limits, select_cases
 from pantocheck.conformance.core.decision import DecisionText, parse_decision
 from pantocheck.conformance.core.files import check_writable, read_text
@@ -46,6 +46,10 @@ class Plan(InputTable):
     """Folders with further cases, whose ids begin with own/; they take part without a list of cases."""
     set: Names = ()
     """Changed inputs of the cases, e.g. "speed_km_h=300" or "line.contact_wire.tension_N=22e3"."""
+    pantograph: Names = ()
+    """Pantograph files in running order, or one for all, in place of those of the cases; an FMU stands for the file
+    beside it, fmu.toml or with its own name. The code of an FMU runs only if it is named here.
+    """
     system: str = "builtin"
     """Builtin, record:DIR or command:PROGRAM ARGUMENTS."""
     information: Names = ()
@@ -116,10 +120,12 @@ class PreparedPlan:
 
 def prepare_plan(plan: Plan) -> PreparedPlan:
     """Select and read the cases of a plan, and check its options."""
-    if plan.set and not plan.cases:
-        raise InputError("option --set", "no case is named", "Name the cases whose inputs you want to change.")
+    for option, given in (("--set", plan.set), ("--pantograph", plan.pantograph)):
+        if given and not plan.cases:
+            raise InputError(f"option {option}", "no case is named", "Name the cases whose inputs you want to change.")
     catalogue = open_catalogue(plan.case_folders)
-    cases = select_cases(plan.cases or ["*"], parse_changes(plan.set), catalogue)
+    changes = (*replace_pantographs(plan.pantograph), *parse_changes(plan.set))
+    cases = select_cases(plan.cases or ["*"], changes, catalogue)
     if plan.limits is not None:
         cases = overlay_limits(cases, read_limits(Path(plan.limits)))
     requested = choose_verdicts(plan.verdicts, plan.system)
@@ -184,6 +190,7 @@ def read_plan(path: Path) -> Plan:
         update={
             "cases": resolve_cases(plan.cases, folder),
             "case_folders": tuple(str(folder / name) for name in plan.case_folders),
+            "pantograph": tuple(str(folder / name) for name in plan.pantograph),
             "system": resolve_system(plan.system, folder),
             "out": str(folder / plan.out),
             "baseline": None if plan.baseline is None else str(folder / plan.baseline),

@@ -149,7 +149,8 @@ def _build_result(case: Case, delivered: Delivered, notes: Sequence[str], **part
         {
             "id": case.id,
             "title": file.title,
-            "notes": [*case.notes, *delivered.notes, *notes],
+            "notes": [*(fmu.description for fmu in delivered.fmus), *case.notes, *delivered.notes, *notes],
+            "fmus": delivered.fmus,
             "model_uncertainty": list(delivered.model_uncertainty),
             "supported": list_supported_frequencies(case, delivered),
             "conditions": list_conditions(case),

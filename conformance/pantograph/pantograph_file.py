@@ -22,6 +22,7 @@ from pantocheck.conformance.core.sourced_table import (
     is_absent,
     validation_problem,
 )
+from pantocheck.conformance.pantograph.fmu_table import FmuTable
 from pantocheck.conformance.pantograph.force_law import AppliedForceLaw, ForceLaw
 from pantocheck.conformance.pantograph.head_tables import LISTED_BY_LAW, HeadTable
 from pantocheck.conformance.pantograph.transfer_function import TransferFunctionTable
@@ -219,6 +220,8 @@ class PantographFile(InputTable):
     transfer_function: Annotated[
         TransferFunctionTable | None, Field(exclude_if=is_absent), Feature("transfer_function")
     ] = None
+    fmu: Annotated[FmuTable | None, Field(exclude_if=is_absent), Feature("fmu")] = None
+    """FMU that moves the pantograph in place of this model; the model states its expected response."""
     contact: ContactTable
     head: Annotated[HeadTable | None, Field(exclude_if=is_absent), LISTED_BY_LAW] = None
     """Strips, rotations, bending modes, friction and stops; default: the head is one rigid strip."""
@@ -243,6 +246,13 @@ class PantographFile(InputTable):
             yield validation_problem("chain", "missing", hint)
         if len(models) > 1:
             yield validation_problem(models[-1], f"the pantograph has {len(models)} models: {', '.join(models)}", hint)
+
+    @cross_check
+    def _fmu_fits_the_strips(self) -> Problems:
+        if self.fmu is not None and len(self.fmu.contact_force_N) != self.strips:
+            yield validation_problem(
+                "fmu.contact_force_N", f"{len(self.fmu.contact_force_N)} names", f"The head has {self.strips} strips."
+            )
 
     @cross_check
     def _law_fits_the_model(self) -> Problems:

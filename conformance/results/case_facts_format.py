@@ -286,3 +286,38 @@ class ReferenceValues(ResultsPart):
     """Half-widths of the 95 % intervals, as in `quantities`."""
     force_20_N: dict[Owner, list[float]]
     """Filtered force at the positions of `traces` of the case, which has the same pantograph."""
+
+
+class FmuRun(ResultsPart):
+    """FMU that moved a pantograph in a run, and the accuracy of its coupling with the line."""
+
+    pantograph: int
+    file: str
+    """Name of the archive."""
+    sha256: str
+    """Digest of the archive."""
+    model: str
+    """Name and version of the model, as the FMU states them."""
+    tool: str
+    """Tool that generated the FMU, as it states; empty: not stated."""
+    interface: str
+    """Version of FMI, and interface that was used."""
+    can_repeat: bool
+    """Whether steps were repeated until line and FMU agreed."""
+    energy_J: FiniteNumber
+    """Energy that the coupling made."""
+    exchanged_J: FiniteNumber
+    """Sum of the absolute work of all steps between line and FMU."""
+    largest_difference_mm: FiniteNumber
+    """Largest difference of the heights of a strip in line and FMU at the end of a step."""
+
+    @property
+    def description(self) -> str:
+        """Sentences for the reader of a report."""
+        way = "steps repeated until both agree" if self.can_repeat else "explicit steps, without state rollback"
+        tool = f" by {self.tool}" if self.tool else ""
+        return (
+            f"Pantograph {self.pantograph} was moved by the FMU {self.file}: {self.model}{tool}, {self.interface},"
+            f" SHA-256 {self.sha256}. Coupling: {way}; it made {self.energy_J:.2g} J where {self.exchanged_J:.3g} J"
+            f" were exchanged, and heights differ by {self.largest_difference_mm:.1g} mm at most."
+        )

@@ -41,6 +41,7 @@ from pantocheck.conformance.results.case_facts_format import (
     ContactLossFacts,
     DerivedFact,
     EventFacts,
+    FmuRun,
     LawForces,
     MeasuredRun,
     ReadingFacts,
@@ -239,6 +240,8 @@ class CaseResult(ResultsPart):
     """Changes of the values by inputs that are not traced or left open; missing: not computed for this case."""
     input_studies: Annotated[list[str], Field(exclude_if=is_empty)] = []
     """Sentences on errors of single inputs that the verdicts notice; missing: not computed for this case."""
+    fmus: Annotated[list[FmuRun], Field(exclude_if=is_empty)] = []
+    """FMUs that moved pantographs; missing: none."""
     record: RecordFacts | None = None
     """Null without a record: line at rest, mass drop, or a study of several runs."""
     run: RunFacts

@@ -2,7 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from itertools import count
 
@@ -17,13 +18,21 @@ from pantocheck.conformance.quantities.line_signals import UPLIFT_STRETCH_M
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.records.sidecar_tables import RunTable
+from pantocheck.conformance.results.case_facts_format import FmuRun
 from pantocheck.conformance.runs.core_requirement import require_core
-from pantocheck.conformance.runs.uplift_tuning import build_pantographs, estimate_uplift_forces, tune_uplift
+from pantocheck.conformance.runs.fmu_process import describe_coupling, open_fmu
+from pantocheck.conformance.runs.uplift_tuning import (
+    TuningFailed,
+    build_pantographs,
+    compute_working_height,
+    estimate_uplift_forces,
+    tune_uplift,
+)
 from pantocheck.model import Pantograph
 from pantocheck.model.description.catenary import Catenary
 from pantocheck.model.discretisation.discretised_line import DiscretisedLine
 from pantocheck.model.dynamics.drop_values import FreeDecay, MassDropSetup
-from pantocheck.model.dynamics.passage import History, Passage
+from pantocheck.model.dynamics.passage import ForeignPantograph, History, Passage
 from pantocheck.model.statics.contact_wires import touched_wires
 
 KEPT_SPANS = 1.5
@@ -41,6 +50,8 @@ class PassageRun:
     """Simulated time, computing time, time step and element length."""
     uplift_forces: tuple[float, ...]
     """Uplift force of every pantograph [N]."""
+    fmus: tuple[FmuRun, ...] = ()
+    """FMUs that moved pantographs."""
 
 
 def run_passage(
@@ -78,6 +89,9 @@ def run_passage(
     first_step = replace(build_passage(case, line, discretisation, start), duration=discretisation.time_step_s)
     integrate_passage(line, first_step)
     targets = [None if uplift_forces else lift.target_mean_force for lift in case.lift_forces]
+    for table, target in zip((file.fmu for file in case.pantographs), targets, strict=True):
+        if table is not None and table.uplift_force_N is None and target is not None:
+            raise TuningFailed(f"FMU '{table.file}' names no variable of the uplift force, which the case tunes")
     shares = _halve_rest(progress) if any(targets) else iter([progress])
     return tune_uplift(
         lambda forces: _run_once(case, line, discretisation, forces, next(shares)),
@@ -105,7 +119,7 @@ def run_start(
 ) -> Record:
     """Simulate the passage of a case from another start; parameters as in `run_passage`."""
     passage = replace(build_passage(start.case, line, discretisation, uplift_forces), ramp=start.ramp_s)
-    return record_passage(start.case, passage, integrate_passage(line, passage, progress))
+    return record_passage(start.case, passage, _integrate(start.case, line, passage, uplift_forces, progress)[0])
 
 
 def _run_once(
@@ -117,9 +131,37 @@ def _run_once(
 ) -> PassageRun:
     passage = build_passage(case, line, discretisation, uplift_forces)
     begin = time.perf_counter()
-    history = integrate_passage(line, passage, progress)
+    history, fmus = _integrate(case, line, passage, uplift_forces, progress)
     record = record_passage(case, passage, history)
-    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces)
+    return PassageRun(record, build_run_table(discretisation, passage.duration, begin), uplift_forces, fmus)
+
+
+def _integrate(
+    case: Case, line: DiscretisedLine, passage: Passage, uplift_forces: tuple[float, ...], progress: ShareCallback
+) -> tuple[History, tuple[FmuRun, ...]]:
+    """Simulate the passage of a case with its FMUs, each in a process of its own.
+
+    Raises:
+        FmuFailed: An FMU failed, or its coupling made energy.
+    """
+    with ExitStack() as processes:
+        programs = [
+            None
+            if file.fmu is None
+            else processes.enter_context(
+                open_fmu(
+                    file.fmu,
+                    {"uplift_force_N": force, "train_speed_km_h": 3.6 * case.speed, "base_height_m": 0.0},
+                    passage.time_step,
+                    compute_working_height(case, line, file, force) - file.fmu.working_height_m,
+                )
+            )
+            for file, force in zip(case.pantographs, uplift_forces, strict=True)
+        ]
+        history = integrate_passage(line, passage, progress, programs)
+    moved = [(number, program) for number, program in enumerate(programs, 1) if program is not None]
+    pairs = zip(moved, history.coupling, strict=True)
+    return history, tuple(describe_coupling(number, program, coupling) for (number, program), coupling in pairs)
 
 
 def build_run_table(discretisation: Discretisation, simulated_s: float, begin: float) -> RunTable:
@@ -203,7 +245,10 @@ def _strip_forces(passage: Passage, history: History) -> tuple[RealArray, RealAr
 
 # Compiled simulations of the model. They need the core in C or the extra `simulator`; the first simulation loads them.
 def integrate_passage(
-    line: DiscretisedLine, passage: Passage, progress: Callable[[float], None] | None = None
+    line: DiscretisedLine,
+    passage: Passage,
+    progress: Callable[[float], None] | None = None,
+    programs: Sequence[ForeignPantograph | None] = (),
 ) -> History:
     """Simulate a passage; parameters and errors as in `model.simulate_passage`.
 
@@ -213,7 +258,7 @@ def integrate_passage(
     require_core("the simulation of a passage")
     from pantocheck.model.dynamics.simulation import simulate_passage
 
-    return simulate_passage(line, passage, progress)
+    return simulate_passage(line, passage, progress, programs)
 
 
 def integrate_mass_drop(

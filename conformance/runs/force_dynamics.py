@@ -123,6 +123,8 @@ def _check_force_dynamics(case: Case, signals: RecordSignals) -> Finding:
 def find_unknown_motion(case: Case, signals: RecordSignals, number: int) -> str | None:
     """Reason why a record does not determine the motion of the head of a pantograph; None if it does."""
     file, line = case.pantographs[number - 1], case.line
+    if file.fmu is not None and not file.fmu.is_linear:
+        return f"the FMU of pantograph {number} is not linear"
     if file.strips > 1 and signals.record.front_strip is None:
         return f"the record has no forces of the strips of pantograph {number}"
     if file.head is not None and any(stop.between is None or "base" in stop.between for stop in file.head.stop):
@@ -135,7 +137,8 @@ def find_unknown_motion(case: Case, signals: RecordSignals, number: int) -> str 
 
 def is_linear(case: Case, number: int) -> bool:
     """Whether the motion of a pantograph is a sum of the responses to its forces, wherever the wire is."""
-    return not (case.pantographs[number - 1].has_joints or follows_wire(case, number))
+    file = case.pantographs[number - 1]
+    return not (file.has_joints or follows_wire(case, number) or (file.fmu is not None and not file.fmu.is_linear))
 
 
 def follows_wire(case: Case, number: int) -> bool:

@@ -22,7 +22,7 @@ from pantocheck.conformance.core.texts import DocumentationPage
 LONGEST_LINE = 1_000_000
 """Largest size of an answer [bytes]; numbers belong in record files."""
 MOST_OUTPUT = 10_000_000
-"""Largest size of the whole standard output [bytes]."""
+"""Largest size of the whole standard output of the program of a case [bytes]."""
 ERROR_TAIL = 4000
 """Size of the end of standard error that a failure quotes [bytes]."""
 END_LIMIT = 5.0
@@ -41,12 +41,13 @@ class Program:
     Args:
         arguments: Program and arguments; no shell interprets them.
         folder: Working folder.
+        most_output: Largest size of its whole standard output [bytes].
 
     Raises:
         ProgramFailed: The program cannot be started.
     """
 
-    def __init__(self, arguments: Sequence[str], folder: Path) -> None:
+    def __init__(self, arguments: Sequence[str], folder: Path, most_output: int = MOST_OUTPUT) -> None:
         self._mark = uuid.uuid4().hex
         self._adoption = adopt_orphans()
         self._adoption.__enter__()
@@ -70,7 +71,7 @@ class Program:
         self._errors = bytearray()
         # A thread per pipe: no pipe can block another one.
         self._readers = [
-            threading.Thread(target=_read_lines, args=(self._process.stdout, self._lines), daemon=True),
+            threading.Thread(target=_read_lines, args=(self._process.stdout, self._lines, most_output), daemon=True),
             threading.Thread(target=_keep_tail, args=(self._process.stderr, self._errors), daemon=True),
         ]
         for reader in self._readers:
@@ -94,6 +95,11 @@ class Program:
             with contextlib.suppress(OSError, ValueError):
                 self._process.stdin.write(line + b"\n")
                 self._process.stdin.flush()
+
+    def ask(self, line: bytes, limit: float) -> bytes:
+        """Send a short line, which the pipe holds, and read the answer; limit and errors as in `read_line`."""
+        self._write(line)
+        return self.read_line(limit)
 
     def read_line(self, limit: float) -> bytes:
         """Read the next line of the standard output.
@@ -198,7 +204,7 @@ def _find_marked(mark: str) -> list[int]:
     return processes
 
 
-def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFailed | None]") -> None:
+def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFailed | None]", most: int) -> None:
     """Put every line into the queue; then None, or `ProgramFailed` after too much output or an incomplete line."""
     line, total = bytearray(), 0
     while chunk := os.read(stream.fileno(), 65536):
@@ -208,8 +214,8 @@ def _read_lines(stream: IO[bytes], lines: "queue.SimpleQueue[bytes | ProgramFail
             lines.put(bytes(line) + part)
             line.clear()
         line += rest
-        if len(line) > LONGEST_LINE or total > MOST_OUTPUT:
-            size = f"a line of more than {LONGEST_LINE}" if len(line) > LONGEST_LINE else f"more than {MOST_OUTPUT}"
+        if len(line) > LONGEST_LINE or total > most:
+            size = f"a line of more than {LONGEST_LINE}" if len(line) > LONGEST_LINE else f"more than {most}"
             lines.put(ProgramFailed(f"wrote {size} bytes to its standard output: numbers belong in record files"))
             return
     lines.put(ProgramFailed(f"ended in the middle of a line, after {bytes(line[-60:])!r}") if line else None)

@@ -81,7 +81,8 @@ class ReferenceSimulator:
                 name_line(number): partial(_deliver_line, case, catenary, uplift_forces)
                 for number, catenary in enumerate(list_tolerance_lines(case.line), 1)
             }
-        found = dict(zip(tasks, _run_tasks(tasks, steps, self.threads), strict=True))
+        threads = 1 if case.fmus else self.threads  # the end of a process ends those that began after it
+        found = dict(zip(tasks, _run_tasks(tasks, steps, threads), strict=True))
         starts, lines = (
             tuple(run for name, run in found.items() if run is not None and name.startswith(kind))
             for kind in ("start", "line")
@@ -220,5 +221,6 @@ def _deliver(
         supported=list_mesh_frequencies(case, discretisation),
         start=case.start_table,
         uplift_forces=passage.uplift_forces,
+        fmus=passage.fmus,
     )
     return delivered, passage.uplift_forces

@@ -8,6 +8,7 @@ from pantocheck.conformance.core.figure_data import Chart, LineShape, TextTable
 from pantocheck.conformance.quantities.evaluation import Evaluation, Value
 from pantocheck.conformance.records.record import Record
 from pantocheck.conformance.records.sidecar_tables import RunTable, StartTable
+from pantocheck.conformance.results.case_facts_format import FmuRun
 from pantocheck.conformance.results.supported_frequency import SupportedFrequency
 
 
@@ -56,6 +57,8 @@ class Delivered:
     """Start of the run, as the system states it."""
     uplift_forces: tuple[float, ...] = ()
     """Uplift force of every pantograph in the run [N]; empty: not known."""
+    fmus: tuple[FmuRun, ...] = ()
+    """FMUs that moved pantographs."""
     line_shape: LineShape | None = None
     """Line at rest for a drawing; None: not known."""
     refined: "Delivered | None" = None

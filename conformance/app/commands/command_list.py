@@ -44,6 +44,7 @@ PANELS: dict[str, dict[str, str]] = {
         "line update": "Write the line as built, from measurements.",
     },
     "pantograph": {
+        "pantograph check": "Check an FMU as a pantograph: interface, response, energy.",
         "pantograph compare": "Compare measured responses with a pantograph.",
         "pantograph fit": "Fit a chain of lumped masses to measured responses.",
     },

@@ -60,6 +60,12 @@ PlanOption = Annotated[
 SystemOption = Annotated[
     str | None, typer.Option(help="System under test: builtin, record:DIR or command:PROGRAM.", show_default="builtin")
 ]
+PantographOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Pantograph file or FMU in place of the pantographs of the case; repeat it for several in running order."
+    ),
+]
 LimitsOption = Annotated[
     Path | None, typer.Option(help="TOML file of your own limits, which replace those of the cases.")
 ]
@@ -87,6 +93,7 @@ def run_command(
     folders: CasesOption = None,
     system: SystemOption = None,
     changed: SetOption = None,
+    pantograph: PantographOption = None,
     out: OutOption = None,
     formats: FormatsOption = None,
     language: LanguageOption = None,
@@ -120,6 +127,8 @@ def run_command(
 
     pantocheck run 'en50318-2002/*' --system record:records --with-reference
 
+    pantocheck run my-case.toml --pantograph model.fmu
+
     pantocheck run 'own/*' --cases my-cases
 
     pantocheck run --plan conformance.toml --baseline results.json --drift 2
@@ -132,6 +141,7 @@ def run_command(
         cases=case,
         case_folders=folders,
         set=changed,
+        pantograph=pantograph,
         out=out,
         language=language,
         accept_unconfirmed=accept_unconfirmed,

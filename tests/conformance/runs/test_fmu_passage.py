@@ -1,0 +1,104 @@
+"""A pantograph as FMU in a case: the same quantities, two instances, and what never runs it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from helpers.fmu_fixtures import WriteFmu
+from helpers.short_cases import change_case
+from pantocheck.conformance.app.self_test.adapter_check import build_short_case, build_twin_case
+from pantocheck.conformance.cases.case import Case
+from pantocheck.conformance.cases.limits import Limit
+from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.documents.repetition_check import check_rerun
+from pantocheck.conformance.execution.plan import Plan, prepare_plan
+from pantocheck.conformance.execution.runner import run_cases
+from pantocheck.conformance.grading.case_grading import grade_case
+from pantocheck.conformance.results.results_format import CaseResult, Results
+from pantocheck.conformance.runs.reference_simulator import UnrefinedSimulator
+from verification.fmu.coupling_table import compare_quantities
+
+MESH = (2.0, 0.004)
+"""Element length [m] and time step [s] of the short passages."""
+
+
+def run(case: Case) -> CaseResult:
+    return grade_case(case, UnrefinedSimulator().run(case), "secondary")
+
+
+@pytest.mark.parametrize(
+    ("version", "has_state", "interface"),
+    [(2, True, "co-simulation"), (3, True, "model-exchange"), (3, False, "co-simulation")],
+)
+def test_two_chains_as_fmus_give_the_quantities_of_the_built_in_chains(
+    write_fmu: WriteFmu, version: int, has_state: bool, interface: str
+) -> None:
+    """0.05 % of every quantity; without rollback 0.5 % in the long steps of 4 ms, and an eighth of it with half."""
+    case = change_case(build_twin_case(), mesh=MESH)
+    file = write_fmu(version=version, has_state=has_state, interface=interface)
+    found = run(replace(case, pantographs=(file, file)))
+    assert compare_quantities(run(case), found)[0] < (5e-4 if has_state else 5e-3)
+    assert [fmu.pantograph for fmu in found.fmus] == [1, 2]
+    assert {fmu.sha256 for fmu in found.fmus} == {file.fmu.sha256}
+    assert all(abs(fmu.energy_J) < 1e-3 * fmu.exchanged_J for fmu in found.fmus)
+    assert found.record.state == "consistent"
+    assert file.fmu.sha256 in found.notes[0]
+
+
+def test_an_fmu_with_another_mass_contradicts_its_file(write_fmu: WriteFmu) -> None:
+    """The head of the file is a third lighter than that of the FMU: the dynamics check refutes the record."""
+    file = write_fmu()
+    lighter = file.chain.model_copy(update={"masses_kg": (15.0, 4.8)})
+    case = change_case(build_short_case(), mesh=MESH)
+    result = run(replace(case, pantographs=(file.model_copy(update={"chain": lighter}),)))
+    assert result.verdict == "error"
+    assert "contradicts the contact height" in result.reason
+
+
+def test_the_motion_of_an_fmu_that_is_not_linear_is_not_confirmed(write_fmu: WriteFmu) -> None:
+    result = run(replace(change_case(build_short_case(), mesh=MESH), pantographs=(write_fmu(is_linear=False),)))
+    assert result.record.state == "unconfirmed"
+
+
+def test_the_option_names_an_fmu_and_verify_does_not_run_it(write_fmu: WriteFmu, tmp_path: Path) -> None:
+    """`--pantograph model.fmu` finds fmu.toml beside it, and results name the FMU, which `verify --rerun` refuses."""
+    file = write_fmu()
+    prepared = prepare_plan(Plan(cases=("en50318-2002/250",), pantograph=(str(tmp_path / "fmu" / "model.fmu"),)))
+    [case] = prepared.cases
+    assert case.pantographs[0].fmu == file.fmu
+    assert case.changes == ('pantograph.model = "fmu.toml" (file: "pantograph.toml")',)
+    short = replace(change_case(build_short_case(), mesh=MESH), pantographs=case.pantographs)
+    results = run_cases([short], UnrefinedSimulator())
+    again = Results.model_validate_json(results.model_dump_json(by_alias=True))
+    with pytest.raises(InputError, match=f"SHA-256 {file.fmu.sha256}, whose code is not run here"):
+        check_rerun(again)
+
+
+def test_the_option_needs_named_cases(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no case is named"):
+        prepare_plan(Plan(pantograph=("fmu.toml",)))
+    with pytest.raises(InputError, match=r"there is no other\.toml or fmu\.toml"):
+        prepare_plan(Plan(cases=("en50318-2002/250",), pantograph=(str(tmp_path / "other.fmu"),)))
+
+
+def test_an_fmu_of_a_case_file_is_not_run_unless_it_is_named(write_fmu: WriteFmu) -> None:
+    file = write_fmu()
+    unnamed = file.model_copy(update={"fmu": file.fmu.model_copy(update={"model": "model.fmu"})})
+    with pytest.raises(Exception, match="Name the pantograph file with --pantograph"):
+        run(replace(build_short_case(), pantographs=(unnamed,)))
+
+
+@pytest.mark.parametrize(("gain", "verdict"), [(60.0, "pass"), (-60.0, "fail")])
+def test_a_controller_is_graded_and_one_with_a_wrong_sign_fails(write_fmu: WriteFmu, gain: float, verdict: str) -> None:
+    """Skyhook damper of 60 N s/m on the frame (Karnopp, Crosby and Harwood 1974), 12 ms late, at most 50 N.
+
+    The passive pantograph has 26.6 N; the limit is 4 % above. The wrong sign takes two thirds of the base damper.
+    """
+    limit = Limit(quantity="std_force_N", pantograph=1, upper=27.6, trust="own", source="own")
+    case = change_case(build_short_case(), mesh=MESH).without_limits().with_limits((limit,))
+    file = write_fmu(is_linear=False, parameters={"skyhook": gain, "delay": 3.0, "limit": 50.0})
+    result = run(replace(case, pantographs=(file,)))
+    [criterion] = [row for row in result.criteria if row.quantity == "std_force_N"]
+    assert criterion.verdict == verdict, criterion.value
+    assert result.verdict == {"pass": "unconfirmed", "fail": "fail"}[verdict]

@@ -1,0 +1,1 @@
+"""FMUs of linear pantographs, and the accuracy of their coupling."""
