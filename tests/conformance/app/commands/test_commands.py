@@ -286,7 +286,7 @@ def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_t
         "    print('modules after', words, *sys.modules)"
     )
     words = (
-        "new pantograph a.toml;cases;show en50318-2002/250;check a.toml;new line b.toml;new case c.toml --line b.toml;"
+        "new pantograph a.toml;check a.toml;cases;show en50318-2002/250;new line b.toml;new case c.toml --line b.toml;"
         "check b.toml c.toml;verify out/results.json"
     )
     command = [sys.executable, "-c", code, words]
@@ -295,6 +295,7 @@ def test_commands_of_an_editor_load_neither_plotting_nor_signal_processing_nor_t
     assert len(loaded) == len(words.split(";"))
     assert loaded[-1].isdisjoint({*HEAVY, "matplotlib", "jinja2", "numba", "typst", "pypdf"})
     assert loaded[3].isdisjoint({"scipy.linalg", "scipy.sparse"})
+    assert not {name for name in loaded[1] if name.endswith((".case_file", ".line_file", ".force_quantities"))}
     formats = {place.rpartition(".")[0] for place in {**READ_FORMATS.places, **WRITTEN_FORMATS.places}.values()}
     read = {"pantograph.pantograph_file", "cases.case_file", "cases.limits", "line.line_file", "line.elements.damping"}
     assert {name for name in formats if f"pantocheck.conformance.{name}" in loaded[-2]} <= read
