@@ -11,7 +11,7 @@ from pydantic import Field
 from pantocheck.conformance.core.array_types import IntegerArray, RealArray
 from pantocheck.conformance.core.files import MAX_FILE_BYTES, check_file, file_digest
 from pantocheck.conformance.core.input_error import InputError, suggest_names
-from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, read_tables
+from pantocheck.conformance.core.measured_table import CSV, HDF5, MeasuredTable, TableFormat, read_tables
 from pantocheck.conformance.core.sourced_table import InputTable, Problems, cross_check, validation_problem
 from pantocheck.conformance.core.text_settings import TextSettings
 from pantocheck.conformance.core.toml_file import read_model
@@ -147,7 +147,12 @@ class NamedColumn(NamedTuple):
 
 
 def read_named_columns(
-    table: Path, sidecar: NamedTableSidecar, known: Sequence[str], usual: Sequence[str], largest: int
+    table: Path,
+    sidecar: NamedTableSidecar,
+    known: Sequence[str],
+    usual: Sequence[str],
+    largest: int,
+    formats: tuple[TableFormat, ...] = (CSV, HDF5),
 ) -> dict[str, NamedColumn]:
     """Read the columns of a table with one run.
 
@@ -157,6 +162,7 @@ def read_named_columns(
         known: Names of the columns of this kind, with their unit.
         usual: Names that messages suggest.
         largest: Largest accepted number of values.
+        formats: Accepted formats.
 
     Returns:
         Columns by their known name, in its unit.
@@ -164,7 +170,7 @@ def read_named_columns(
     Raises:
         InputError: The table is damaged; a column is unknown, missing or repeated.
     """
-    tables = read_tables(table, (), largest, (CSV, HDF5), sidecar.table)
+    tables = read_tables(table, (), largest, formats, sidecar.table)
     where = f"record '{table.name}'"
     if len(tables) > 1:
         raise InputError(where, f"holds {len(tables)} runs", "Write one file per measurement.")

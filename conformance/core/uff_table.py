@@ -24,8 +24,13 @@ from pantocheck.conformance.core.measured_table import (
 )
 from pantocheck.conformance.core.units import SI_UNITS, MotionQuantity
 
-TIME_RESPONSE = 1
-"""Function type of the format."""
+TIME_HISTORIES = "Export time histories; of a pantograph, one response of a motion and a force."
+TIME_RESPONSE, FREQUENCY_RESPONSE = 1, 4
+"""Function types of the format."""
+RESPONSE_UNITS = {
+    (8, 13): "m_N", (11, 13): "m_s_N", (12, 13): "m_s2_N", (13, 8): "N_m", (13, 11): "N_s_m", (13, 12): "kg"
+}  # fmt: skip
+"""Units of a frequency response, as at the end of a key, by the data types of its numerator and denominator."""
 DIRECTIONS = {1: "+x", 2: "+y", 3: "+z", -1: "-x", -2: "-y", -3: "-z"}
 DATA_TYPES: dict[MotionQuantity, int] = {"acceleration": 12, "velocity": 11, "displacement": 8}
 """Specific data types of the format."""
@@ -49,9 +54,12 @@ def read_uff_table(path: Path, names: ChannelNames, largest: int) -> list[Measur
 
 def _build_tables(sets: list[dict[str, Any]], source: str, names: ChannelNames, largest: int) -> list[MeasuredTable]:
     """Table of the time responses among data sets; tables, if their rates may differ."""
+    responses = [part for part in sets if part.get("func_type") == FREQUENCY_RESPONSE and _find_response_unit(part)]
+    if responses and len(responses) == len(sets):
+        return [_build_response(responses, source)]
     where, sets = f"record '{source}'", [data_set for data_set in sets if data_set.get("func_type") == TIME_RESPONSE]
     if not sets:
-        raise InputError(where, "holds no time response (data set 58, function type 1)", "Export time histories.")
+        raise InputError(where, "holds no time response (data set 58, function type 1)", TIME_HISTORIES)
     if isinstance(names, EveryRate):
         channels = (
             SampledChannel(
@@ -81,6 +89,25 @@ def _build_tables(sets: list[dict[str, Any]], source: str, names: ChannelNames, 
         for number, data_set in enumerate(sets, 1)
     )
     return [MeasuredTable(source, values, columns, rate=1 / step, attributes=_read_attributes(sets[0]))]
+
+
+def _find_response_unit(response: dict[str, Any]) -> str | None:
+    """Unit of a frequency response, as at the end of a key; None if it is not one of motion and force."""
+    numerator, denominator = (int(response.get(f"{part}_spec_data_type", 0)) for part in ("ordinate", "orddenom"))
+    return RESPONSE_UNITS.get((numerator, denominator))
+
+
+def _build_response(responses: list[dict[str, Any]], source: str) -> MeasuredTable:
+    """Table of the frequency response of a file, by the names of `response_record`."""
+    where = f"record '{source}'"
+    if len(responses) > 1:
+        raise InputError(where, f"holds {len(responses)} frequency responses", "Write one file per response.")
+    (response,) = responses
+    unit = _find_response_unit(response)
+    values = np.asarray(response["data"], dtype=np.complex128)
+    columns = tuple(TableColumn(name) for name in ("frequency_Hz", f"real_{unit}", f"imaginary_{unit}"))
+    rows = (np.asarray(response["x"], dtype=np.float64), values.real, values.imag)
+    return MeasuredTable(source, np.column_stack(rows), columns)
 
 
 def _read_sets(path: Path, where: str) -> list[dict[str, Any]]:

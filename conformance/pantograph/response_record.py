@@ -18,6 +18,7 @@ from pydantic import Field
 
 from pantocheck.conformance.core.array_types import ComplexArray, IntegerArray, RealArray
 from pantocheck.conformance.core.input_error import InputError, join_errors
+from pantocheck.conformance.core.measured_table import CSV, HDF5, UFF
 from pantocheck.conformance.core.sourced_table import (
     NO_SOURCE,
     NonNegative,
@@ -41,6 +42,8 @@ HeadPoint = Literal["head_centre", "left_strip", "right_strip", "other"]
 ResponseKind = Literal["apparent_mass", "impedance", "dynamic_stiffness", "receptance", "mobility", "accelerance"]
 
 RESPONSE_SCHEMA = "pantocheck.response/1"
+
+RESPONSE_FORMATS = (CSV, HDF5, UFF)
 
 UNCERTAINTY_COLUMNS = ("modulus_uncertainty_pct", "phase_uncertainty_deg")
 
@@ -209,7 +212,7 @@ def read_response(path: Path) -> ResponseRecord:
 def _read_columns(table: Path, sidecar: ResponseSidecar) -> dict[str, RealArray]:
     """Finite or missing values of the columns, by their name in SI units."""
     known = list_response_columns(sidecar.kind)
-    columns = read_named_columns(table, sidecar, known, known, LARGEST_RESPONSE_TABLE)
+    columns = read_named_columns(table, sidecar, known, known, LARGEST_RESPONSE_TABLE, RESPONSE_FORMATS)
     for values, place in columns.values():
         if (infinite := np.flatnonzero(np.isinf(values))).size:
             raise InputError(f"{place}, {name_rows(infinite + 1)}", "the value is infinite", "Write nan for no value.")

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyuff
 
 from helpers.response_records import (
     FREQUENCY,
@@ -14,8 +15,10 @@ from helpers.response_records import (
     read_pantograph,
     write_response,
 )
+from helpers.toml_edit import edit_toml
 from pantocheck.conformance.core.hdf5_table import write_hdf5_table
 from pantocheck.conformance.core.input_error import InputError
+from pantocheck.conformance.core.uff_table import write_data_sets
 from pantocheck.conformance.pantograph.response_record import RESPONSE_FORMS, ResponseKind, read_response
 
 STIFFNESS = chain_stiffness(read_pantograph())
@@ -129,3 +132,45 @@ def test_response_that_cannot_be_read_is_refused(
     valid = {"frequency_Hz": THREE, "modulus_kg": THREE, "phase_deg": -10 * THREE}
     with pytest.raises(InputError, match=message):
         read_response(write_response(tmp_path, valid | columns, **sidecar))
+
+
+def write_universal(path: Path, response: np.ndarray, types: tuple[int, int]) -> None:
+    """Frequency responses of a universal file, with uneven frequencies; `types` are those of both axes."""
+    write_data_sets(
+        path,
+        [
+            dict(
+                pyuff.prepare_58(
+                    binary=0, func_type=4, rsp_node=1, rsp_dir=3, ref_node=1, ref_dir=3, ord_data_type=6,
+                    num_pts=row.size, data=row, x=FREQUENCY, abscissa_spacing=0, abscissa_min=float(FREQUENCY[0]),
+                    abscissa_inc=0.0, abscissa_spec_data_type=18, abscissa_axis_units_lab="Hz",
+                    ordinate_spec_data_type=types[0], ordinate_axis_units_lab="NONE",
+                    orddenom_spec_data_type=types[1], orddenom_axis_units_lab="NONE", z_axis_spec_data_type=0,
+                    z_axis_axis_units_lab="NONE", id1="head", id2="NONE", id3="NONE", id4="NONE", id5="NONE",
+                )
+            )
+            for row in np.atleast_2d(response)
+        ],
+    )  # fmt: skip
+
+
+def test_frequency_response_of_a_universal_file(tmp_path: Path) -> None:
+    """Acceleration over force is an accelerance; uneven frequencies of ASCII data have six digits."""
+    accelerance = RESPONSES["accelerance"]
+    columns = {"frequency_Hz": FREQUENCY, "real_m_s2_N": accelerance.real, "imaginary_m_s2_N": accelerance.imag}
+    table = write_response(tmp_path, columns, kind="accelerance", static_force_N=70.0)
+    sidecar = edit_toml(table.with_suffix(".toml"), {"file": "measured.uff"})
+    universal = tmp_path / "measured.uff"
+    write_universal(universal, accelerance, (12, 13))
+    np.testing.assert_allclose(read_response(universal).stiffness, STIFFNESS, rtol=2e-5)
+    edit_toml(sidecar, {"kind": "receptance"})
+    with pytest.raises(InputError, match=r"column 'real_m_s2_N': unknown column"):
+        read_response(universal)
+    universal.unlink()
+    write_universal(universal, np.vstack([accelerance, accelerance]), (12, 13))
+    with pytest.raises(InputError, match="holds 2 frequency responses"):
+        read_response(universal)
+    universal.unlink()
+    write_universal(universal, accelerance, (12, 9))
+    with pytest.raises(InputError, match="holds no time response"):
+        read_response(universal)
