@@ -17,7 +17,8 @@ from pantocheck.conformance.records.record import RecordInvalid
 from pantocheck.conformance.records.record_reading import RECORD_SCHEMAS, build_record_error, read_samples
 from pantocheck.conformance.records.record_sidecar import RecordSidecar
 from pantocheck.conformance.records.samples import RecordSamples
-from pantocheck.conformance.records.usable_sections import place_samples
+from pantocheck.conformance.records.source_alignment import align_source, extend_train
+from pantocheck.conformance.records.usable_sections import PlacedSamples, place_samples
 
 
 def _check_record(path: Path) -> str:
@@ -26,7 +27,23 @@ def _check_record(path: Path) -> str:
     content = f"record: {n} samples of {count_noun(rows, 'pantograph')}"
     unused = f"\n  columns that are not used: {', '.join(samples.ignored[:20])}" if samples.ignored else ""
     warnings = "".join(f"\n  warning: {text}" for text in _warn_of_record(samples, sidecar, table))
-    return f"{content} in {table.name}, {sidecar.speed_km_h:g} km/h{unused}{warnings}"
+    clocks = "".join(f"\n  {text}" for text in _describe_clocks(samples, sidecar, table))
+    return f"{content} in {table.name}, {sidecar.speed_km_h:g} km/h{clocks}{unused}{warnings}"
+
+
+def _describe_clocks(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
+    """State of the clock of each source of uplift."""
+    if samples.sources.uplift:
+        placed = _place(samples, sidecar, table)
+        train = extend_train(placed.time, placed.position, sidecar.speed_km_h / 3.6)
+        yield from (align_source(source, train).describe() for source in samples.sources.uplift)
+
+
+def _place(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> PlacedSamples:
+    try:
+        return place_samples(samples, sidecar)
+    except RecordInvalid as error:
+        raise build_record_error(table, error) from None
 
 
 def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path) -> Iterator[str]:
@@ -37,10 +54,7 @@ def _warn_of_record(samples: RecordSamples, sidecar: RecordSidecar, table: Path)
     if sidecar.evaluated_m is None:
         return
     begin, end = sidecar.evaluated_m
-    try:
-        position = place_samples(samples, sidecar).position
-    except RecordInvalid as error:
-        raise build_record_error(table, error) from None
+    position = _place(samples, sidecar, table).position
     for number, (first, last) in enumerate(position[:, [0, -1]], 1):
         if first > begin or last < end:
             yield (

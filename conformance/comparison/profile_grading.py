@@ -197,7 +197,7 @@ def grade_record(
         record=record,
         run=_run_facts(subject, profile),
         events=list(subject.events) or None,
-        sources=[] if subject.prepared is None else build_source_facts(subject.prepared),
+        sources=build_source_facts(subject.prepared, None if measured is None else measured.prepared),
         contact_losses=None if subject.prepared is None else build_contact_losses(subject.prepared.pantographs),
         traces={}
         if subject.prepared is None

@@ -249,7 +249,7 @@ def _find_uncertainty_gaps(case: CaseResult) -> Iterator[str]:
     """Every component of the uncertainty has a basis; one that is known has values."""
     for name in COMPONENT_NAMES:
         basis = case.uncertainty_basis.get(name)
-        if name == "alignment" and not case.sources:
+        if name == "alignment" and not any(source.record == "graded" for source in case.sources):
             continue  # one clock
         if basis is None:
             yield f"the basis of the uncertainty '{name}' is missing"

@@ -21,33 +21,35 @@ LARGEST_DRAWN_ERROR_S = 30.0
 """Largest error of a clock whose pulses are drawn beside the passages [s]."""
 
 
-def build_source_facts(record: PreparedRecord) -> list[SourceFacts]:
-    """Facts on every further source of a record."""
+def build_source_facts(graded: PreparedRecord | None, measured: PreparedRecord | None) -> list[SourceFacts]:
+    """Facts on every further source of the graded record, and of a measured record that it is compared with."""
     placing = "places the record; the pulses of no uplift show this clock"
-    return [
-        *(_describe(name, kind, clock, None, "unconfirmed", placing) for name, kind, clock in record.place_clocks),
-        *map(_describe_uplift, record.alignments),
-    ]
+    facts = []
+    for owner, record in (("graded", graded), ("measured", measured)):
+        if record is not None:
+            clocks = record.place_clocks
+            found = [_describe(name, kind, clock, None, "unconfirmed", placing) for name, kind, clock in clocks]
+            found += map(_describe_uplift, record.alignments)
+            facts += [SourceFacts.model_validate({"record": owner, **values}) for values in found]
+    return facts
 
 
-def _describe(name: str, join: str, clock: Clock, rate: float | None, state: str, finding: str) -> SourceFacts:
+def _describe(name: str, join: str, clock: Clock, rate: float | None, state: str, finding: str) -> dict[str, object]:
     width = clock.drift_uncertainty
-    return SourceFacts.model_validate(
-        {
-            "name": name,
-            "join": join,
-            "rate_Hz": rate,
-            "state": state,
-            "finding": finding,
-            "offset_s": clock.offset,
-            "uncertainty_s": clock.uncertainty,
-            "drift_ppm": 1e6 * clock.drift,
-            "drift_uncertainty_ppm": None if width is None else 1e6 * width,
-        }
-    )
+    return {
+        "name": name,
+        "join": join,
+        "rate_Hz": rate,
+        "state": state,
+        "finding": finding,
+        "offset_s": clock.offset,
+        "uncertainty_s": clock.uncertainty,
+        "drift_ppm": 1e6 * clock.drift,
+        "drift_uncertainty_ppm": None if width is None else 1e6 * width,
+    }
 
 
-def _describe_uplift(alignment: Alignment) -> SourceFacts:
+def _describe_uplift(alignment: Alignment) -> dict[str, object]:
     source = alignment.source
     rate = float(f"{1 / float(np.median(np.diff(source.time))):.6g}")
     facts = _describe(source.name, source.kind, alignment.clock, rate, alignment.state, alignment.finding)
@@ -60,7 +62,7 @@ def _describe_uplift(alignment: Alignment) -> SourceFacts:
         )
         for tie in alignment.ties
     ]
-    return facts.model_copy(update={"passages": passages, "chart": _draw(alignment) if passages else None})
+    return {**facts, "passages": passages, "chart": _draw(alignment) if passages else None}
 
 
 def _draw(alignment: Alignment) -> Chart:

@@ -56,6 +56,8 @@ class TimeFacts:
     """Time from the first to the last sample [s]."""
     remarks: tuple[str, ...]
     """Gaps, repetitions and steps backwards."""
+    start: float = 0.0
+    """Time of the first sample [s]."""
 
 
 def list_channel_facts(table: MeasuredTable) -> list[ChannelFacts]:
@@ -146,7 +148,7 @@ def describe_time(source: str, column: TableColumn | None, time: RealArray) -> T
     steps = np.diff(time)
     interval = float(np.median(steps))
     if interval <= 0:
-        return TimeFacts(source, column, np.nan, float(time[-1] - time[0]), ("does not increase",))
+        return TimeFacts(source, column, np.nan, float(time[-1] - time[0]), ("does not increase",), float(time[0]))
     remarks = []
     for text, wrong in (("repeated", steps == 0), ("backwards", steps < 0)):
         if wrong.any():
@@ -158,7 +160,7 @@ def describe_time(source: str, column: TableColumn | None, time: RealArray) -> T
         remarks.append(f"{gaps.sum()} gaps, the longest of {steps[longest]:.4g} s at {time[longest]:.6g} s")
     elif not remarks and np.abs(steps / interval - 1).max() > 0.1:
         remarks.append("uneven sampling intervals")
-    return TimeFacts(source, column, 1 / interval, float(time[-1] - time[0]), tuple(remarks))
+    return TimeFacts(source, column, 1 / interval, float(time[-1] - time[0]), tuple(remarks), float(time[0]))
 
 
 # Probable meaning of the channels of a logger file, by unit and name; a guess for a sidecar that is to be checked.

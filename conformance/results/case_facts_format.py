@@ -39,6 +39,8 @@ class SourceFacts(ResultsPart):
 
     name: str
     """Name of the file, with the number of the source if several have the same."""
+    record: Literal["graded", "measured"]
+    """Record of the source: the graded one, or the measured one that it is compared with."""
     join: Literal["time", "pps", "marks", "passage"]
     rate_Hz: FiniteNumber | None
     """Sampling rate of the uplift; null: the source gives position or speed."""

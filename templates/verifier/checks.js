@@ -346,7 +346,7 @@ function findGaps(results) {
     for (const name of Object.keys(result.quantities).length ? COMPONENTS : []) {
       const basis = result.uncertainty_basis?.[name];
       const widths = Object.values(result.uncertainty_components ?? {}).flatMap((part) => Object.values(part));
-      const single = name === "alignment" && !result.sources?.length;
+      const single = name === "alignment" && !result.sources?.some((source) => source.record === "graded");
       if (basis === undefined && !single) add(`the basis of the uncertainty '${name}' is missing`);
       else if (!single && !/^(not known|does not apply)/.test(basis) && !widths.some((parts) => name in parts)) {
         add(`the uncertainty '${name}' has a basis, but no value`);

@@ -61,6 +61,7 @@ PROGRAMS = {
     "calibration-mesh": Program("tables.uncertainty_coverage", ("calibration-mesh",), "discretisation"),
     "coverage-simulated": Program("tables.coverage_simulated", ("coverage-simulated",)),
     "coverage": Program("tables.coverage", ("coverage", "coverage-worst")),
+    "clock-findings": Program("tables.clock_findings", ("clock-findings",)),
     "copy-thresholds": Program("tables.copy_thresholds", ("copy-thresholds",)),
     "exact-model": Program("formulations.exact_model", ("exact-plane", "exact-stagger", "exact-change")),
     "exact-model-fine": Program("formulations.exact_model", ("exact-fine",), "--element 0.125 --stagger 0"),

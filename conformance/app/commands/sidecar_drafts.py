@@ -77,15 +77,18 @@ def draft_record_sidecar(parts: Sequence[DescribedTable], layout: TextSettings) 
 def _list_source_lines(part: DescribedTable, first: DescribedTable, uplifts: int, layout: TextSettings) -> list[str]:
     """Lines of a table `source`; `uplifts` is the number of the supports of the sources before it."""
     guesses = {name: found for name, found in guess_channels(part.facts).items() if name in SOURCE_CHANNELS}
-    seconds = max(1.0, *(0.0 if one.time is None else one.time.duration for one in (part, first)))
+    times = [one.time for one in (first, part) if one.time is not None]
+    seconds = max((time.duration for time in times), default=1.0)
+    # Both files begin at about the same time, as far as is known.
+    offset = f"{times[0].start - times[-1].start:.3f}"
     ways = {
-        "uplift": f'{{ kind = "passage", offset_s = 0.0, within_s = {seconds:.1f} }}',
+        "uplift": f'{{ kind = "passage", offset_s = {offset}, within_s = {seconds:.1f} }}',
         "the same clock, or a known difference": '{ kind = "time", offset_s = 0.0, uncertainty_s = 0.01 }',
-        "a pulse per second": '{ kind = "pps", column = "PPS", record_column = "PPS", offset_s = 0.0 }',
+        "a pulse per second": f'{{ kind = "pps", column = "PPS", record_column = "PPS", offset_s = {offset} }}',
     }
     return [
         "",
-        "[[source]]                         # a clock of its own; offset_s: time of the record less time of the source",
+        "[[source]]                         # offset_s: time of the record less time of the source",
         f"file = {json.dumps(part.file, ensure_ascii=False)}",
         *(
             f"# join = {text}   # {TO_DO if n == 0 else 'or'} joined by {way}"

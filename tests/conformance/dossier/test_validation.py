@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers.example_dossier import CachedSimulator, Spoil, copy_example, edit_column, list_verdicts, validate_example
@@ -226,4 +227,50 @@ def test_variant_has_the_verdict_of_its_step(system: CachedSimulator, tmp_path: 
     assert list_verdicts(results) == ALL_PASS | rest_claims_on(variant.expected) | variant.expected
     worst = min(variant.expected.values(), key=ORDER.index)
     assert results.verdict == worst
+    assert find_discrepancies(results) == []
+
+
+def split_masts(offset: float) -> Spoil:
+    """Put the uplift of a measured run into a file of 200 Hz, whose clock counts 41.7 s more, joined by an offset."""
+
+    def spoil(folder: Path) -> None:
+        path = folder / "measured" / "run-160.csv"
+        names, table = (
+            path.read_text(encoding="utf-8").splitlines()[0].split(","),
+            np.loadtxt(path, delimiter=",", skiprows=1),
+        )
+        masts = [name.startswith("uplift") for name in names]
+        time = np.arange(-4, 14, 0.005)
+        rows = [np.interp(time, table[:, 0], row, left=0, right=0) for row in table[:, masts].T]
+        for name, own, columns in (
+            ("run-160.csv", [name for name in names if not name.startswith("uplift")], table[:, ~np.array(masts)]),
+            (
+                "masts.csv",
+                ["time_s", *(n for n in names if n.startswith("uplift"))],
+                np.column_stack([time + 41.7, *rows]),
+            ),
+        ):
+            np.savetxt(folder / "measured" / name, columns, "%.9g", ",", header=",".join(own), comments="")
+        join = {"kind": "time", "offset_s": offset, "uncertainty_s": 0.01}
+        edit_toml(folder / "measured" / "run-160.toml", {"source": [{"file": "masts.csv", "join": join}]})
+
+    return spoil
+
+
+@pytest.mark.parametrize(("offset", "verdict"), [(-41.7, "pass"), (-40.7, "skip")])
+def test_line_test_with_masts_in_a_file_of_their_own(
+    system: CachedSimulator, tmp_path: Path, offset: float, verdict: str
+) -> None:
+    """With a clock that is wrong by 1 s, the uplift is not compared, and the step names the clock."""
+    path = copy_example(tmp_path / "in", ONE_PAIR)
+    split_masts(offset)(tmp_path / "in")
+    results = validate_example(path, system, tmp_path / "out")
+    assert list_verdicts(results)["line_test"] == verdict
+    (case,) = (case for case in results.cases if case.id.startswith("pair/"))
+    (criterion,) = (row for row in case.criteria if row.quantity == "max_uplift_at_support_mm")
+    assert criterion.verdict == verdict
+    (source,) = case.sources
+    assert (source.record, source.state) == ("measured", "confirmed" if verdict == "pass" else "contradicted")
+    wrong = [text for text in case.warnings if "the clock of masts.csv is wrong: its pulses come 1.00 s after" in text]
+    assert len(wrong) == (verdict == "skip")
     assert find_discrepancies(results) == []
