@@ -76,7 +76,8 @@ def simulate(line: DiscretisedLine, passage: Passage | None, drop: float = 0.0, 
         (motion, train), load = start_motion(line, kernel, passage), np.zeros(steps)
         for p, pantograph in enumerate(passage.pantographs):
             train.z[1, p, : pantograph.head.size] = -drop * pantograph.head
-    watched = tuple((name, float(line.mesh.position[20 + 3 * n])) for n, name in enumerate(names[:2]))
+    ahead = int(np.searchsorted(line.mesh.position, 8.0 + (passage.start[0] if passage else 30.0)))
+    watched = tuple((name, float(line.mesh.position[ahead + n])) for n, name in enumerate(names[:2]))
     recorded = allocate_recording(line, watched, steps, train.owner.size)
     simulate_steps(kernel, motion, train, load, recorded)
     parts = {"contact": recorded.contact, "height": recorded.height, "slack": recorded.slack.astype(float)}
@@ -109,6 +110,8 @@ def build_simulations() -> Iterator[tuple[str, Callable[[], State]]]:
     yield "modal damping", lambda: simulate(discretise(modal, 2.5), fast, 1.0)
     window = Passage(pair, (120.0, 100.0), 60.0, 0.6, 2e-3, kept_behind=30.0, reach=60.0)
     yield "window", lambda: simulate(discretise(long, 1.0), window, 1.0)
+    across = Passage(pair, (220.0, 200.0), 60.0, 0.6, 2e-3, kept_behind=30.0, reach=60.0)  # both ends cross a panel
+    yield "several panels", lambda: simulate(discretise(long, 0.4), across, 1.0)
     overlap = Passage(pair, (80.0, 66.0), 80.0, 0.6, 2e-3)
     yield "overlap", lambda: simulate(discretise(overlapping_line(), 2.0), overlap, 1.0)
     yield "mass drop", lambda: simulate(discretise(plain, 2.0), None)
