@@ -38,6 +38,9 @@ FILE_DIGITS = 6
 """Significant digits of a fitted value in the file: more than any response determines."""
 
 
+CONTACT_SOURCE = "chosen, not measured: the response of a head contains no contact"
+
+
 @dataclass(frozen=True)
 class FileTexts:
     """Texts of the pantograph file."""
@@ -77,7 +80,7 @@ def describe_pantograph(
         "chain": {**values, "source": texts.source, "note": _describe_intervals(intervals)},
         "contact": {
             "stiffness_N_m": contact_stiffness,
-            "source": "chosen, not measured: the response of a head contains no contact",
+            "source": CONTACT_SOURCE,
         },
         **({"head": {"bending_mode": bending, "source": texts.source}} if bending else {}),
     }

@@ -7,23 +7,30 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
+import tomli_w
 import typer
 from rich.console import RenderableType
 from rich.text import Text
 
 from pantocheck.conformance.app.commands.command_output import CommandOutput
 from pantocheck.conformance.app.commands.console import build_table, format_number, indent_text
+from pantocheck.conformance.app.commands.measured_comparison_command import write_comparison_files
 from pantocheck.conformance.app.commands.options import ResponsesArgument
 from pantocheck.conformance.app.commands.progress_display import follow_steps
-from pantocheck.conformance.app.notebook.fitted_pantograph import CONTACT_STIFFNESS_N_M, build_fitted_pantograph
+from pantocheck.conformance.app.notebook.fitted_pantograph import (
+    CONTACT_STIFFNESS_N_M,
+    build_fitted_pantograph,
+    build_transfer_pantograph,
+)
 from pantocheck.conformance.comparison.pantograph_fit import CHAIN_KEYS, name_parameter
 from pantocheck.conformance.core.array_types import RealArray
-from pantocheck.conformance.core.files import check_writable
+from pantocheck.conformance.core.files import check_writable, write_atomically
 from pantocheck.conformance.core.input_error import InputError, suggest_names
 from pantocheck.conformance.core.texts import count_noun
 from pantocheck.conformance.pages.report_writers import remark_missing_formats
-from pantocheck.conformance.pantograph.chain_fit import MASS_COUNTS, FitTask, fit_chains
+from pantocheck.conformance.pantograph.chain_fit import MASS_COUNTS, FitTask, fit_chains, join_responses
 from pantocheck.conformance.pantograph.response_record import read_response
+from pantocheck.conformance.pantograph.transfer_fit import FittedTransfer, fit_transfer_function
 from pantocheck.conformance.results.pantograph_fit_format import PantographFit
 
 
@@ -39,6 +46,12 @@ def pantograph_fit_command(
     bending_modes: Annotated[
         int, typer.Option(help="Number of bending modes of the head beside the chain.", min=0, max=4)
     ] = 0,
+    pole_pairs: Annotated[
+        int | None,
+        typer.Option(
+            help="Pairs of poles of a transfer function in place of a chain.", min=1, max=20, show_default=False
+        ),
+    ] = None,
     fix: Annotated[
         list[str] | None,
         typer.Option(metavar="KEY.NUMBER=VALUE", help="Fixed value, e.g. masses_kg.3=7.5; repeat for several."),
@@ -54,7 +67,7 @@ def pantograph_fit_command(
     """Fit a chain of lumped masses to measured responses.
 
     Chains of two, three and four masses are fitted. The report shows intervals and states which parameters the band
-    does not determine.
+    does not determine. With --pole-pairs, a stable and passive transfer function is fitted.
 
     Example: pantocheck pantograph fit at-55N.csv at-70N.csv --masses 3 --out my-pantograph.toml
     """
@@ -62,6 +75,22 @@ def pantograph_fit_command(
     if out.suffix != ".toml":
         raise InputError("--out", f"{out.name!r} is not a TOML file", "Give a name that ends in .toml .")
     check_writable(out.parent)
+    if pole_pairs is not None:
+        if masses is not None or fix or bending_modes:
+            hint = "Leave out --masses, --fix and --bending-modes."
+            raise InputError("--pole-pairs", "given beside the values of a chain", hint)
+        with follow_steps("fitting"):
+            transfer = fit_transfer_function(join_responses(records, _parse_band(band)), pole_pairs)
+            tables, comparison = build_transfer_pantograph(records, transfer, title, contact_stiffness)
+            write_atomically(out, tomli_w.dumps(tables).encode())
+            files = [out, *write_comparison_files(comparison, out.with_name(f"{out.stem}-fit"))]
+        return CommandOutput(
+            Text(f"Transfer function of {count_noun(transfer.pole.size, 'pole')} fitted"),
+            comparison,
+            [Text(_describe_transfer(transfer))],
+            files=files,
+            remarks=remark_missing_formats(),
+        )
     task = FitTask(_parse_band(band), _parse_fixed(fix or [], masses), bending_modes)
     with follow_steps("fitting"):
         selection = fit_chains(records, task)
@@ -71,6 +100,14 @@ def pantograph_fit_command(
     conclusion = f"{chain} fitted to {count_noun(len(records), 'response')}"
     details = [*_describe_fit(fit.report)]
     return CommandOutput(Text(conclusion), fit.report, details, files=files, remarks=remark_missing_formats())
+
+
+def _describe_transfer(fit: FittedTransfer) -> str:
+    """Deviation from the responses, and distance to the nearest passive model."""
+    text = f"RMS deviation {100 * fit.deviation:.2g} %; every pole is stable"
+    if not fit.distance:
+        return f"{text}, and the fit is passive"
+    return f"{text}; the residues are those of the nearest passive model, {100 * fit.distance:.2g} % from the fit"
 
 
 def _parse_band(text: str | None) -> tuple[float, float]:

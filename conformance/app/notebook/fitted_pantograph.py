@@ -9,7 +9,12 @@ import numpy as np
 import tomli_w
 
 from pantocheck.conformance.app.notebook.display import describe_in_one_line, tabulate_rows
-from pantocheck.conformance.comparison.pantograph_fit import FileTexts, build_pantograph_fit, describe_pantograph
+from pantocheck.conformance.comparison.pantograph_fit import (
+    CONTACT_SOURCE,
+    FileTexts,
+    build_pantograph_fit,
+    describe_pantograph,
+)
 from pantocheck.conformance.comparison.response_comparison import compare_responses, model_stiffness
 from pantocheck.conformance.core.array_types import ComplexArray, RealArray
 from pantocheck.conformance.core.drawn_axes import label_logarithms, provide_axes
@@ -20,6 +25,8 @@ from pantocheck.conformance.core.toml_file import validate_model
 from pantocheck.conformance.pantograph.chain_fit import ChainSelection, FitTask, fit_chains
 from pantocheck.conformance.pantograph.pantograph_file import PantographFile
 from pantocheck.conformance.pantograph.response_record import ResponseRecord, read_response
+from pantocheck.conformance.pantograph.transfer_fit import FittedTransfer
+from pantocheck.conformance.results.comparison_format import ResponseComparison
 from pantocheck.conformance.results.pantograph_fit_format import ChainParameter, PantographFit
 
 LONGEST_SOURCE = 500
@@ -146,11 +153,44 @@ def build_fitted_pantograph(
     records: tuple[ResponseRecord, ...], selection: ChainSelection, masses: int, title: str, contact_stiffness: float
 ) -> FittedPantograph:
     """Pantograph file and report of the fitted chain with one number of masses; contact stiffness in [N/m]."""
-    names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
-    texts = FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
+    texts = _describe_source(records, title)
     tables = describe_pantograph(selection, masses, texts, contact_stiffness)
-    pantograph = validate_model(tables, PantographFile, "fitted pantograph")
-    comparison = compare_responses(records, pantograph)
-    if (highest := comparison.supported_to_Hz) is not None:
-        tables["validity"] = {"supported_to_Hz": highest, "basis": "measured_response", "source": texts.source}
+    comparison = _complete_tables(tables, records, texts.source)
     return FittedPantograph(tables, build_pantograph_fit(selection, masses, title, comparison), records)
+
+
+def _describe_source(records: tuple[ResponseRecord, ...], title: str) -> FileTexts:
+    names = ", ".join(f"{record.source} ({record.sidecar.source})" for record in records)
+    return FileTexts(title, f"pantocheck pantograph fit, from {names}"[:LONGEST_SOURCE])
+
+
+def _complete_tables(tables: dict[str, Any], records: tuple[ResponseRecord, ...], source: str) -> ResponseComparison:
+    """Compare a pantograph file with its responses, and state in it the frequency that they support."""
+    comparison = compare_responses(records, validate_model(tables, PantographFile, "fitted pantograph"))
+    if (highest := comparison.supported_to_Hz) is not None:
+        tables["validity"] = {"supported_to_Hz": highest, "basis": "measured_response", "source": source}
+    return comparison
+
+
+def build_transfer_pantograph(
+    records: tuple[ResponseRecord, ...], fit: FittedTransfer, title: str, contact_stiffness: float
+) -> tuple[dict[str, Any], ResponseComparison]:
+    """Tables of the pantograph file of a fitted transfer function, and its comparison with the responses.
+
+    Args:
+        records: Measured responses.
+        fit: Fitted transfer function.
+        title: Title of the pantograph.
+        contact_stiffness: Stiffness of the contact, which the responses do not contain [N/m].
+    """
+    texts = _describe_source(records, title)
+    columns = {"poles_1_s": fit.pole, "residues_m_N_s": fit.residue}
+    values = {key: [[float(f"{v:.12g}") for v in (x.real, x.imag)] for x in row] for key, row in columns.items()}
+    distance = f"{100 * fit.distance:.2g} % of the receptance"
+    note = f"Nearest passive model, {distance} from the fit. uplift_factor is not measured."
+    tables = {
+        "title": texts.title,
+        "transfer_function": {**values, "source": texts.source, "note": note},
+        "contact": {"stiffness_N_m": contact_stiffness, "source": CONTACT_SOURCE},
+    }
+    return tables, _complete_tables(tables, records, texts.source)
