@@ -10,9 +10,10 @@ import pytest
 from helpers.short_cases import change_case, shorten_case
 from pantocheck.conformance.cases.case import Case
 from pantocheck.conformance.cases.library import select_cases
-from pantocheck.conformance.documents.row_check import list_repeated
+from pantocheck.conformance.documents.row_check import list_repeated, repeat_check
 from pantocheck.conformance.line.catenary_model import discretise_line
 from pantocheck.conformance.pantograph.head_tables import HeadTable
+from pantocheck.conformance.records.evaluated_signals import pack_signals, unpack_signals
 from pantocheck.conformance.records.record import FORCE_CHANNELS, Record
 from pantocheck.conformance.records.record_signals import RecordSignals
 from pantocheck.conformance.runs.case_run import run_passage
@@ -99,6 +100,16 @@ def test_embedded_signals_do_not_repeat_checks_that_need_the_run_in() -> None:
     assert DYNAMICS in list_repeated(run("two strips")[0])
     names = {check.name for check in list_repeated(run("friction")[0])}
     assert not names & {DYNAMICS.name, IMPLIED_FORCE.name}
+
+
+def test_embedded_strips_repeat_the_checks_of_the_record() -> None:
+    """Filters begin at the embedded signals: 1e-4 of the threshold of 0.1, as the verification accepts."""
+    case, record = run("two strips")
+    signals = RecordSignals(record, case.file.filter)
+    packed = pack_signals(signals.pantographs, signals.line, record.time)
+    assert packed is not None
+    repeated = repeat_check(DYNAMICS, case, unpack_signals(packed, case.file.filter)).basis
+    assert repeated.number == pytest.approx(find(case, record)[0].basis.number, abs=1e-5)
 
 
 def test_driven_mass_sticks_slides_and_stops() -> None:

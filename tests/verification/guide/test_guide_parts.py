@@ -16,6 +16,7 @@ from pantocheck.conformance.pantograph.pantograph_file import ContactTable
 from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations.difference_passage import difference_quantities
 from verification.formulations.finite_differences import find_case, reference_quantities
+from verification.formulations.point_convergence import extrapolate, shorten
 from verification.guide import peers
 from verification.guide.guide_building import list_effects
 from verification.guide.guide_driver import LIMITATIONS_FILE, read_limitations
@@ -23,7 +24,7 @@ from verification.guide.guide_tasks import DURATIONS_S, list_tasks, list_timings
 from verification.guide.library_values import describe_fault, describe_mutant, measure_passage, name_processor
 from verification.guide.peers.peer_list import PEERS, Peer, evaluate_ishigami, run_peer
 from verification.guide.peers.subspace_modes import KNOWN_MODES, build_known_drop
-from verification.guide.topics.line_elements import CONTACTS, LINES, OTHERS, UPLIFT_N, shorten
+from verification.guide.topics.line_elements import CONTACTS, LINES, OTHERS, SPANS, UPLIFT_N
 
 ROOT = Path(__file__).parents[3]
 
@@ -120,7 +121,7 @@ def test_every_element_of_a_line_and_every_contact_law_is_a_row() -> None:
 @pytest.mark.parametrize("change", ["masses", "springs"])
 def test_row_of_an_element_finds_one_that_is_left_out(change: str) -> None:
     """Without its element the second formulation is beyond both tolerances; 0.5 m apart its points leave 0.7 %."""
-    case, plain = (shorten(find_case(name)) for name in (LINES["Wires"] + f"+{change}", LINES["Wires"]))
+    case, plain = (shorten(find_case(name), SPANS) for name in (LINES["Wires"] + f"+{change}", LINES["Wires"]))
     ours = reference_quantities(case, 0.5, 1e-3, (UPLIFT_N,))
     error = {
         name: abs(
@@ -131,3 +132,10 @@ def test_row_of_an_element_finds_one_that_is_left_out(change: str) -> None:
     }
     assert error["with"] < 0.02
     assert error["without"] > 0.03
+
+
+def test_limit_of_halved_steps_has_their_order() -> None:
+    """1 + h and 1 + h^2 from steps of 1, 1/2 and 1/4; a difference that grows has no limit."""
+    for order in (1, 2):
+        assert extrapolate([1 + h**order for h in (1.0, 0.5, 0.25)]) == pytest.approx(1.0)
+    assert np.isnan(extrapolate([1.0, 1.1, 1.3]))

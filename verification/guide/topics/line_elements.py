@@ -10,6 +10,7 @@ from pantocheck.conformance.runs.command_system import build_case_message
 from verification.formulations import finite_differences
 from verification.formulations.difference_passage import Quantities, difference_quantities
 from verification.formulations.finite_differences import find_case, reference_quantities
+from verification.formulations.point_convergence import shorten
 from verification.guide.comparisons import compare_relative
 from verification.guide.guide_format import Topic
 
@@ -42,7 +43,7 @@ CONTACTS = {
 }
 """Contacts beside the spring of the case. That of Hertz is softer than the points: others are near a constraint."""
 
-SPANS, SECTION = 5, {"evaluated_spans": (2, 3), "compared_spans": None, "start_m": 20.0, "run_out_m": 70.0}
+SPANS = 5
 UPLIFT_N = 169.0
 SPACINGS, MESH = (0.25, 0.125), (0.25, 5e-4)
 """Distances of the points [m]; element length [m] and time step [s]."""
@@ -56,8 +57,8 @@ DAMPED = 0.025
 
 def study_line_elements() -> Topic:
     """Short passages with every element and every contact law."""
-    plain, file = shorten(find_case(SIMPLE)), Path(finite_differences.__file__).with_name("two_strips.toml")
-    cases = {name: shorten(find_case(id_)) for name, id_ in LINES.items()}
+    plain, file = shorten(find_case(SIMPLE), SPANS), Path(finite_differences.__file__).with_name("two_strips.toml")
+    cases = {name: shorten(find_case(id_), SPANS) for name, id_ in LINES.items()}
     for name, contact in CONTACTS.items():
         cases[name] = replace(plain, pantographs=(plain.pantographs[0].model_copy(update={"contact": contact}),))
     cases["two strips"] = replace(plain, pantographs=(read_model(file, PantographFile, "pantograph"),))
@@ -82,12 +83,6 @@ def study_line_elements() -> Topic:
             for quantity, (words, tolerance) in QUANTITIES.items()
         ],
     )
-
-
-def shorten(case: Case) -> Case:
-    """Case on the first spans of its line, with a short section."""
-    line = case.line.model_copy(update={"geometry": case.line.geometry.shorten(SPANS)})
-    return replace(case, line=line, file=case.file.model_copy(update=SECTION))
 
 
 def extrapolate(case: Case) -> Quantities:
