@@ -37,13 +37,15 @@ SHOWN_WORDS = (
 
 
 @cache
-def build_verifier(version: str) -> bytes:
-    """The verifier of a version of the suite; equal versions give equal bytes."""
+def build_verifier(version: str, digest: str) -> bytes:
+    """The verifier of a version of the suite with the digest of its files; equal ones give equal bytes."""
     script = join_scripts(tuple(f"verifier/{name}.js" for name in VERIFIER_SCRIPTS))
     labels = read_words()["label"] | {name: quantity.label for name, quantity in QUANTITIES.items()}
     words = {name: part for name, part in read_words().items() if name in ("verdict", "procedure", "claim")}
     texts = {language: _list_texts(language) for language in LANGUAGES[1:]}
-    for name, table in (("languages", _list_read_words()), ("labels", labels), ("words", words), ("texts", texts)):
+    suite = {"version": version, "digest": digest}
+    tables = {"languages": _list_read_words(), "labels": labels, "words": words, "texts": texts, "suite": suite}
+    for name, table in tables.items():
         script = script.replace(f'"@{name}@"', json.dumps(table, sort_keys=True))
     style = (VERIFIER_FOLDER / "verifier.css").read_text("utf-8")
     page = (VERIFIER_FOLDER / "verifier.html").read_text("utf-8")
@@ -73,5 +75,5 @@ def _list_texts(language: str) -> dict[str, str]:
 
 def describe_verifier(suite: Suite) -> str:
     """Line of page 1: the file that checks this document in a browser, and its digest."""
-    digest = sha256(build_verifier(suite.version)).hexdigest()
+    digest = sha256(build_verifier(suite.version, suite.digest)).hexdigest()
     return f"{VERIFIER_NAME} in a browser, SHA-256 {digest} (pantocheck verify --write-verifier FILE)"

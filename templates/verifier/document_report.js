@@ -14,6 +14,10 @@ const ONLY_VERIFY = [
   ["static values", "Whether the values of the line at rest, of studies and of the reference simulator are right."],
 ];
 
+// Suite of this verifier: the rules of another one can differ.
+const SUITE = "@suite@";
+const OTHER_RULES = "are not those of the installed suite";
+
 const UNCHANGED = "The signature holds: it covers the whole file, and nothing was changed since.";
 const ALL_UNCHANGED = "Every signature holds: they cover the whole file, and only signatures were added since the first.";
 
@@ -31,10 +35,15 @@ async function verifyDocument(bytes, name = "document", signatureFile = null, ro
   } catch (error) {
     numbers = { found: [`the results are not in the format of Pantocheck (${error.message})`], evaluated: {}, follows: null };
   }
-  const lines = [...new Set(numbers.found)];
+  const isForeign = ["version", "digest"].some((key) => results.suite?.[key] !== SUITE[key]);
+  const [rules, lines] = [true, false].map((other) =>
+    [...new Set(numbers.found)].filter((line) => (isForeign && line.includes(OTHER_RULES)) === other));
   judged(
     "Verdicts, margins, uncertainties and statistics follow from the embedded numbers.",
     "The embedded numbers and verdicts contradict each other.", lines);
+  if (isForeign) {
+    add("incomplete", "Another version of Pantocheck made this document. Its pages print the digest of its own verifier.", rules);
+  }
   let gaps = [];
   try { gaps = findGaps(results); } catch (error) { gaps = [error.message]; }
   if (gaps.length) add("contradicted", "Parts that every run writes are missing.", gaps);
@@ -78,6 +87,6 @@ async function verifyDocument(bytes, name = "document", signatureFile = null, ro
   const conclusion = contradictions.length
     ? `not consistent: ${noun(contradictions.length, "contradiction")} (${size}; stated verdict '${mark}'${other}).`
     : `${claim}the verdict '${mark}' follows from the embedded numbers (${size}).`;
-  const state = contradictions.length ? "contradicted" : origin.note ? "incomplete" : "consistent", { kind, language } = document;
+  const state = contradictions.length ? "contradicted" : origin.note || isForeign ? "incomplete" : "consistent", { kind, language } = document;
   return { name, kind, language, state, conclusion, checks, digest: document.digest ?? null, authentic: origin.authentic, results, evaluated, follows };
 }

@@ -310,8 +310,8 @@ def test_list_of_unproved_facts_covers_every_check_of_verify() -> None:
 
 
 def test_verifier_fetches_nothing_and_is_the_same_file_each_time() -> None:
-    page = build_verifier("0.1.0")
-    assert page == build_verifier.__wrapped__("0.1.0")
+    page = build_verifier("0.1.0", "sha256:1")
+    assert page == build_verifier.__wrapped__("0.1.0", "sha256:1")
     assert b"default-src 'none'; script-src 'sha256-" in page
     # The library and its licence are texts of others: the policy of the page forbids requests to them, too.
     library, licence = ((SIGNATURE_LIBRARY / name).read_bytes() for name in ("pkijs.min.js", "LICENSE"))

@@ -28,10 +28,11 @@ class Verify(Protocol):
 @pytest.fixture(scope="session")
 def verifier_page(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """The verifier in a browser without a network."""
+    from pantocheck.conformance.grading.results_building import build_suite
     from pantocheck.conformance.pages.verifier_file import build_verifier
 
     path = tmp_path_factory.mktemp("verifier") / "verifier.html"
-    path.write_bytes(build_verifier("0.1.0"))
+    path.write_bytes(build_verifier(build_suite().version, build_suite().digest))
     context = browser.new_context(offline=True)
     shown = context.new_page()
     shown.goto(path.as_uri())

@@ -79,7 +79,8 @@ def verify_command(
         from pantocheck.conformance.grading.results_building import build_suite
         from pantocheck.conformance.pages.verifier_file import build_verifier
 
-        write_atomically(write_verifier, build_verifier(build_suite().version))
+        suite = build_suite()
+        write_atomically(write_verifier, build_verifier(suite.version, suite.digest))
         if document is None:
             digest = file_digest(write_verifier)
             conclusion = escape_text(f"Verifier for a browser, {digest}: open it, and drop a certificate on it.")

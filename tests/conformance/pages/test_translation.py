@@ -143,7 +143,7 @@ def test_rarely_built_texts_have_entries() -> None:
                 count += 1
                 missing += [] if has_entry(text, keys) else [f"{name}: {text.replace(PART, '{}')}"]
     assert count > 500
-    assert missing == []
+    assert missing == [], "\n".join(missing)
     assert not has_entry("a text of three words without an entry", keys)
 
 
