@@ -255,7 +255,7 @@ def integrate_passage(
     Raises:
         InputError: There is no core.
     """
-    require_core("the simulation of a passage")
+    require_core("passage simulation")
     from pantocheck.model.dynamics.simulation import simulate_passage
 
     return simulate_passage(line, passage, progress, programs)
@@ -269,7 +269,7 @@ def integrate_mass_drop(
     Raises:
         InputError: There is no core.
     """
-    require_core("the simulation of a mass drop")
+    require_core("drop simulation")
     from pantocheck.model.dynamics.mass_drop import simulate_mass_drop
 
     return simulate_mass_drop(catenary, element_length, test, progress)

@@ -26,11 +26,14 @@ const RECORD_CHECKS = {
     "misfit of the motion": ["", "above", {"contradiction": 0.1}],
     "error of the gain of the force": ["", "above", {"contradiction": 0.03}],
     "misfit of the motion behind a causal filter": ["", "above", {"doubt": 0.1}, true],
-    "error of the gain of the force behind a causal filter": ["", "above", {"doubt": 0.03}, true]
+    "error of the gain of the force behind a causal filter": ["", "above", {"doubt": 0.03}, true],
+    "misfit of the motion, lateral place of the wire at rest": ["", "above", {"doubt": 0.1}],
+    "error of the gain of the force, lateral place of the wire at rest": ["", "above", {"doubt": 0.06}]
   }],
   "implied force": [["not possible", "does not apply", "named by another check"], {
     "largest error of the force up to the cut-off": ["", "above", {"doubt": 0.15}],
-    "largest error of the force up to 50 Hz": ["", "above", {"doubt": 0.3}]
+    "largest error of the force up to 50 Hz": ["", "above", {"doubt": 0.3}],
+    "largest error of the force, lateral place of the wire at rest": ["", "above", {"doubt": 0.3}]
   }],
   "mean force": [["does not apply", "named by another check"], {
     "mean force beyond the allowance for base spring and momentum": ["", "above", {"doubt": 0.03}]
