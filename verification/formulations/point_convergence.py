@@ -3,7 +3,7 @@
     python -m verification.formulations.point_convergence CASE [--spacings 0.25 0.125 0.0625]
         [--elements 0.5 0.25 0.125] [--law constraint] [--pantograph FILE] [--spans 5]
 
-Each halving has its row. The last row is the extrapolation with the order of the last two halvings, at most 2.
+Each halving has its row, the last row is their limit.
 """
 
 import argparse
@@ -26,10 +26,15 @@ STEP_PER_ELEMENT = 2e-3
 
 
 def extrapolate(values: Sequence[float]) -> float:
-    """Limit of the values at halved steps, with the order of the last two differences, at most 2."""
+    """Limit of the values at halved steps, with the order of the last two differences, at most 2.
+
+    Values that oscillate have their limit between them; where the differences do not shrink, it is the last value.
+    """
     first, last = values[-2] - values[-3], values[-1] - values[-2]
     ratio = first / last if last else np.inf
-    return values[-1] + last / (min(ratio, 4.0) - 1) if ratio > 1 else float("nan")
+    if abs(ratio) <= 1:
+        return values[-1]
+    return values[-1] + last / (min(ratio, 4.0) - 1)
 
 
 def print_table(heading: str, steps: Sequence[float], compute: Callable[[float], Quantities]) -> list[float]:
