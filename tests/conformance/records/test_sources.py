@@ -232,6 +232,21 @@ def test_removing_information_never_makes_a_pass(name: str, join: str, tmp_path:
     assert pantocheck("assess", sidecar, "--profile", "acceptance-ac", "--out", report, "--formats", "json").exit_code
 
 
+def test_gap_beside_the_passage_hides_no_uplift(tmp_path: Path) -> None:
+    """A smooth wave of 60 mm, 40 m before a support, exceeds the space; without its samples, nothing is graded."""
+    pair = MeasuredPair(1)
+    sidecar = edit_toml(pair.write(tmp_path, STATED), {"line.uplift_space_mm": 55.0})
+    names, table = ["Uhrzeit [s]", *(f"Anhub Mast {n} [mm]" for n in (1, 2, 3))], pair.masts()
+    distance = SPEED * (table[:, 0] + pair.offset) - 360 + 40
+    table[:, 2] += 60.0 * np.exp(-((distance / 10) ** 2))
+    write_german(tmp_path / "mast.csv", names, table)
+    assert read_results(sidecar)["verdict"] == "fail"
+    write_german(tmp_path / "mast.csv", names, table[np.abs(distance) > 15])
+    result = read_results(sidecar)
+    assert result["verdict"] == "skip"
+    assert "supports of the analysis section" in result["skipped"]["0"][UPLIFT]
+
+
 def test_uncertain_clock_leaves_an_uplift_near_its_space_undecided(tmp_path: Path) -> None:
     """A wave of 55 mm, 62 m before the support, counts if the clock is wrong by 0.1 s, which is stated as possible."""
     pair = MeasuredPair(1)
